@@ -1,0 +1,101 @@
+"""The circular masonry arch as a four-hinge mechanism [paper, Section 5.2; Oppenheim 1992]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from math import pi, radians
+from typing import ClassVar, Self
+
+import numpy as np
+from pydantic import model_validator
+
+from mechanisms._arch_collapse import ArchCannotStand, Ring, collapse_hinges, least_thickness
+from rocking_cli.core import (
+    Body, Direction, Mechanism, Reals, RigidMotion, annular_sector, four_bar, four_bar_limit, geometry_error, quantity,
+    rotation,
+)
+
+
+class Arch(Mechanism):
+    """A ring of constant thickness on fixed springings; its hinges are those of the least ground acceleration."""
+
+    mechanism: ClassVar[str] = "arch"
+    title: ClassVar[str] = "circular masonry arch, four hinges"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 5.2; Oppenheim (1992)"
+    verified: ClassVar[str] = "static theorem (linear programme of the line of thrust); Oppenheim's arch, lambda = 0.37"
+
+    radius: float = quantity("radius of the centre line", unit="m", symbol="r", example=10.0, gt=0)
+    thickness: float = quantity("thickness of the ring", unit="m", symbol="t", example=1.5, gt=0)
+    inclusion_angle_deg: float = quantity(
+        "angle between the springings", unit="deg", symbol="beta", example=157.5, gt=0, le=180
+    )
+    voussoirs: int | None = quantity(
+        "number of equal voussoirs, whose joints may open; absent: hinges anywhere", symbol="n", example=7,
+        default=None, ge=3,
+    )
+
+    @model_validator(mode="after")
+    def _stands(self) -> Self:
+        if self.thickness >= 2 * self.radius:
+            raise geometry_error("thickness", f"the ring has no intrados: thickness must be less than {2 * self.radius:g} m")
+        try:
+            self._hinge_angles  # noqa: B018 - found once, here, so that a structure that exists can stand
+        except ArchCannotStand:
+            least = least_thickness(self._beta, self.voussoirs) * self.radius
+            raise geometry_error(
+                "thickness",
+                f"the arch is too thin to stand under its own weight (t/r = {self.thickness / self.radius:.4g}): "
+                f"it needs a thickness of at least {np.ceil(least * 1e4) / 1e4:.6g} m (t/r = {least / self.radius:.4f})",
+            ) from None
+        return self
+
+    @property
+    def _beta(self) -> float:
+        return radians(self.inclusion_angle_deg)
+
+    @cached_property
+    def _hinge_angles(self) -> tuple[float, float, float, float]:
+        return collapse_hinges(Ring(self.thickness / self.radius, self._beta), self.voussoirs)
+
+    def hinge_angles(self, direction: Direction) -> tuple[float, float, float, float]:
+        """Angles of A, B, C and D from the springing on the left (positive) or right (negative) [rad]."""
+        return self._hinge_angles
+
+    def hinges(self, direction: Direction) -> tuple[complex, complex, complex, complex]:
+        """Rest positions of A, B, C and D [m]; the centre of the ring is the origin."""
+        half = self.thickness / 2
+        radii = (self.radius - half, self.radius + half) * 2  # intrados, extrados, intrados, extrados
+        a, b, c, d = (
+            complex(radius * np.exp(1j * (pi / 2 + direction * (self._beta / 2 - angle))))
+            for radius, angle in zip(radii, self._hinge_angles, strict=True)
+        )
+        return a, b, c, d
+
+    @cached_property
+    def _cuts(self) -> tuple[float, ...]:
+        # Bodies must be rigid in both directions: the ring is cut at the hinges of both.
+        mirrored = [self._beta - angle for angle in self._hinge_angles]
+        cuts = sorted({*self._hinge_angles, *mirrored})
+        # A cut that is its own mirror image (up to rounding) is one cut, not a sliver between two.
+        return tuple(cut for k, cut in enumerate(cuts) if k == 0 or cut - cuts[k - 1] > 1e-12)
+
+    def bodies(self) -> Sequence[Body]:
+        half = self.thickness / 2
+        inner, outer = self.radius - half, self.radius + half
+        density = 2 / (self._beta * (outer**2 - inner**2))  # 1 kg for the whole ring
+        left = pi / 2 + self._beta / 2
+        return tuple(
+            annular_sector(f"segment {k + 1}", density, inner, outer, left - start, left - end)
+            for k, (start, end) in enumerate(zip(self._cuts, self._cuts[1:], strict=False))
+        )
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        hinges = self.hinges(direction)
+        links = (rotation(phi, hinges[0], 0.0), *four_bar(phi, direction, *hinges), rotation(phi, hinges[3], 0.0))
+        middles = (np.array(self._cuts[:-1]) + np.array(self._cuts[1:])) / 2
+        along = middles if direction > 0 else self._beta - middles
+        return tuple(links[k] for k in np.searchsorted(self._hinge_angles, along))
+
+    def limit(self, direction: Direction) -> float:
+        return four_bar_limit(direction, *self.hinges(direction))

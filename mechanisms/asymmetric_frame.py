@@ -1,0 +1,75 @@
+"""A beam on two columns of different height: a four-bar linkage [paper, Section 5.1]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+from typing import ClassVar, Self
+
+from pydantic import model_validator
+
+from rocking_cli.core import (
+    Body, Direction, Mechanism, Reals, RigidMotion, box, four_bar, four_bar_limit, geometry_error, quantity,
+)
+
+
+class AsymmetricFrame(Mechanism):
+    """Two columns with level tops and feet at different levels, under a freely supported beam."""
+
+    mechanism: ClassVar[str] = "asymmetric_frame"
+    title: ClassVar[str] = "beam on two columns of different height"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 26-38, corrected"
+    verified: ClassVar[str] = "corrected Eqs. 32-34 and 38 written out; the symmetric frame for equal columns"
+
+    column_width: float = quantity("width of both columns", unit="m", symbol="2b", example=1.0, gt=0)
+    left_height: float = quantity("height of the left column", unit="m", symbol="2H", example=6.0, gt=0)
+    right_height: float = quantity("height of the right column", unit="m", symbol="2H1", example=7.5, gt=0)
+    spacing: float = quantity("distance between the column axes", unit="m", symbol="L", example=8.0, gt=0)
+    beam_depth: float = quantity("depth of the beam, which is L + 2b long", unit="m", symbol="2h", example=1.0, gt=0)
+    density: float | None = quantity("density of columns and beam", unit="kg/m3", example=2400.0, default=None, gt=0)
+    depth: float | None = quantity("size out of plane", unit="m", example=1.0, default=None, gt=0)
+    left_mass: float | None = quantity("mass of the left column", unit="kg", symbol="m_AB", example=14400.0, default=None, gt=0)
+    beam_mass: float | None = quantity("mass of the beam", unit="kg", symbol="m_BC", example=21600.0, default=None, ge=0)
+    right_mass: float | None = quantity("mass of the right column", unit="kg", symbol="m_CD", example=18000.0, default=None, gt=0)
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if self.spacing <= self.column_width:
+            raise geometry_error(
+                "spacing",
+                f"the columns overlap: the distance between their axes ({self.spacing:g} m) must be more than "
+                f"their width ({self.column_width:g} m)",
+            )
+        by_density = [self.density, self.depth]
+        by_mass = [self.left_mass, self.beam_mass, self.right_mass]
+        given = [value is not None for value in by_density + by_mass]
+        if given not in ([True] * 2 + [False] * 3, [False] * 2 + [True] * 3):
+            raise geometry_error(
+                "density", "give density and depth, or left_mass, beam_mass and right_mass: all of one set, none of the other"
+            )
+        return self
+
+    def bodies(self) -> Sequence[Body]:
+        width, top, span = self.column_width, self.left_height, self.spacing
+        areas = (width * self.left_height, (span + width) * self.beam_depth, width * self.right_height)
+        if self.density is not None and self.depth is not None:
+            masses = tuple(self.density * self.depth * area for area in areas)
+        else:
+            assert self.left_mass is not None and self.beam_mass is not None and self.right_mass is not None
+            masses = (self.left_mass, self.beam_mass, self.right_mass)
+        return (
+            box("left column AB", masses[0], width, self.left_height, 1j * top / 2),
+            box("beam BC", masses[1], span + width, self.beam_depth, span / 2 + 1j * (top + self.beam_depth / 2)),
+            box("right column CD", masses[2], width, self.right_height, span + 1j * (top - self.right_height / 2)),
+        )
+
+    def hinges(self, direction: Direction) -> tuple[complex, complex, complex, complex]:
+        """Rest positions of A, B, C and D [m]; the left column's axis is x = 0, its foot y = 0."""
+        sb, top, span = direction * self.column_width / 2, 1j * self.left_height, self.spacing
+        return sb + 0j, -sb + top, span - sb + top, span + sb + top - 1j * self.right_height
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        return four_bar(phi, direction, *self.hinges(direction))
+
+    def limit(self, direction: Direction) -> float:
+        return min(four_bar_limit(direction, *self.hinges(direction)), pi / 2)  # it locks, or AB lies flat

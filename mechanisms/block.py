@@ -1,0 +1,31 @@
+"""The rectangular rocking block [paper, Section 2.1; Housner 1963]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+from typing import ClassVar
+
+from mechanisms._single_body import SingleBody
+from rocking_cli.core import Body, Direction, box, quantity
+
+
+class Block(SingleBody):
+    """A uniform rectangle on its base."""
+
+    mechanism: ClassVar[str] = "block"
+    title: ClassVar[str] = "free-standing rectangular block"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 1-6; Housner (1963)"
+    verified: ClassVar[str] = "closed forms p^2 = 3g/(4R), lambda = tan(alpha), eta = 1 - 1.5 sin^2(alpha)"
+
+    width: float = quantity("width of the base", unit="m", symbol="2b", example=0.7, gt=0)
+    height: float = quantity("height", unit="m", symbol="2h", example=2.8, gt=0)
+
+    def bodies(self) -> Sequence[Body]:
+        return (box("block", 1.0, self.width, self.height, 0.5j * self.height),)
+
+    def feet(self) -> tuple[complex, complex]:
+        return -self.width / 2 + 0j, self.width / 2 + 0j
+
+    def limit(self, direction: Direction) -> float:
+        return pi / 2  # it lies on its side

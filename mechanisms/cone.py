@@ -1,0 +1,54 @@
+"""Cones, shell to solid: the model of a masonry spire [paper, Table I; DeJong 2012]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, pi
+from typing import ClassVar, Literal, Self
+
+from pydantic import model_validator
+
+from mechanisms._single_body import SingleBody
+from rocking_cli.core import Body, Direction, geometry_error, quantity
+
+
+class Cone(SingleBody):
+    """A circular cone on its base: a thin shell, solid, or hollow with a similar inner cone."""
+
+    mechanism: ClassVar[str] = "cone"
+    title: ClassVar[str] = "conical spire (shell, solid or hollow)"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; DeJong (2012), Engineering Structures 40"
+    verified: ClassVar[str] = "closed forms of shell and solid; the hollow cone tends to both"
+
+    base_radius: float = quantity("outer radius of the base", unit="m", symbol="r", example=1.5, gt=0)
+    height: float = quantity("height of the apex", unit="m", symbol="h", example=12.0, gt=0)
+    kind: Literal["shell", "solid", "hollow"] = quantity(
+        "shell (thin lateral surface), solid or hollow", example="shell", default="shell"
+    )
+    inner_ratio: float | None = quantity(
+        "size of the similar inner cone of a hollow one over the outer's", example=0.9, default=None, gt=0, lt=1
+    )
+
+    @model_validator(mode="after")
+    def _ratio_belongs_to_hollow(self) -> Self:
+        if self.kind == "hollow" and self.inner_ratio is None:
+            raise geometry_error("inner_ratio", "a hollow cone needs inner_ratio, the size of its inner cone")
+        if self.kind != "hollow" and self.inner_ratio is not None:
+            raise geometry_error("inner_ratio", f"inner_ratio goes with kind: hollow, not with kind: {self.kind}")
+        return self
+
+    def bodies(self) -> Sequence[Body]:
+        r, h = self.base_radius, self.height
+        if self.kind == "shell":
+            level, about_base = h / 3, r**2 / 4 + h**2 / 6
+        else:
+            k = self.inner_ratio or 0.0  # the inner cone, scaled by k, is taken out
+            level = h / 4 * (1 - k**4) / (1 - k**3)
+            about_base = (3 * r**2 / 20 + h**2 / 10) * (1 - k**5) / (1 - k**3)
+        return (Body("cone", 1.0, about_base - level**2, 1j * level),)
+
+    def feet(self) -> tuple[complex, complex]:
+        return -self.base_radius + 0j, self.base_radius + 0j
+
+    def limit(self, direction: Direction) -> float:
+        return pi - atan2(self.height, self.base_radius)  # it lies on its flank

@@ -1,0 +1,47 @@
+"""Free-standing equal columns capped by a freely supported beam [paper, Table I; Makris and Vassiliou 2013]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, pi
+from typing import ClassVar
+
+import numpy as np
+
+from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, quantity, rotation
+
+
+class SymmetricFrame(Mechanism):
+    """Columns that all turn alike about their corners while the beam stays level."""
+
+    mechanism: ClassVar[str] = "symmetric_frame"
+    title: ClassVar[str] = "equal columns under a freely supported beam"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; Makris and Vassiliou (2013)"
+    verified: ClassVar[str] = "closed forms p^2 = 3g/(4R) (1+2 gamma)/(1+3 gamma), lambda = tan(alpha), eta"
+
+    column_width: float = quantity("width of a column", unit="m", symbol="2b", example=1.0, gt=0)
+    column_height: float = quantity("height of a column", unit="m", symbol="2h", example=6.0, gt=0)
+    columns: int = quantity("number of columns", symbol="N", example=2, default=2, ge=1)
+    mass_ratio: float = quantity("mass of the beam over that of all columns", symbol="gamma", example=2.0, ge=0)
+
+    def bodies(self) -> Sequence[Body]:
+        # All columns move alike: one body with the mass of all of them stands for them.
+        of_columns = 1 / (1 + self.mass_ratio)
+        h = self.column_height / 2
+        return (
+            box("columns", of_columns, self.column_width, self.column_height, 1j * h),
+            Body("beam", 1 - of_columns, 0.0, 2j * h),
+        )
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        foot = complex(direction * self.column_width / 2)
+        top = complex(-foot.real, self.column_height)
+        column = rotation(phi, foot, -direction)
+        none = np.zeros_like(phi)
+        return column, RigidMotion(top, *column.carry(top), none, none, none)
+
+    def limit(self, direction: Direction) -> float:
+        return pi / 2  # the columns lie flat
+
+    def critical_rotation(self, direction: Direction) -> float:
+        return atan2(self.column_width, self.column_height)  # Eq. 37

@@ -1,0 +1,48 @@
+"""A wall that bends out of plane: two equal blocks, a slider-crank [paper, Section 4]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, hypot, pi
+from typing import ClassVar
+
+import numpy as np
+
+from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, quantity, rotation
+
+
+class Wall(Mechanism):
+    """A one-way spanning wall hinged at its foot and at mid-height, its top held sideways."""
+
+    mechanism: ClassVar[str] = "wall"
+    title: ClassVar[str] = "masonry wall bending out of plane, top held sideways"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 21-23"
+    verified: ClassVar[str] = "closed forms phi_cr = alpha, kappa1 = 1/2, lambda = 2 tan(alpha), p^2 = 3g/(2R); Eq. 21"
+
+    thickness: float = quantity("thickness", unit="m", symbol="2b", example=0.3, gt=0)
+    height: float = quantity("height between foot and top support", unit="m", symbol="4h", example=3.0, gt=0)
+
+    def bodies(self) -> Sequence[Body]:
+        h = self.height / 4
+        return (
+            box("lower block", 0.5, self.thickness, 2 * h, 1j * h),
+            box("upper block", 0.5, self.thickness, 2 * h, 3j * h),
+        )
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        foot = complex(direction * self.thickness / 2)
+        R = hypot(self.thickness, self.height / 2) / 2
+        tilt = self.critical_rotation(direction) - phi  # alpha - phi
+        top = foot + 4j * R * np.cos(tilt)  # it stays above the foot pivot
+        upper = RigidMotion(
+            foot + 1j * self.height,
+            top, 4j * R * np.sin(tilt), -4j * R * np.cos(tilt),
+            direction * phi, np.full_like(phi, direction), np.zeros_like(phi),
+        )
+        return rotation(phi, foot, -direction), upper
+
+    def limit(self, direction: Direction) -> float:
+        return pi / 2  # the two blocks lie folded
+
+    def critical_rotation(self, direction: Direction) -> float:
+        return atan2(2 * self.thickness, self.height)  # alpha: both pivots and the mid hinge are in line

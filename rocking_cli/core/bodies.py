@@ -1,0 +1,76 @@
+"""Rigid bodies: mass, central moment of inertia and rest centroid of the shapes structures are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Body:
+    """One rigid body of a mechanism, rigid in both directions of rocking.
+
+    Parameters
+    ----------
+    name : str
+        What it is.
+    mass : float
+        Mass [kg].
+    inertia : float
+        Moment of inertia about its centroid [kg m2].
+    centroid : complex
+        Rest position of its centroid, x + iy [m].
+    """
+
+    name: str
+    mass: float
+    inertia: float
+    centroid: complex
+
+
+def box(name: str, mass: float, width: float, height: float, centroid: complex) -> Body:
+    """A uniform rectangle `width` by `height` [m]."""
+    return Body(name, mass, mass * (width**2 + height**2) / 12, centroid)
+
+
+def polygon(name: str, mass: float, vertices: Sequence[complex]) -> Body:
+    """A uniform simple polygon with `vertices` x + iy [m] in either order; its area must not be zero."""
+    # Triangles from one vertex rather than from the origin: no cancellation for a polygon far away.
+    origin = vertices[0]
+    z = np.asarray(vertices) - origin
+    w = np.roll(z, -1)
+    twice_area = (z.conj() * w).imag
+    area = twice_area.sum() / 2
+    centroid = (twice_area * (z + w)).sum() / (6 * area)
+    polar = (twice_area * (abs(z) ** 2 + abs(w) ** 2 + (z.conj() * w).real)).sum() / (12 * area)
+    return Body(name, mass, float(mass * (polar - abs(centroid) ** 2)), complex(origin + centroid))
+
+
+def annular_sector(
+    name: str, density: float, inner: float, outer: float, start: float, end: float
+) -> Body:
+    """A sector of a ring about the origin between two polar angles.
+
+    Parameters
+    ----------
+    name : str
+        What it is.
+    density : float
+        Mass per area [kg/m2].
+    inner, outer : float
+        Radii [m].
+    start, end : float
+        Polar angles [rad] in either order.
+
+    Returns
+    -------
+    Body
+        With exact mass, inertia and centroid.
+    """
+    half = abs(end - start) / 2
+    mass = density * (outer**2 - inner**2) * half
+    reach = 2 / 3 * (outer**3 - inner**3) / (outer**2 - inner**2) * np.sinc(half / np.pi)
+    centroid = complex(reach * np.exp(1j * (start + end) / 2))
+    return Body(name, mass, mass * ((outer**2 + inner**2) / 2 - float(reach) ** 2), centroid)

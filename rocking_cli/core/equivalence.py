@@ -1,0 +1,120 @@
+"""The single rocking block that a mechanism is locally equivalent to [paper, Section 3]."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from math import isclose, sqrt
+
+import numpy as np
+
+from rocking_cli.core.kinematics import Direction
+from rocking_cli.core.mechanism import Mechanism
+
+AGREEMENT = 1e-9  # relative difference below which the two directions count as the same
+
+
+@dataclass(frozen=True)
+class EquivalentBlock:
+    """Parameters of the equivalent block in one direction of rocking.
+
+    Parameters
+    ----------
+    p : float
+        Frequency parameter [rad/s].
+    phi_cr : float
+        Critical rotation of the mechanism [rad].
+    lambda_ : float
+        Uplift acceleration over g; the scaling kappa2 keeps it.
+    lambda_lin : float
+        Uplift acceleration over g of the linearised mechanism; the scaling kappa1 keeps it.
+    kappa1, kappa2 : float
+        phi over the rotation theta of the equivalent block.
+    theta_cr1, theta_cr2 : float
+        Critical rotation of the equivalent block [rad], with either kappa.
+    eta : float
+        Ratio of the rotation rates after and before an impact that ends motion in this direction.
+    I_eq, G_eq, B_eq : float
+        Linearised inertia [kg m2], restoring moment over g and per rad [kg m], and drive [kg m].
+    """
+
+    p: float
+    phi_cr: float
+    lambda_: float
+    lambda_lin: float
+    kappa1: float
+    kappa2: float
+    theta_cr1: float
+    theta_cr2: float
+    eta: float
+    I_eq: float
+    G_eq: float
+    B_eq: float
+
+    def as_dict(self) -> dict[str, float]:
+        """The parameters under their public names (`lambda` for `lambda_`)."""
+        return {key.rstrip("_"): value for key, value in asdict(self).items()}
+
+
+@dataclass(frozen=True)
+class Equivalence:
+    """The equivalent blocks of both directions."""
+
+    positive: EquivalentBlock
+    negative: EquivalentBlock
+
+    def __getitem__(self, direction: Direction) -> EquivalentBlock:
+        return self.positive if direction > 0 else self.negative
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the two directions agree to rounding error."""
+        pairs = zip(self.positive.as_dict().values(), self.negative.as_dict().values(), strict=True)
+        return all(isclose(one, other, rel_tol=AGREEMENT, abs_tol=1e-12) for one, other in pairs)
+
+
+def equivalent_block(mechanism: Mechanism) -> Equivalence:
+    """The equivalent single rocking block of a mechanism, in both directions.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any plugin.
+
+    Returns
+    -------
+    Equivalence
+
+    Raises
+    ------
+    MechanismError
+        If the structure does not stand or has no critical rotation.
+
+    Notes
+    -----
+    DeJong and Dimitrakopoulos (2014), Eqs. 9-20: local equivalence at the unstable equilibrium.
+    """
+    return Equivalence(_one_direction(mechanism, Direction.POSITIVE), _one_direction(mechanism, Direction.NEGATIVE))
+
+
+def _one_direction(mechanism: Mechanism, direction: Direction) -> EquivalentBlock:
+    lam = mechanism.uplift(direction)  # Eq. 10
+    phi_cr = mechanism.critical_rotation(direction)  # Eq. 9
+    critical = mechanism.coefficients(np.array([phi_cr]), direction)
+    I_eq, G_eq, B_eq = float(critical.I[0]), -float(critical.dG[0]), float(critical.B[0])  # Eq. 13
+    kappa1 = B_eq / G_eq  # Eq. 15
+    lambda_lin = phi_cr / kappa1  # Eqs. 18-19
+    kappa2 = phi_cr / lam  # Eq. 20
+    return EquivalentBlock(
+        p=sqrt(mechanism.gravity * G_eq / I_eq),  # Eq. 17
+        phi_cr=phi_cr,
+        lambda_=lam,
+        lambda_lin=lambda_lin,
+        kappa1=kappa1,
+        kappa2=kappa2,
+        theta_cr1=phi_cr / kappa1,  # Eq. 17
+        theta_cr2=phi_cr / kappa2,  # Eq. 17
+        eta=mechanism.eta(direction),
+        I_eq=I_eq,
+        G_eq=G_eq,
+        B_eq=B_eq,
+    )

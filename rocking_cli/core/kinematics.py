@@ -1,0 +1,136 @@
+"""Rigid plane motions over the rocking rotation phi, with exact first and second derivatives.
+
+Points of the plane are complex numbers x + iy, x to the right, y up [m]. Rotations psi of a body are
+anticlockwise [rad], so a structure that rocks in the positive (clockwise) direction turns by -phi.
+A prime is a derivative with respect to phi.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Reals = NDArray[np.float64]
+Points = NDArray[np.complex128]
+
+
+class Direction(IntEnum):
+    """The sense in which a mechanism rocks; its value is the sign s of the signed rotation."""
+
+    POSITIVE = 1  # clockwise
+    NEGATIVE = -1  # anticlockwise
+
+    @property
+    def label(self) -> str:
+        """`"positive"` or `"negative"`."""
+        return self.name.lower()
+
+    @property
+    def opposite(self) -> Direction:
+        """The other direction."""
+        return Direction(-self)
+
+
+@dataclass(frozen=True)
+class RigidMotion:
+    """The motion of one rigid body, or of the link it belongs to, over an array of rotations phi.
+
+    Parameters
+    ----------
+    rest : complex
+        Rest position of a reference point of the link [m].
+    q, dq, ddq : ndarray of complex, shape (n,)
+        Position of that point [m] and its first two derivatives in phi.
+    psi, dpsi, ddpsi : ndarray, shape (n,)
+        Rotation of the link [rad, anticlockwise] and its first two derivatives in phi.
+    """
+
+    rest: complex
+    q: Points
+    dq: Points
+    ddq: Points
+    psi: Reals
+    dpsi: Reals
+    ddpsi: Reals
+
+    def carry(self, point: complex) -> tuple[Points, Points, Points]:
+        """Position, first and second derivative of the point of the link that rests at `point`, each shape (n,)."""
+        arm = np.exp(1j * self.psi) * (point - self.rest)
+        return (
+            self.q + arm,
+            self.dq + 1j * self.dpsi * arm,
+            self.ddq + (1j * self.ddpsi - self.dpsi**2) * arm,
+        )
+
+
+def rotation(phi: Reals, pivot: complex, rate: float) -> RigidMotion:
+    """Rotation by `rate` * phi about a fixed `pivot`; rate 0 is a body at rest."""
+    zero, still = np.zeros_like(phi), np.zeros(phi.shape, np.complex128)
+    return RigidMotion(pivot, still + pivot, still, still, rate * phi, zero + rate, zero)
+
+
+def four_bar(
+    phi: Reals, direction: Direction, a: complex, b: complex, c: complex, d: complex
+) -> tuple[RigidMotion, RigidMotion, RigidMotion]:
+    """Motions of the links AB, BC and CD of a four-bar linkage whose AB turns by -s phi about A.
+
+    Parameters
+    ----------
+    phi : ndarray, shape (n,)
+        Rotations of AB inside the direction [rad], from 0 to less than `four_bar_limit`.
+    direction : Direction
+        Clockwise (positive) or anticlockwise (negative) rotation of AB.
+    a, b, c, d : complex
+        Rest positions of the hinges [m]; A and D are fixed.
+
+    Returns
+    -------
+    tuple of RigidMotion
+        AB, BC, CD. The branch of the linkage is that of the rest geometry.
+
+    Notes
+    -----
+    Positions from the closed form, derivatives from the loop closure AB + BC = AD + DC differentiated once
+    and twice, so that all are exact [paper, Eqs. 27-29].
+    """
+    s = int(direction)
+    w1 = -s  # psi_AB' ; psi_AB'' = 0
+    ab = np.exp(1j * w1 * phi) * (b - a)
+    bd = d - (a + ab)
+    span, length_bc, length_cd = np.abs(bd), abs(c - b), abs(d - c)
+    cosine = (span**2 + length_bc**2 - length_cd**2) / (2 * span * length_bc)
+    side = np.sign(_cross(np.complex128(d - b), np.complex128(c - b)))
+    bc = bd / span * length_bc * np.exp(1j * side * np.arccos(np.clip(cosine, -1.0, 1.0)))  # Eq. 27
+    dc = bc - bd
+
+    w2 = -w1 * _cross(ab, dc) / _cross(bc, dc)  # Eq. 28
+    w3 = w1 * _cross(ab, bc) / _cross(dc, bc)  # Eq. 28
+    pull = w1**2 * ab + w2**2 * bc - w3**2 * dc
+    e2 = _cross(1j * dc, pull) / _cross(dc, bc)  # Eq. 29: i e2 bc - i e3 dc = pull
+    e3 = _cross(1j * bc, pull) / _cross(dc, bc)  # Eq. 29
+    link_ab = rotation(phi, a, w1)
+    link_bc = RigidMotion(
+        b, a + ab, 1j * w1 * ab, -(w1**2) * ab, np.unwrap(np.angle(bc / (c - b))), w2, e2
+    )
+    still = np.zeros(phi.shape, np.complex128)
+    link_cd = RigidMotion(d, still + d, still, still, np.unwrap(np.angle(dc / (c - d))), w3, e3)
+    return link_ab, link_bc, link_cd
+
+
+def four_bar_limit(direction: Direction, a: complex, b: complex, c: complex, d: complex) -> float:
+    """Rotation phi of AB at which B, C and D fall in line and the linkage locks [rad]; 2 pi if it never does."""
+    ab, ad = abs(b - a), abs(d - a)
+    start = float(np.angle((b - a) / (d - a)))
+    turns = [2 * np.pi]
+    for span in (abs(c - b) + abs(d - c), abs(abs(c - b) - abs(d - c))):
+        cosine = (ab**2 + ad**2 - span**2) / (2 * ab * ad)
+        if abs(cosine) <= 1:
+            turns += [float(direction * (start - end) % (2 * np.pi)) for end in (np.arccos(cosine), -np.arccos(cosine))]
+    return min(turns)
+
+
+def _cross(u: Points | np.complex128, v: Points | np.complex128) -> Reals:
+    return np.asarray((np.conj(u) * v).imag)

@@ -1,0 +1,134 @@
+"""The base class of every mechanism plugin: say where the bodies are, the rest follows."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import partial
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+from rocking_cli.core import equilibrium
+from rocking_cli.core.bodies import Body
+from rocking_cli.core.coefficients import Coefficients, coefficients
+from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
+from rocking_cli.core.restitution import kinematic_restitution
+
+Restitution = Annotated[float, Field(gt=0, le=1)]
+
+
+def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
+    """A field of a mechanism: what it is, its unit and symbol, an example for `rocking new`, and its bounds.
+
+    Parameters
+    ----------
+    description : str
+        What the field is, a few words.
+    unit : str
+        Its SI unit, or degrees where the field's name says so; empty for a pure number.
+    symbol : str
+        The paper's symbol.
+    example : any
+        A value that works, printed by `rocking new`.
+    **bounds
+        Passed to `pydantic.Field`: `gt`, `ge`, `lt`, `le`, `default`, ...
+    """
+    return Field(description=description, examples=[example], json_schema_extra={"unit": unit, "symbol": symbol}, **bounds)
+
+
+def geometry_error(field: str, message: str) -> PydanticCustomError:
+    """An error for a validator to raise when fields that are fine one by one do not fit together.
+
+    Parameters
+    ----------
+    field : str
+        The field to point at.
+    message : str
+        What is wrong and what would be right.
+    """
+    # Pydantic formats the message: braces are its own.
+    return PydanticCustomError("geometry", "{reason}", {"reason": message, "field": field})
+
+
+class DirectionalRestitution(BaseModel):
+    """Coefficients of restitution that differ between the two impacts."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    positive_to_negative: Restitution = Field(description="eta of an impact that ends positive rotation")
+    negative_to_positive: Restitution = Field(description="eta of an impact that ends negative rotation")
+
+
+class Mechanism(BaseModel, ABC):
+    """A rocking structure with one degree of freedom.
+
+    A plugin subclasses it, declares its geometry as fields made with `quantity`, and says in `bodies`, `motion`
+    and `limit` where its rigid bodies are. Energies, uplift, critical rotation, equivalence and restitution are
+    derived here; a solver may be overridden by its closed form.
+
+    Where a structure gives no masses its total mass is 1 kg, so that inertias and moments are per kilogram.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    mechanism: ClassVar[str]
+    """The name of the mechanism, that of its entry point."""
+    title: ClassVar[str]
+    """What it is, in a few words."""
+    source: ClassVar[str]
+    """The publication and its equations."""
+    verified: ClassVar[str] = ""
+    """What its numbers were checked against; empty means nobody has, and the tool says so."""
+
+    name: str | None = Field(None, description="what to call the structure")
+    gravity: float = Field(9.80665, gt=0, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"})
+    restitution: Restitution | DirectionalRestitution | None = Field(
+        None, description="coefficient of restitution eta; absent: from kinematics"
+    )
+
+    @abstractmethod
+    def bodies(self) -> Sequence[Body]:
+        """The rigid bodies, each rigid in both directions of rocking."""
+
+    @abstractmethod
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        """The motion of each body, in the order of `bodies`, over rotations `phi`, shape (n,) [rad, >= 0]."""
+
+    @abstractmethod
+    def limit(self, direction: Direction) -> float:
+        """Rotation phi at which the mechanism ends: it lies on the ground or locks [rad]."""
+
+    def coefficients(self, phi: Reals, direction: Direction) -> Coefficients:
+        """Coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8]."""
+        return coefficients(phi, direction, self.bodies(), self.motion(phi, direction))
+
+    def kinetic_inertia(self, phi: Reals, direction: Direction) -> Reals:
+        """I(phi) [kg m2], shape (n,): the kinetic energy is I phi.^2 / 2."""
+        return self.coefficients(phi, direction).I
+
+    def potential_energy(self, phi: Reals, direction: Direction) -> Reals:
+        """V(phi) [J], shape (n,), zero at rest."""
+        return self.gravity * self.coefficients(phi, direction).V
+
+    def uplift(self, direction: Direction) -> float:
+        """lambda: the ground acceleration that starts rocking, over g [paper, Eq. 10]."""
+        return equilibrium.uplift_acceleration(partial(self.coefficients, direction=direction))
+
+    def critical_rotation(self, direction: Direction) -> float:
+        """phi_cr: the rotation of unstable equilibrium [rad; paper, Eq. 9]."""
+        return equilibrium.critical_rotation(partial(self.coefficients, direction=direction), self.limit(direction))
+
+    def restitution_from_kinematics(self, direction: Direction) -> float:
+        """The eta of an impact that ends motion in `direction`, from the kinematics alone; it may be <= 0."""
+        rest = np.zeros(1)
+        return kinematic_restitution(self.bodies(), self.motion(rest, direction), self.motion(rest, direction.opposite))
+
+    def eta(self, direction: Direction) -> float:
+        """The eta of an impact that ends motion in `direction`: the user's, else that of the kinematics."""
+        if isinstance(self.restitution, DirectionalRestitution):
+            given = self.restitution
+            return given.positive_to_negative if direction > 0 else given.negative_to_positive
+        return self.restitution if self.restitution is not None else self.restitution_from_kinematics(direction)

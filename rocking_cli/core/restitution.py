@@ -1,0 +1,38 @@
+"""Restitution from kinematics: the impulses of an impact do no work in the motion that follows it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rocking_cli.core.bodies import Body
+from rocking_cli.core.kinematics import RigidMotion
+
+
+def kinematic_restitution(
+    bodies: Sequence[Body], before: Sequence[RigidMotion], after: Sequence[RigidMotion]
+) -> float:
+    """Ratio eta of the rotation rates after and before an impact.
+
+    The velocity before the impact is projected on the mechanism that follows, in the mass inner product:
+    eta = -<t_before, t_after> / <t_after, t_after> with t the velocity fields at rest. For a block this is
+    Housner's 1 - (3/2) sin^2(alpha). It is an idealisation: an upper value for stocky shapes, and it can be
+    zero or negative, which means that the new mechanism cannot start as assumed.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        Bodies that are rigid in both mechanisms.
+    before, after : sequence of RigidMotion
+        Their motions in the two directions; the first entry of each is at rest (phi = 0).
+
+    Returns
+    -------
+    float
+        eta, the same for any scale of the masses.
+    """
+    mixed = own = 0.0
+    for body, old, new in zip(bodies, before, after, strict=True):
+        u, v = old.carry(body.centroid)[1][0], new.carry(body.centroid)[1][0]
+        mixed += body.mass * (u.conjugate() * v).real + body.inertia * old.dpsi[0] * new.dpsi[0]
+        own += body.mass * abs(v) ** 2 + body.inertia * new.dpsi[0] ** 2
+    return float(-mixed / own)

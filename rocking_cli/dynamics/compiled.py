@@ -1,0 +1,46 @@
+"""Compilation of the history kernel: where its machine code is kept, and whether it is there yet.
+
+Numba is imported only when a history is asked for. Its cache must not land beside the installed source, which
+may be read-only, so it goes to the user's cache folder unless NUMBA_CACHE_DIR says otherwise.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+
+def cache_folder() -> Path:
+    """The folder that keeps compiled kernels."""
+    return Path(os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_path("rocking-cli") / "numba")
+
+
+def compile_kernel(function: Callable[..., Any]) -> Any:
+    """`function` compiled by numba at its first call, and kept on disk where that is possible.
+
+    It releases the GIL and keeps IEEE arithmetic: a history that meets a NaN must show it.
+    """
+    from numba import config, njit
+
+    theirs = config.CACHE_DIR
+    try:
+        cache_folder().mkdir(parents=True, exist_ok=True)
+        config.CACHE_DIR = str(cache_folder())
+        return njit(cache=True, nogil=True, fastmath=False, error_model="numpy")(function)
+    except (OSError, RuntimeError):  # nowhere to write: compile anew in each process
+        return njit(nogil=True, fastmath=False, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = theirs
+
+
+def needs_compiling() -> bool:
+    """Whether the next history will first have to compile its kernel, some seconds once for this machine."""
+    source = Path(__file__).with_name("kernels.py")
+    tag = f"py{sys.version_info.major}{sys.version_info.minor}"
+    indexes = cache_folder().glob(f"*/kernels.follow-*.{tag}.nbi")
+    return not any(index.stat().st_mtime >= source.stat().st_mtime for index in indexes)

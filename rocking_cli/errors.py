@@ -1,0 +1,85 @@
+"""What can go wrong, as exceptions a person can read.
+
+Every error the package raises on purpose is a `RockingError`; the command line turns it into a message and
+the exit code of its class. An overturned structure is a result, not an error.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong with an input: what, where, and what to do.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, one sentence without a full stop.
+    file : str, optional
+        The file it was found in.
+    line, column : int, optional
+        Its place there, counted from 1.
+    field : str, optional
+        The field or option concerned.
+    excerpt : str, optional
+        The offending line of the file.
+    hint : str, optional
+        What to do about it.
+    """
+
+    message: str
+    file: str | None = None
+    line: int | None = None
+    column: int | None = None
+    field: str | None = None
+    excerpt: str | None = None
+    hint: str | None = None
+
+    def __str__(self) -> str:
+        place = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
+        head = ": ".join(part for part in (place, self.field, self.message) if part)
+        lines = [head]
+        if self.excerpt is not None:
+            lines.append(f"    {self.excerpt}")
+            if self.column is not None:
+                lines.append("    " + " " * (self.column - 1) + "^")
+        if self.hint:
+            lines.append(f"  {self.hint}")
+        return "\n".join(lines)
+
+
+class RockingError(Exception):
+    """Any error that rocking-cli raises on purpose."""
+
+    exit_code: ClassVar[int] = 1
+
+
+class InputError(RockingError):
+    """A file, field or option that cannot be used; it lists every `Problem` found.
+
+    Parameters
+    ----------
+    *problems : Problem or str
+        At least one.
+    """
+
+    exit_code = 2
+
+    def __init__(self, *problems: Problem | str) -> None:
+        self.problems = tuple(p if isinstance(p, Problem) else Problem(p) for p in problems)
+        super().__init__("\n".join(str(p) for p in self.problems))
+
+
+class MechanismError(RockingError):
+    """A mechanism or plugin that does not hold its side of the contract, or whose mechanics has no answer."""
+
+    exit_code = 3
+
+
+class SolverError(RockingError):
+    """A solver that could not reach an answer it can stand behind."""
+
+    exit_code = 4

@@ -1,0 +1,71 @@
+"""A ground motion: acceleration samples at a constant interval, straight lines between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError
+
+STANDARD_GRAVITY = 9.80665  # m/s2
+
+
+@dataclass(frozen=True)
+class GroundMotion:
+    """A horizontal ground acceleration history, positive to the right.
+
+    Parameters
+    ----------
+    name : str
+        What to call it.
+    dt : float
+        Interval between samples [s], > 0.
+    acceleration : ndarray, shape (npts,)
+        Ground acceleration [m/s2] at t = 0, dt, 2 dt, ...
+    unit : str
+        Unit the acceleration was recorded in, for the reader's eyes only.
+    format : str
+        Where it came from: a record format, or `"pulse"`.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two samples, a sample or dt is not finite, or dt is not positive.
+    """
+
+    name: str
+    dt: float
+    acceleration: NDArray[np.float64]
+    unit: str = "m/s2"
+    format: str = "array"
+
+    def __post_init__(self) -> None:
+        samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)
+        if samples.ndim != 1 or samples.size < 2:
+            raise InputError(f"{self.name}: a ground motion needs at least two samples, this has {samples.size}")
+        if not np.isfinite(samples).all():
+            raise InputError(f"{self.name}: sample {int(np.flatnonzero(~np.isfinite(samples))[0]) + 1} is not a number")
+        if not (np.isfinite(self.dt) and self.dt > 0):
+            raise InputError(f"{self.name}: the sample interval must be positive, got {self.dt} s")
+        object.__setattr__(self, "acceleration", samples)
+
+    @property
+    def npts(self) -> int:
+        """Number of samples."""
+        return int(self.acceleration.size)
+
+    @property
+    def duration(self) -> float:
+        """Time of the last sample [s]."""
+        return (self.npts - 1) * self.dt
+
+    @property
+    def pga(self) -> float:
+        """Peak ground acceleration, in units of standard gravity."""
+        return float(np.abs(self.acceleration).max() / STANDARD_GRAVITY)
+
+    def scaled(self, factor: float) -> GroundMotion:
+        """The same motion with every acceleration multiplied by `factor` (a negative one reverses it)."""
+        return GroundMotion(self.name, self.dt, factor * self.acceleration, self.unit, self.format)
