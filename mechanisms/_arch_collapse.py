@@ -23,6 +23,7 @@ Reals = NDArray[np.float64]
 START_JOINTS = 13  # first candidates
 SCAN_JOINTS = 721  # where the line of thrust is looked at when hinges may be anywhere
 TOLERANCE = 1e-13  # moment by which the line of thrust may leave the ring, over that of the ring's weight
+SETTLED = 1e-9  # the same once rounding keeps lambda from falling any further
 ROUNDS = 60
 
 
@@ -106,18 +107,20 @@ def collapse_hinges(ring: Ring, voussoirs: int | None) -> tuple[float, float, fl
         scale = TOLERANCE * ring.thickness * ring.beta
         stalled = multiplier >= lowest * (1 - 4 * np.finfo(float).eps)
         lowest = multiplier
-        leaves = []
+        leaves, furthest = [], 0.0
         for face in (-1, 1):
             beyond = ring.excess(joints, face, state)
             padded = np.concatenate([[-np.inf], beyond, [-np.inf]])
-            peaks = joints[(beyond >= padded[:-2]) & (beyond >= padded[2:]) & (beyond > (-1e-6 if voussoirs is None else scale))]
+            peaks = joints[(beyond >= padded[:-2]) & (beyond >= padded[2:]) & (beyond > -1e-6)]
             if voussoirs is None:
                 peaks = ring.worst(peaks, face, state)
-            leaves.append(peaks[ring.excess(peaks, face, state) > scale])
-        if stalled or all(peaks.size == 0 for peaks in leaves):
-            if max((float(ring.excess(p, f, state).max(initial=0.0)) for p, f in zip(leaves, (-1, 1), strict=True))) > 1e-9:
-                break
+            excess = ring.excess(peaks, face, state)
+            leaves.append(peaks[excess > scale])
+            furthest = max(furthest, float(excess.max(initial=0.0)))
+        if furthest <= scale or (stalled and furthest < SETTLED * ring.thickness * ring.beta):
             return hinges
+        if stalled:
+            break
         inside = np.union1d(leaves[0], [hinges[0], hinges[2]])
         outside = np.union1d(leaves[1], [hinges[1], hinges[3]])
     raise MechanismError("the search for the arch's hinges did not settle")
@@ -138,12 +141,9 @@ def least_thickness(beta: float, voussoirs: int | None) -> float:
 
 def _best_mechanism(ring: Ring, inside: Reals, outside: Reals) -> tuple[float, tuple[float, float, float, float]]:
     """The admissible mechanism of least lambda with hinges at the candidate angles of the two faces."""
-    quads = np.array([
-        (a, b, c, d)
-        for a, c in combinations(inside, 2)
-        for b, d in combinations(outside, 2)
-        if a < b < c < d
-    ])
+    quads = np.array(
+        [(a, b, c, d) for a, c in combinations(inside, 2) for b, d in combinations(outside, 2) if a < b < c < d]
+    )
     if quads.size == 0:
         raise MechanismError("the arch has too few joints for four hinges")
     balances = [ring.balance(quads[:, k], (-1, 1)[k % 2]) for k in range(4)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import pairwise
 from math import pi, radians
 from typing import ClassVar, Self
 
@@ -12,9 +13,20 @@ from pydantic import model_validator
 
 from mechanisms._arch_collapse import ArchCannotStand, Ring, collapse_hinges, least_thickness
 from rocking_cli.core import (
-    Body, Direction, Mechanism, Reals, RigidMotion, annular_sector, four_bar, four_bar_limit, geometry_error, quantity,
+    Body,
+    Direction,
+    Mechanism,
+    Reals,
+    RigidMotion,
+    annular_sector,
+    four_bar,
+    four_bar_limit,
+    geometry_error,
+    length,
+    quantity,
     rotation,
 )
+from rocking_cli.errors import MechanismError
 
 
 class Arch(Mechanism):
@@ -25,29 +37,37 @@ class Arch(Mechanism):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 5.2; Oppenheim (1992)"
     verified: ClassVar[str] = "static theorem (linear programme of the line of thrust); Oppenheim's arch, lambda = 0.37"
 
-    radius: float = quantity("radius of the centre line", unit="m", symbol="r", example=10.0, gt=0)
-    thickness: float = quantity("thickness of the ring", unit="m", symbol="t", example=1.5, gt=0)
+    radius: float = length("radius of the centre line", symbol="r", example=10.0)
+    thickness: float = length("thickness of the ring", symbol="t", example=1.5)
     inclusion_angle_deg: float = quantity(
         "angle between the springings", unit="deg", symbol="beta", example=157.5, gt=0, le=180
     )
     voussoirs: int | None = quantity(
-        "number of equal voussoirs, whose joints may open; absent: hinges anywhere", symbol="n", example=7,
-        default=None, ge=3,
+        "number of equal voussoirs, whose joints may open; absent: hinges anywhere",
+        symbol="n",
+        example=7,
+        default=None,
+        ge=3,
+        le=10_000,
     )
 
     @model_validator(mode="after")
-    def _stands(self) -> Self:
+    def _rocks(self) -> Self:
         if self.thickness >= 2 * self.radius:
-            raise geometry_error("thickness", f"the ring has no intrados: thickness must be less than {2 * self.radius:g} m")
+            raise geometry_error(
+                "thickness", f"the ring has no intrados: thickness must be less than {2 * self.radius:g} m"
+            )
         try:
-            self._hinge_angles  # noqa: B018 - found once, here, so that a structure that exists can stand
+            self._hinge_angles  # noqa: B018 - found once, here, so that a structure that exists can rock
         except ArchCannotStand:
             least = least_thickness(self._beta, self.voussoirs) * self.radius
             raise geometry_error(
                 "thickness",
-                f"the arch is too thin to stand under its own weight (t/r = {self.thickness / self.radius:.4g}): "
-                f"it needs a thickness of at least {np.ceil(least * 1e4) / 1e4:.6g} m (t/r = {least / self.radius:.4f})",
+                f"too thin to stand under its own weight (t/r = {self.thickness / self.radius:.4g}): "
+                f"the arch needs at least {np.ceil(least * 1e4) / 1e4:.6g} m (t/r = {least / self.radius:.4f})",
             ) from None
+        except MechanismError as error:
+            raise geometry_error("thickness", str(error)) from None
         return self
 
     @property
@@ -87,7 +107,7 @@ class Arch(Mechanism):
         left = pi / 2 + self._beta / 2
         return tuple(
             annular_sector(f"segment {k + 1}", density, inner, outer, left - start, left - end)
-            for k, (start, end) in enumerate(zip(self._cuts, self._cuts[1:], strict=False))
+            for k, (start, end) in enumerate(pairwise(self._cuts))
         )
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:

@@ -9,7 +9,17 @@ from typing import ClassVar, Self
 from pydantic import model_validator
 
 from rocking_cli.core import (
-    Body, Direction, Mechanism, Reals, RigidMotion, box, four_bar, four_bar_limit, geometry_error, quantity,
+    Body,
+    Direction,
+    Mechanism,
+    Reals,
+    RigidMotion,
+    box,
+    four_bar,
+    four_bar_limit,
+    geometry_error,
+    length,
+    quantity,
 )
 
 
@@ -21,16 +31,26 @@ class AsymmetricFrame(Mechanism):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 26-38, corrected"
     verified: ClassVar[str] = "corrected Eqs. 32-34 and 38 written out; the symmetric frame for equal columns"
 
-    column_width: float = quantity("width of both columns", unit="m", symbol="2b", example=1.0, gt=0)
-    left_height: float = quantity("height of the left column", unit="m", symbol="2H", example=6.0, gt=0)
-    right_height: float = quantity("height of the right column", unit="m", symbol="2H1", example=7.5, gt=0)
-    spacing: float = quantity("distance between the column axes", unit="m", symbol="L", example=8.0, gt=0)
-    beam_depth: float = quantity("depth of the beam, which is L + 2b long", unit="m", symbol="2h", example=1.0, gt=0)
-    density: float | None = quantity("density of columns and beam", unit="kg/m3", example=2400.0, default=None, gt=0)
-    depth: float | None = quantity("size out of plane", unit="m", example=1.0, default=None, gt=0)
-    left_mass: float | None = quantity("mass of the left column", unit="kg", symbol="m_AB", example=14400.0, default=None, gt=0)
-    beam_mass: float | None = quantity("mass of the beam", unit="kg", symbol="m_BC", example=21600.0, default=None, ge=0)
-    right_mass: float | None = quantity("mass of the right column", unit="kg", symbol="m_CD", example=18000.0, default=None, gt=0)
+    starter: ClassVar[tuple[str, ...]] = ("density", "depth")
+
+    column_width: float = length("width of both columns", symbol="2b", example=1.0)
+    left_height: float = length("height of the left column", symbol="2H", example=6.0)
+    right_height: float = length("height of the right column", symbol="2H1", example=7.5)
+    spacing: float = length("distance between the column axes", symbol="L", example=8.0)
+    beam_depth: float = length("depth of the beam, which is L + 2b long", symbol="2h", example=1.0)
+    density: float | None = quantity(
+        "density of columns and beam", unit="kg/m3", example=2400.0, default=None, gt=0, le=1e6
+    )
+    depth: float | None = length("size out of plane", example=1.0, default=None)
+    left_mass: float | None = quantity(
+        "mass of the left column", unit="kg", symbol="m_AB", example=14400.0, default=None, gt=0, le=1e12
+    )
+    beam_mass: float | None = quantity(
+        "mass of the beam", unit="kg", symbol="m_BC", example=21600.0, default=None, ge=0, le=1e12
+    )
+    right_mass: float | None = quantity(
+        "mass of the right column", unit="kg", symbol="m_CD", example=18000.0, default=None, gt=0, le=1e12
+    )
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -45,7 +65,8 @@ class AsymmetricFrame(Mechanism):
         given = [value is not None for value in by_density + by_mass]
         if given not in ([True] * 2 + [False] * 3, [False] * 2 + [True] * 3):
             raise geometry_error(
-                "density", "give density and depth, or left_mass, beam_mass and right_mass: all of one set, none of the other"
+                "density",
+                "give density and depth, or left_mass, beam_mass and right_mass: all of one set, none of the other",
             )
         return self
 

@@ -7,7 +7,7 @@ from math import pi
 from typing import ClassVar
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, box, quantity
+from rocking_cli.core import Body, Direction, box, length
 
 
 class Block(SingleBody):
@@ -18,8 +18,8 @@ class Block(SingleBody):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 1-6; Housner (1963)"
     verified: ClassVar[str] = "closed forms p^2 = 3g/(4R), lambda = tan(alpha), eta = 1 - 1.5 sin^2(alpha)"
 
-    width: float = quantity("width of the base", unit="m", symbol="2b", example=0.7, gt=0)
-    height: float = quantity("height", unit="m", symbol="2h", example=2.8, gt=0)
+    width: float = length("width of the base", symbol="2b", example=0.7)
+    height: float = length("height", symbol="2h", example=2.8)
 
     def bodies(self) -> Sequence[Body]:
         return (box("block", 1.0, self.width, self.height, 0.5j * self.height),)

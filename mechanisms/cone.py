@@ -9,7 +9,7 @@ from typing import ClassVar, Literal, Self
 from pydantic import model_validator
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, geometry_error, quantity
+from rocking_cli.core import Body, Direction, geometry_error, length, quantity
 
 
 class Cone(SingleBody):
@@ -20,8 +20,10 @@ class Cone(SingleBody):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; DeJong (2012), Engineering Structures 40"
     verified: ClassVar[str] = "closed forms of shell and solid; the hollow cone tends to both"
 
-    base_radius: float = quantity("outer radius of the base", unit="m", symbol="r", example=1.5, gt=0)
-    height: float = quantity("height of the apex", unit="m", symbol="h", example=12.0, gt=0)
+    starter: ClassVar[tuple[str, ...]] = ("kind",)
+
+    base_radius: float = length("outer radius of the base", symbol="r", example=1.5)
+    height: float = length("height of the apex", symbol="h", example=12.0)
     kind: Literal["shell", "solid", "hollow"] = quantity(
         "shell (thin lateral surface), solid or hollow", example="shell", default="shell"
     )

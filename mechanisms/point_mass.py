@@ -7,7 +7,7 @@ from math import pi
 from typing import ClassVar
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, quantity
+from rocking_cli.core import Body, Direction, length
 
 
 class PointMass(SingleBody):
@@ -18,8 +18,8 @@ class PointMass(SingleBody):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I"
     verified: ClassVar[str] = "closed forms p^2 = g/R, lambda = tan(alpha), eta = cos(2 alpha)"
 
-    base_width: float = quantity("width of the base", unit="m", symbol="2b", example=1.0, gt=0)
-    height: float = quantity("height of the mass", unit="m", symbol="h", example=4.0, gt=0)
+    base_width: float = length("width of the base", symbol="2b", example=1.0)
+    height: float = length("height of the mass", symbol="h", example=4.0)
 
     def bodies(self) -> Sequence[Body]:
         return (Body("mass", 1.0, 0.0, 1j * self.height),)

@@ -12,9 +12,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, geometry_error, polygon, quantity
+from rocking_cli.core import Body, Direction, geometry_error, length, polygon, quantity
 
-Vertex = Annotated[list[float], Field(min_length=2, max_length=2)]
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+Vertex = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 LEVEL = 1e-9  # of the polygon's size: how level two corners must be to stand on both
 
 
@@ -26,19 +27,26 @@ class RigidBody(SingleBody):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 2.2"
     verified: ClassVar[str] = "p^2 = m g R/I_O, eta = 1 - 2 m R^2 sin^2(alpha)/I_O; polygons against the block"
 
-    R: float | None = quantity(
-        "distance from pivot to centroid", unit="m", symbol="R", example=1.5, default=None, gt=0
-    )
+    starter: ClassVar[tuple[str, ...]] = ("R", "alpha_deg", "inertia_ratio")
+
+    R: float | None = length("distance from pivot to centroid", symbol="R", example=1.5, default=None)
     alpha_deg: float | None = quantity(
         "angle of R from the vertical", unit="deg", symbol="alpha", example=14.0, default=None, gt=0, lt=90
     )
     inertia_ratio: float | None = quantity(
         "moment of inertia about the pivot over m R^2 (4/3: a block, 1: a point mass)",
-        symbol="I_O/(m R^2)", example=1.3333, default=None, ge=1,
+        symbol="I_O/(m R^2)",
+        example=1.3333,
+        default=None,
+        ge=1,
+        le=1e6,
     )
     polygon: list[Vertex] | None = quantity(
-        "corners [x, y] in order; it stands on the two lowest", unit="m",
-        example=[[0.0, 0.0], [1.0, 0.0], [0.8, 3.0], [0.0, 3.0]], default=None, min_length=3,
+        "corners [x, y] in order around it; it stands on the two lowest",
+        unit="m",
+        example=[[0.0, 0.0], [1.0, 0.0], [0.8, 3.0], [0.0, 3.0]],
+        default=None,
+        min_length=3,
     )
 
     @model_validator(mode="after")
@@ -47,7 +55,9 @@ class RigidBody(SingleBody):
         missing = [key for key, value in numbers.items() if value is None]
         if self.polygon is None:
             if missing:
-                raise geometry_error(missing[0], f"give R, alpha_deg and inertia_ratio, or a polygon; {missing[0]} is missing")
+                raise geometry_error(
+                    missing[0], f"give R, alpha_deg and inertia_ratio, or a polygon; {missing[0]} is missing"
+                )
             return self
         if len(missing) < len(numbers):
             raise geometry_error("polygon", "a polygon needs no R, alpha_deg or inertia_ratio: give one or the other")
@@ -62,7 +72,9 @@ class RigidBody(SingleBody):
         if abs((z.conj() * np.roll(z, -1)).imag.sum()) / 2 <= LEVEL * size**2 or any(
             _meet(*one, *other) for one, other in combinations(edges, 2)
         ):
-            raise geometry_error("polygon", "its sides cross or enclose nothing: list the corners in order around the outline")
+            raise geometry_error(
+                "polygon", "its sides cross or enclose nothing: list the corners in order around the outline"
+            )
         if not self._feet[1].real > self._feet[0].real:
             raise geometry_error(
                 "polygon", "it stands on one corner: its two lowest corners must be level with each other"
@@ -76,7 +88,8 @@ class RigidBody(SingleBody):
         for direction in Direction:
             if self.limit(direction) <= self.alpha(direction):
                 raise geometry_error(
-                    "polygon", f"in the {direction.label} direction another corner meets the ground before it can overturn"
+                    "polygon",
+                    f"in the {direction.label} direction another corner meets the ground before it can overturn",
                 )
 
     @cached_property

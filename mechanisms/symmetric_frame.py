@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, quantity, rotation
+from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, length, quantity, rotation
 
 
 class SymmetricFrame(Mechanism):
@@ -19,10 +19,17 @@ class SymmetricFrame(Mechanism):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; Makris and Vassiliou (2013)"
     verified: ClassVar[str] = "closed forms p^2 = 3g/(4R) (1+2 gamma)/(1+3 gamma), lambda = tan(alpha), eta"
 
-    column_width: float = quantity("width of a column", unit="m", symbol="2b", example=1.0, gt=0)
-    column_height: float = quantity("height of a column", unit="m", symbol="2h", example=6.0, gt=0)
-    columns: int = quantity("number of columns", symbol="N", example=2, default=2, ge=1)
-    mass_ratio: float = quantity("mass of the beam over that of all columns", symbol="gamma", example=2.0, ge=0)
+    column_width: float = length("width of a column", symbol="2b", example=1.0)
+    column_height: float = length("height of a column", symbol="2h", example=6.0)
+    columns: int = quantity(
+        "number of columns (it changes nothing else: mass_ratio is to all of them)",
+        symbol="N",
+        example=2,
+        default=2,
+        ge=1,
+        le=10_000,
+    )
+    mass_ratio: float = quantity("mass of the beam over that of all columns", symbol="gamma", example=2.0, ge=0, le=1e6)
 
     def bodies(self) -> Sequence[Body]:
         # All columns move alike: one body with the mass of all of them stands for them.

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, quantity, rotation
+from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, length, rotation
 
 
 class Wall(Mechanism):
@@ -19,8 +19,8 @@ class Wall(Mechanism):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 21-23"
     verified: ClassVar[str] = "closed forms phi_cr = alpha, kappa1 = 1/2, lambda = 2 tan(alpha), p^2 = 3g/(2R); Eq. 21"
 
-    thickness: float = quantity("thickness", unit="m", symbol="2b", example=0.3, gt=0)
-    height: float = quantity("height between foot and top support", unit="m", symbol="4h", example=3.0, gt=0)
+    thickness: float = length("thickness", symbol="2b", example=0.3)
+    height: float = length("height between foot and top support", symbol="4h", example=3.0)
 
     def bodies(self) -> Sequence[Body]:
         h = self.height / 4
@@ -36,8 +36,12 @@ class Wall(Mechanism):
         top = foot + 4j * R * np.cos(tilt)  # it stays above the foot pivot
         upper = RigidMotion(
             foot + 1j * self.height,
-            top, 4j * R * np.sin(tilt), -4j * R * np.cos(tilt),
-            direction * phi, np.full_like(phi, direction), np.zeros_like(phi),
+            top,
+            4j * R * np.sin(tilt),
+            -4j * R * np.cos(tilt),
+            direction * phi,
+            np.full_like(phi, direction),
+            np.zeros_like(phi),
         )
         return rotation(phi, foot, -direction), upper
 

@@ -16,4 +16,5 @@ from rocking_cli.core.kinematics import four_bar_limit as four_bar_limit
 from rocking_cli.core.kinematics import rotation as rotation
 from rocking_cli.core.mechanism import Mechanism as Mechanism
 from rocking_cli.core.mechanism import geometry_error as geometry_error
+from rocking_cli.core.mechanism import length as length
 from rocking_cli.core.mechanism import quantity as quantity

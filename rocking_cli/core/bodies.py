@@ -48,9 +48,7 @@ def polygon(name: str, mass: float, vertices: Sequence[complex]) -> Body:
     return Body(name, mass, float(mass * (polar - abs(centroid) ** 2)), complex(origin + centroid))
 
 
-def annular_sector(
-    name: str, density: float, inner: float, outer: float, start: float, end: float
-) -> Body:
+def annular_sector(name: str, density: float, inner: float, outer: float, start: float, end: float) -> Body:
     """A sector of a ring about the origin between two polar angles.
 
     Parameters

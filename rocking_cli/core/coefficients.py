@@ -1,6 +1,6 @@
 """The coefficients of the equation of motion of any mechanism, from its bodies and their motions.
 
-    I phi.. + J phi.^2 + g G = -s B u_g''        [paper, Eq. 8, with the signs of Lagrange's equation]
+I phi.. + J phi.^2 + g G = -s B u_g''        [paper, Eq. 8, with the signs of Lagrange's equation]
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ import numpy as np
 
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
+from rocking_cli.errors import MechanismError
 
 AGREEMENT = 1e-9  # relative difference below which the two directions count as the same
 
@@ -87,13 +88,21 @@ def equivalent_block(mechanism: Mechanism) -> Equivalence:
     Raises
     ------
     MechanismError
-        If the structure does not stand or has no critical rotation.
+        If the structure does not stand, has no critical rotation, or is beyond the range of numbers.
 
     Notes
     -----
     DeJong and Dimitrakopoulos (2014), Eqs. 9-20: local equivalence at the unstable equilibrium.
     """
-    return Equivalence(_one_direction(mechanism, Direction.POSITIVE), _one_direction(mechanism, Direction.NEGATIVE))
+    try:
+        with np.errstate(all="raise", under="ignore"):
+            return Equivalence(
+                _one_direction(mechanism, Direction.POSITIVE), _one_direction(mechanism, Direction.NEGATIVE)
+            )
+    except (ArithmeticError, ValueError) as error:
+        raise MechanismError(
+            f"its equivalent block is beyond the range of numbers ({error}): check the sizes and their units"
+        ) from error
 
 
 def _one_direction(mechanism: Mechanism, direction: Direction) -> EquivalentBlock:

@@ -112,9 +112,7 @@ def four_bar(
     e2 = _cross(1j * dc, pull) / _cross(dc, bc)  # Eq. 29: i e2 bc - i e3 dc = pull
     e3 = _cross(1j * bc, pull) / _cross(dc, bc)  # Eq. 29
     link_ab = rotation(phi, a, w1)
-    link_bc = RigidMotion(
-        b, a + ab, 1j * w1 * ab, -(w1**2) * ab, np.unwrap(np.angle(bc / (c - b))), w2, e2
-    )
+    link_bc = RigidMotion(b, a + ab, 1j * w1 * ab, -(w1**2) * ab, np.unwrap(np.angle(bc / (c - b))), w2, e2)
     still = np.zeros(phi.shape, np.complex128)
     link_cd = RigidMotion(d, still + d, still, still, np.unwrap(np.angle(dc / (c - d))), w3, e3)
     return link_ab, link_bc, link_cd

@@ -36,7 +36,14 @@ def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any
     **bounds
         Passed to `pydantic.Field`: `gt`, `ge`, `lt`, `le`, `default`, ...
     """
-    return Field(description=description, examples=[example], json_schema_extra={"unit": unit, "symbol": symbol}, **bounds)
+    return Field(
+        description=description, examples=[example], json_schema_extra={"unit": unit, "symbol": symbol}, **bounds
+    )
+
+
+def length(description: str, *, symbol: str = "", example: Any = None, **bounds: Any) -> Any:
+    """A `quantity` in metres: more than 0, and at most a million, which catches millimetres and overflow alike."""
+    return quantity(description, unit="m", symbol=symbol, example=example, gt=0, le=1e6, **bounds)
 
 
 def geometry_error(field: str, message: str) -> PydanticCustomError:
@@ -82,6 +89,8 @@ class Mechanism(BaseModel, ABC):
     """The publication and its equations."""
     verified: ClassVar[str] = ""
     """What its numbers were checked against; empty means nobody has, and the tool says so."""
+    starter: ClassVar[tuple[str, ...]] = ()
+    """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
 
     name: str | None = Field(None, description="what to call the structure")
     gravity: float = Field(9.80665, gt=0, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"})

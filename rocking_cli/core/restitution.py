@@ -8,9 +8,7 @@ from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import RigidMotion
 
 
-def kinematic_restitution(
-    bodies: Sequence[Body], before: Sequence[RigidMotion], after: Sequence[RigidMotion]
-) -> float:
+def kinematic_restitution(bodies: Sequence[Body], before: Sequence[RigidMotion], after: Sequence[RigidMotion]) -> float:
     """Ratio eta of the rotation rates after and before an impact.
 
     The velocity before the impact is projected on the mechanism that follows, in the mass inner product:

@@ -25,7 +25,10 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
 
     It releases the GIL and keeps IEEE arithmetic: a history that meets a NaN must show it.
     """
-    from numba import config, njit
+    import numba
+    from numba import njit
+
+    config: Any = numba.config
 
     theirs = config.CACHE_DIR
     try:

@@ -57,7 +57,7 @@ class History:
     impacts : ndarray, shape (k, 3)
         Time [s], sign of the direction that ends, and rate before [rad/s] of each impact.
     end_time : float
-        When the outcome was certain [s].
+        When it came to rest for good, or was certain to overturn [s].
     """
 
     model: ModelName
@@ -151,13 +151,26 @@ def _follow(
     strongest = np.maximum.accumulate(np.abs(accelerations[::-1]))[::-1].copy()
     slow = 0.5 / max(equivalence.positive.p, equivalence.negative.p)
     status = kernels.follow(
-        model.kind, model.cells, model.certain, model.numbers, accelerations, strongest, dt,
-        0 if start > 0 else 1, abs(release) * equivalence[start].phi_cr, rtol, slow, MOST_IMPACTS,
-        phi, rate, impacts, marks,
+        model.kind,
+        model.cells,
+        model.certain,
+        model.numbers,
+        accelerations,
+        strongest,
+        dt,
+        0 if start > 0 else 1,
+        abs(release) * equivalence[start].phi_cr,
+        rtol,
+        slow,
+        MOST_IMPACTS,
+        phi,
+        rate,
+        impacts,
+        marks,
     )
     if status == kernels.STALLED:
         raise SolverError(
-            f"the {model.name} history cannot be followed past t = {marks[kernels.ENDED]:.6g} s: its steps became too small"
+            f"the {model.name} history cannot be followed past t = {marks[kernels.ENDED]:.6g} s: too small steps"
         )
     outcome = (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.STILL_ROCKING)[status]
     fallen = outcome is Outcome.OVERTURNED
@@ -166,11 +179,11 @@ def _follow(
     count = int(marks[kernels.IMPACTS])
     first = marks[kernels.FIRST_UPLIFT]
     # The samples end with the record or with the motion, whichever is later.
-    kept = min(samples, max(accelerations.size, int(np.ceil(marks[kernels.ENDED] / dt)) + 1))
+    kept = min(samples, max(accelerations.size, int(marks[kernels.ENDED] / dt) + 3))
     return History(
         model=model.name,
         outcome=outcome,
-        time=np.arange(kept) * dt,
+        time=np.arange(kept, dtype=np.float64) * dt,
         phi=phi[:kept],
         rate=rate[:kept],
         ratio=phi[:kept] / np.where(phi[:kept] < 0, model.phi_cr[1], model.phi_cr[0]),

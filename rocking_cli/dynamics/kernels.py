@@ -57,19 +57,25 @@ def step(cells, row, s, phi, w, u, ramp, h):
         cells, row, s, phi + h * (3 / 40 * a1 + 9 / 40 * a2), w + h * (3 / 40 * b1 + 9 / 40 * b2), u + ramp * h * 3 / 10
     )
     a4, b4 = slopes(
-        cells, row, s,
+        cells,
+        row,
+        s,
         phi + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3),
         w + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3),
         u + ramp * h * 4 / 5,
     )
     a5, b5 = slopes(
-        cells, row, s,
+        cells,
+        row,
+        s,
         phi + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4),
         w + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4),
         u + ramp * h * 8 / 9,
     )
     a6, b6 = slopes(
-        cells, row, s,
+        cells,
+        row,
+        s,
         phi + h * (9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5),
         w + h * (9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5),
         u + ramp * h,
@@ -77,9 +83,7 @@ def step(cells, row, s, phi, w, u, ramp, h):
     phi1 = phi + h * (35 / 384 * a1 + 500 / 1113 * a3 + 125 / 192 * a4 - 2187 / 6784 * a5 + 11 / 84 * a6)
     w1 = w + h * (35 / 384 * b1 + 500 / 1113 * b3 + 125 / 192 * b4 - 2187 / 6784 * b5 + 11 / 84 * b6)
     a7, b7 = slopes(cells, row, s, phi1, w1, u + ramp * h)
-    e_phi = h * (
-        71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6 - a7 / 40
-    )
+    e_phi = h * (71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6 - a7 / 40)
     e_w = h * (71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6 - b7 / 40)
     return phi1, w1, b1, b7, abs(e_phi), abs(e_w)
 
@@ -127,9 +131,7 @@ def fly(cells, row, s, d, t, tau, end, phi, w, u0, ramp, h, rtol, marks):
         size = left if whole else h
         u = u0 + ramp * tau
         phi1, w1, b0, b1, e_phi, e_w = step(cells, row, s, phi, w, u, ramp, size)
-        error = max(
-            e_phi / (rtol * max(abs(phi), abs(phi1), scale_phi)), e_w / (rtol * max(abs(w), abs(w1), scale_w))
-        )
+        error = max(e_phi / (rtol * max(abs(phi), abs(phi1), scale_phi)), e_w / (rtol * max(abs(w), abs(w1), scale_w)))
         if not error <= 1:
             h = size * (max(0.2, 0.9 * error**-0.2) if isfinite(error) else 0.1)
             if tau + h == tau:
@@ -153,9 +155,7 @@ def fly(cells, row, s, d, t, tau, end, phi, w, u0, ramp, h, rtol, marks):
                 reached, top = summit(cells, row, s, phi, w, u, ramp, size, b0, b1, w1)
             marks[PEAK + d] = max(marks[PEAK + d], top)
             if phi < row[PHI_CR] <= top:
-                x, _, _ = locate(
-                    cells, row, s, phi, w, u, ramp, 0.0, reached if w1 <= 0 else size, False, row[PHI_CR]
-                )
+                x, _, _ = locate(cells, row, s, phi, w, u, ramp, 0.0, reached if w1 <= 0 else size, False, row[PHI_CR])
                 marks[CROSSED] = t + tau + x
         low = phi1
         lowest = size
@@ -210,16 +210,14 @@ def linear_at(p, slack, slope, phi, w, x):
     ch1 = 2 * half * half
     sh = 2 * half * cosh(y / 2)
     y2 = y * y
-    if y < 0.1:  # x - sinh(px)/p cancels for small px
-        lag = -y * y2 / 6 * (1 + y2 / 20 * (1 + y2 / 42 * (1 + y2 / 72))) / p
-    else:
-        lag = x - sh / p
+    # x - sinh(px)/p cancels for small px
+    lag = x - sh / p if y >= 0.1 else -y * y2 / 6 * (1 + y2 / 20 * (1 + y2 / 42 * (1 + y2 / 72))) / p
     return phi + slack * ch1 + w / p * sh + slope * lag, p * slack * sh + w * (1 + ch1) - slope * ch1
 
 
 @compile_kernel
 def linear_root(p, slack, slope, phi, w, low, high, turning, level):
-    """Where in [low, high] phi. vanishes (turning) or phi reaches level; safeguarded Newton, opposite signs at the ends."""
+    """Where in [low, high] phi. vanishes (turning) or phi reaches level: Newton kept in a bracket."""
     v1, w1 = linear_at(p, slack, slope, phi, w, high)
     positive = (w1 if turning else v1 - level) > 0
     x = (low + high) / 2
@@ -271,10 +269,10 @@ def fly_linear(row, s, d, t, tau, end, phi, w, u0, ramp, marks):
         else:
             break
         v2, r2 = linear_at(p, slack, slope, phi, w, x2)
-        turn, top, ground = x2, v2, r2
+        turn, top = x2, v2
         if r0 * r2 < 0:
             turn = linear_root(p, slack, slope, phi, w, x0, x2, True, 0.0)
-            top, ground = linear_at(p, slack, slope, phi, w, turn)
+            top, _ = linear_at(p, slack, slope, phi, w, turn)
         for half in range(2):  # up to the turning point, then from it
             xa, va, xb, vb = (x0, v0, turn, top) if half == 0 else (turn, top, x2, v2)
             if half == 1 and turn == x2:
@@ -321,7 +319,22 @@ def lifts_at(numbers, tau, end, u0, ramp):
 
 @compile_kernel
 def follow(
-    kind, cells, certain, numbers, u, strongest, dt, direction, phi, rtol, slow_dt, most_impacts, phi_out, rate_out, impacts, marks
+    kind,
+    cells,
+    certain,
+    numbers,
+    u,
+    strongest,
+    dt,
+    direction,
+    phi,
+    rtol,
+    slow_dt,
+    most_impacts,
+    phi_out,
+    rate_out,
+    impacts,
+    marks,
 ):
     """Follow a motion to its end: at rest, overturned, or still rocking after `most_impacts` impacts.
 
@@ -361,6 +374,7 @@ def follow(
     marks[:] = nan
     marks[PEAK : PEAK + 2] = 0.0
     marks[IMPACTS] = 0.0
+    marks[ENDED] = 0.0
     phi_out[:] = nan
     rate_out[:] = nan
     d = direction
@@ -378,7 +392,7 @@ def follow(
             speed = 1.0 if kind == LINEAR else slopes(cells[d], numbers[d], s, phi, 1.0, 0.0)[0]
             rate_out[k] = s * w * speed
         if resting and k >= last and k >= phi_out.size - 1:
-            marks[ENDED], marks[SIDE] = t, d
+            marks[SIDE] = d
             return AT_REST
         drawn = k < phi_out.size - 1 or k < last
         end = dt if drawn else slow_dt
@@ -424,6 +438,7 @@ def follow(
                 _, lifted = lifts_at(numbers, tau, tau, u0, ramp)
                 if w <= numbers[d, REST] * (FAINT if lifted >= 0 else 1.0):
                     resting, w = True, 0.0
+                    marks[ENDED] = t + tau
         t += end
         k += 1
         if drawn:

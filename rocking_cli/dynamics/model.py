@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Equivalence, Mechanism
 from rocking_cli.dynamics.tables import tabulate
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
 
 Reals = NDArray[np.float64]
 ModelName = Literal["nonlinear", "linear1", "linear2"]
@@ -66,9 +66,13 @@ def build_model(mechanism: Mechanism, equivalence: Equivalence, name: ModelName)
         eta = equivalence[direction].eta
         if eta <= 0:
             raise InputError(
-                f"restitution: the kinematics of this {mechanism.mechanism} give eta = {eta:.4g} for an impact that ends "
-                f"motion in the {direction.label} direction: it is too stocky to start rocking the other way. "
-                "Give a measured value as restitution: a number in (0, 1]"
+                Problem(
+                    f"the kinematics give {eta:.4g} for an impact that ends motion in the {direction.label} "
+                    "direction: the structure is too stocky to start rocking the other way",
+                    file=mechanism.name,
+                    field="restitution",
+                    hint="give a measured value as restitution, a number in (0, 1]",
+                )
             )
     if name == "nonlinear":
         return _nonlinear(mechanism, equivalence)
@@ -77,13 +81,21 @@ def build_model(mechanism: Mechanism, equivalence: Equivalence, name: ModelName)
 
 def _nonlinear(mechanism: Mechanism, equivalence: Equivalence) -> Model:
     tables = [tabulate(mechanism, direction) for direction in Direction]
-    numbers = np.array([
-        _row(
-            equivalence, direction, uplift=equivalence[direction].lambda_ * mechanism.gravity, rate=table.rest_rate,
-            end=table.end, cell=table.cell, kappa_g=0.0, gravity=mechanism.gravity,
-        )
-        for direction, table in zip(Direction, tables, strict=True)
-    ])
+    numbers = np.array(
+        [
+            _row(
+                equivalence,
+                direction,
+                uplift=equivalence[direction].lambda_ * mechanism.gravity,
+                rate=table.rest_rate,
+                end=table.end,
+                cell=table.cell,
+                kappa_g=0.0,
+                gravity=mechanism.gravity,
+            )
+            for direction, table in zip(Direction, tables, strict=True)
+        ]
+    )
     cells, certain = np.stack([table.cells for table in tables]), np.stack([table.certain for table in tables])
     return Model("nonlinear", _phi_cr(equivalence), numbers, cells, certain)
 
@@ -93,10 +105,18 @@ def _linear(equivalence: Equivalence, name: ModelName, gravity: float) -> Model:
     for direction in Direction:
         block = equivalence[direction]
         kappa = block.kappa1 if name == "linear1" else block.kappa2
-        rows.append(_row(
-            equivalence, direction, uplift=block.phi_cr / kappa * gravity, rate=1.0,
-            end=np.inf, cell=1.0, kappa_g=kappa / gravity, gravity=gravity,
-        ))
+        rows.append(
+            _row(
+                equivalence,
+                direction,
+                uplift=block.phi_cr / kappa * gravity,
+                rate=1.0,
+                end=np.inf,
+                cell=1.0,
+                kappa_g=kappa / gravity,
+                gravity=gravity,
+            )
+        )
     return Model(name, _phi_cr(equivalence), np.array(rows), np.zeros((2, 1, 12)), np.zeros((2, 1)))
 
 
@@ -105,8 +125,15 @@ def _phi_cr(equivalence: Equivalence) -> tuple[float, float]:
 
 
 def _row(
-    equivalence: Equivalence, direction: Direction, *,
-    uplift: float, rate: float, end: float, cell: float, kappa_g: float, gravity: float,
+    equivalence: Equivalence,
+    direction: Direction,
+    *,
+    uplift: float,
+    rate: float,
+    end: float,
+    cell: float,
+    kappa_g: float,
+    gravity: float,
 ) -> list[float]:
     """One row of the kernel's `numbers`, in the order of its columns."""
     block = equivalence[direction]

@@ -47,11 +47,13 @@ def tabulate(mechanism: Mechanism, direction: Direction) -> Table:
     c = 1 / np.sqrt(at.I)
     dc = -at.J * c**3  # I' = 2 J
     width = end / CELLS
-    cells = np.hstack([
-        _cubics(width, c, dc),
-        _cubics(width, at.G * c, at.dG * c + at.G * dc),
-        _cubics(width, at.B * c, at.dB * c + at.B * dc),
-    ])
+    cells = np.hstack(
+        [
+            _cubics(width, c, dc),
+            _cubics(width, at.G * c, at.dG * c + at.G * dc),
+            _cubics(width, at.B * c, at.dB * c + at.B * dc),
+        ]
+    )
     # An outward motion gains energy as long as -g G - s B u >= 0, and does so for good where that holds up to the end.
     with np.errstate(divide="ignore"):
         enough = np.where(at.G < 0, -mechanism.gravity * at.G / np.abs(at.B), -1.0)

@@ -1,0 +1,45 @@
+# Two commands do all the set-up: `make demo` and `make test`.
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+ifeq ($(OS),Windows_NT)
+BIN := $(VENV)/Scripts
+endif
+STAMP := $(VENV)/.installed
+
+.PHONY: setup demo test lint type contracts check bench clean
+
+setup: $(STAMP)  ## Create the environment and install the package with its development tools
+
+$(STAMP): pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --editable ".[dev]"
+	$(BIN)/python -c "import pathlib; pathlib.Path('$(STAMP)').touch()"
+
+demo: setup  ## The main job on the shipped example: equiv, respond with a plot, pulse
+	$(BIN)/python -c "import pathlib; pathlib.Path('out').mkdir(exist_ok=True)"
+	$(BIN)/rocking equiv examples/frame.yaml
+	$(BIN)/rocking respond examples/frame.yaml --record examples/accel.csv --plot out/response.png --out out/history.csv
+	$(BIN)/rocking pulse --a 2 --omega 3
+
+test: setup  ## All tests
+	$(BIN)/python -m pytest
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+type: setup
+	$(BIN)/mypy
+
+contracts: setup  ## Who may import whom
+	$(BIN)/lint-imports
+
+check: lint type contracts test
+
+bench: setup  ## Ratios within one run; see docs/performance.md
+	$(BIN)/python benchmarks/histories.py
+
+clean:
+	$(PYTHON) -c "import shutil; [shutil.rmtree(p, ignore_errors=True) for p in ('$(VENV)', 'out', '.mypy_cache', '.ruff_cache', '.pytest_cache')]"

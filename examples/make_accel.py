@@ -1,0 +1,92 @@
+"""Write `accel.csv`: a synthetic ground motion like those recorded close to a fault that ruptures towards the site.
+
+It is the sum of two parts, in units of standard gravity:
+
+- a velocity pulse of period 1 s, a cosine under a raised-cosine bell (the shape of Mavroeidis and Papageorgiou, 2003),
+  which carries the directivity effect that overturns large blocks;
+- random shaking between 0.4 and 12 Hz that rises fast and dies away slowly, which carries the high-frequency peaks.
+
+The sum is corrected so that the ground ends at rest, brought smoothly to zero at both ends, and scaled to a peak of
+0.55 g. It is not a record of any earthquake: use it to try the tool, not to design with.
+
+    python make_accel.py [FILE]
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+DT = 0.01  # s
+DURATION = 12.0  # s
+PEAK = 0.55  # g, of the sum
+SEED = 20030613
+
+PULSE_FREQUENCY = 1.0  # Hz
+PULSE_CYCLES = 2.0  # length of the bell, in periods
+PULSE_PHASE = 0.5 * np.pi
+PULSE_TIME = 3.5  # s, middle of the bell
+PULSE_PEAK, NOISE_PEAK = 0.8, 0.5  # of each part, before the sum is scaled
+
+BAND = (0.4, 12.0)  # Hz
+ENDS = (0.5, 2.0)  # s, length of the tapers
+
+
+def pulse(time: Array) -> Array:
+    """Acceleration of the velocity pulse v = (1 + cos(w t / n)) cos(w t + phase) / 2, with a peak of one."""
+    w, n = 2 * np.pi * PULSE_FREQUENCY, PULSE_CYCLES
+    t = time - PULSE_TIME
+    bell, wave = 1 + np.cos(w * t / n), np.cos(w * t + PULSE_PHASE)
+    slope = -np.sin(w * t / n) / n * wave - bell * np.sin(w * t + PULSE_PHASE)
+    inside = np.abs(t) <= n / (2 * PULSE_FREQUENCY)
+    return _with_unit_peak(np.where(inside, slope, 0.0))
+
+
+def noise(time: Array) -> Array:
+    """Band-limited noise under an envelope that peaks with the pulse, with a peak of one."""
+    white = np.random.default_rng(SEED).standard_normal(time.size)
+    frequency = np.fft.rfftfreq(time.size, DT)
+    low, high = BAND
+    # Gentle slopes on both sides of the band, so that the filter does not ring.
+    gain = (frequency / low) ** 4 / (1 + (frequency / low) ** 4) / (1 + (frequency / high) ** 4)
+    shaking = np.fft.irfft(np.fft.rfft(white) * gain, time.size)
+    envelope = (time / PULSE_TIME) ** 2 * np.exp(2 * (1 - time / PULSE_TIME))
+    return _with_unit_peak(shaking * envelope)
+
+
+def taper(time: Array) -> Array:
+    """Window that is zero at both ends and one in between."""
+    rise = np.clip(time / ENDS[0], 0, 1)
+    fall = np.clip((time[-1] - time) / ENDS[1], 0, 1)
+    window: Array = np.sin(0.5 * np.pi * rise) ** 2 * np.sin(0.5 * np.pi * fall) ** 2
+    return window
+
+
+def accelerogram() -> tuple[Array, Array]:
+    """Return times [s] and accelerations [g], as they are printed to the file."""
+    time = np.linspace(0, DURATION, round(DURATION / DT) + 1)
+    window = taper(time)
+    acceleration = (PULSE_PEAK * pulse(time) + NOISE_PEAK * noise(time)) * window
+    acceleration -= window * acceleration.sum() / window.sum()  # no velocity left at the end
+    acceleration = PEAK * _with_unit_peak(acceleration)
+    return np.round(time, 2), np.round(acceleration, 6) + 0.0  # + 0.0: no "-0.000000"
+
+
+def _with_unit_peak(values: Array) -> Array:
+    scaled: Array = values / np.abs(values).max()
+    return scaled
+
+
+def write(path: Path) -> None:
+    """Write the accelerogram as comma-separated text."""
+    rows = [f"{t:.2f},{a:.6f}" for t, a in zip(*accelerogram(), strict=True)]
+    path.write_text("\n".join(["time_s,accel_g", *rows]) + "\n", encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).with_name("accel.csv"))

@@ -1,0 +1,122 @@
+"""`rocking equiv`: the equivalent single rocking block."""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rocking_cli.cli import options, terminal
+
+if TYPE_CHECKING:
+    from rocking_cli.core import Equivalence, Mechanism
+
+ROWS = (
+    ("p", "rad/s", "frequency parameter: small for large structures"),
+    ("phi_cr", "rad", "critical rotation: unstable equilibrium"),
+    ("lambda", "g", "ground acceleration at uplift"),
+    ("lambda_lin", "g", "the same for the linearised mechanism"),
+    ("kappa1", "", "phi/theta that keeps lambda_lin"),
+    ("kappa2", "", "phi/theta that keeps lambda"),
+    ("theta_cr1", "rad", "critical rotation of the block, kappa1"),
+    ("theta_cr2", "rad", "critical rotation of the block, kappa2"),
+    ("eta", "", "restitution of an impact ending this direction"),
+    ("I_eq", "kg m2", "linearised inertia"),
+    ("G_eq", "kg m", "linearised restoring moment over g"),
+    ("B_eq", "kg m", "linearised drive of the ground"),
+)
+
+
+@click.command(short_help="The equivalent single rocking block of structures.")
+@click.argument("files", metavar="FILE...", nargs=-1, type=click.Path())
+@options.as_json
+@click.option("--csv", "as_csv", is_flag=True, help="Print comma-separated values, a line for each direction.")
+def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
+    """Parameters of the single rocking block that a structure is equivalent to.
+
+    One column where the two directions agree, two where they differ; positive is clockwise. With --json, several
+    files give one object a line. Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+
+    \b
+    Example:
+      rocking equiv frame.yaml
+      rocking equiv wall.yaml arch.yaml --csv > parameters.csv
+
+    Source: DeJong and Dimitrakopoulos (2014), Eqs. 9-20.
+    """
+    if as_json and as_csv:
+        raise click.UsageError("--json and --csv exclude each other.")
+    from rocking_cli.cli import structures
+    from rocking_cli.core import equivalent_block
+    from rocking_cli.errors import MechanismError
+
+    found = []
+    for mechanism in structures.load(files):
+        try:
+            found.append((mechanism, equivalent_block(mechanism)))
+        except MechanismError as error:
+            raise MechanismError(f"{mechanism.name}: {error}") from error
+    if as_csv:
+        _print_csv(found)
+    for mechanism, equivalence in found:
+        if as_json:
+            terminal.print_json(_as_json(mechanism, equivalence))
+        elif not as_csv:
+            _print_table(mechanism, equivalence)
+
+
+def _as_json(mechanism: Mechanism, equivalence: Equivalence) -> dict[str, Any]:
+    from rocking_cli.core.advice import preferred_kappa
+
+    advice = {label: preferred_kappa(block) for label, block in _blocks(equivalence)}
+    return {
+        "mechanism": mechanism.mechanism,
+        "name": mechanism.name,
+        "gravity": mechanism.gravity,
+        "symmetric": equivalence.symmetric,
+        "directions": {
+            label: {**block.as_dict(), "prefer": advice[label].prefer, "lambda_ratio": advice[label].ratio}
+            for label, block in _blocks(equivalence)
+        },
+    }
+
+
+def _blocks(equivalence: Equivalence) -> tuple[tuple[str, Any], tuple[str, Any]]:
+    return ("positive", equivalence.positive), ("negative", equivalence.negative)
+
+
+def _print_csv(found: list[tuple[Mechanism, Equivalence]]) -> None:
+    import csv
+    import io
+
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    units = [f"{key} [{unit}]" if unit else key for key, unit, _ in ROWS]
+    writer.writerow(["name", "mechanism", "direction", *units])
+    for mechanism, equivalence in found:
+        for label, block in _blocks(equivalence):
+            writer.writerow([mechanism.name, mechanism.mechanism, label, *(block.as_dict()[key] for key, _, _ in ROWS)])
+    terminal.result(lines.getvalue().rstrip("\n"))
+
+
+def _print_table(mechanism: Mechanism, equivalence: Equivalence) -> None:
+    from rocking_cli.cli.structures import label
+    from rocking_cli.core.advice import preferred_kappa
+
+    shown = [(name, block.as_dict(), preferred_kappa(block)) for name, block in _blocks(equivalence)]
+    if equivalence.symmetric:
+        shown = [("value", *shown[0][1:])]
+    rows = [
+        [key, *(terminal.number(block[key]) for _, block, _ in shown), unit, meaning] for key, unit, meaning in ROWS
+    ]
+    columns = ["", *(name for name, _, _ in shown), "unit", "meaning"]
+    terminal.table(label(mechanism), columns, rows, numbers=range(1, len(shown) + 1))
+    for name, block, advice in shown:
+        where = "" if equivalence.symmetric else f"{name}: "
+        terminal.result(f"{where}critical rotation {degrees(block['phi_cr']):.4g} deg. {advice.why}")
+    if any(block["eta"] <= 0 for _, block, _ in shown):
+        terminal.warning(
+            "eta is not positive: too stocky to start rocking the other way after an impact; "
+            "histories need a measured restitution in the file"
+        )

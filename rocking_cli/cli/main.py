@@ -1,0 +1,67 @@
+"""The command `rocking`: a group that imports a command only when it is used."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+import click
+
+from rocking_cli import __version__
+from rocking_cli.cli import terminal
+from rocking_cli.errors import RockingError
+
+COMMANDS = ("equiv", "respond", "pulse", "mechanisms", "new")
+
+
+class LazyGroup(click.Group):
+    """Commands live in a module of their name; errors of the package become a message and an exit code."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names in the order in which a newcomer needs them."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import the module of a command."""
+        if cmd_name not in COMMANDS:
+            return None
+        command: click.Command = import_module(f"rocking_cli.cli.{cmd_name}").command
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Say what a mistyped command may have meant."""
+        from difflib import get_close_matches
+
+        close = get_close_matches(args[0], COMMANDS, n=1)
+        if args[0] not in COMMANDS and close and not args[0].startswith("-"):
+            raise click.UsageError(f"No such command '{args[0]}': did you mean {close[0]}?", ctx)
+        return super().resolve_command(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; a known error ends it with a message on standard error."""
+        try:
+            return super().invoke(ctx)
+        except RockingError as error:
+            terminal.error(str(error))
+            ctx.exit(error.exit_code)
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="rocking")
+def main() -> None:
+    """Rocking structures under earthquakes.
+
+    A structure is a YAML file. From it come the equivalent single rocking block, the response to a ground motion,
+    and the response to a pulse.
+
+    \b
+    Start with:
+      rocking new block > block.yaml
+      rocking equiv block.yaml
+      rocking respond block.yaml --record accel.csv --plot response.png
+      rocking pulse --a 4 --omega 6
+
+    Exit codes: 0 done (an overturned structure is a result), 2 wrong input, 3 mechanism or plugin, 4 solver.
+    """

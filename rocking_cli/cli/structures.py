@@ -1,0 +1,54 @@
+"""Which structures a command works on, and what to say of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rocking_cli.cli import terminal
+from rocking_cli.core import Mechanism
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.structure import load_structure, parse_structure
+
+HERE = "rocking.yaml"
+DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
+
+
+def load(files: Sequence[str]) -> list[Mechanism]:
+    """The structures of the files; without any, that of `rocking.yaml` here, else the default block.
+
+    Raises
+    ------
+    InputError
+        With the problems of all files.
+    """
+    if not files:
+        return [_unnamed()]
+    found: list[Mechanism] = []
+    problems: list[Problem] = []
+    for file in files:
+        try:
+            found.append(load_structure(file))
+        except InputError as error:
+            problems += error.problems
+        except MechanismError as error:
+            raise MechanismError(f"{file}: {error}") from error
+    if problems:
+        raise InputError(*problems)
+    for mechanism in found:
+        if not mechanism.verified:
+            terminal.warning(f"nobody has verified the mechanism {mechanism.mechanism}: check its numbers yourself")
+    return found
+
+
+def _unnamed() -> Mechanism:
+    if Path(HERE).exists():
+        terminal.note(f"structure: {HERE} of this folder")
+        return load_structure(HERE)
+    terminal.note(f"structure: the default block, 0.7 m wide and 2.8 m high (no FILE given, no {HERE} here)")
+    return parse_structure(DEFAULT, "default block", "default block")
+
+
+def label(mechanism: Mechanism) -> str:
+    """A structure's name and kind, for a heading."""
+    return f"{mechanism.name}: {mechanism.title}"

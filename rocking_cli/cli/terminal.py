@@ -1,0 +1,69 @@
+"""The one place that writes to the terminal: results on standard output, everything else on standard error."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import click
+
+ABSENT = "-"
+
+
+def result(text: str = "") -> None:
+    """A line of the result."""
+    click.echo(text)
+
+
+def print_json(data: Mapping[str, Any]) -> None:
+    """One JSON object on one line of standard output; NaN is a bug, not a value."""
+    click.echo(json.dumps(data, allow_nan=False, ensure_ascii=False))
+
+
+def note(text: str) -> None:
+    """Something to know that is not part of the result."""
+    click.echo(text, err=True)
+
+
+def warning(text: str) -> None:
+    """Something to be careful about."""
+    click.echo(click.style("warning: ", fg="yellow", bold=True) + text, err=True)
+
+
+def error(text: str) -> None:
+    """What went wrong; a line each for several problems."""
+    click.echo(click.style("error: ", fg="red", bold=True) + text, err=True)
+
+
+def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], *, numbers: Sequence[int] = ()) -> None:
+    """A table of the result.
+
+    Parameters
+    ----------
+    title : str
+        Printed above it.
+    columns : sequence of str
+        Headings.
+    rows : sequence of sequence of str
+        Cells.
+    numbers : sequence of int
+        Indexes of columns to align to the right and never to wrap.
+    """
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    drawn = Table(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, title_style="bold", pad_edge=False)
+    for k, heading in enumerate(columns):
+        number = k in numbers
+        drawn.add_column(Text(heading), justify="right" if number else "left", no_wrap=number, overflow="fold")
+    for row in rows:
+        drawn.add_row(*(Text(cell) for cell in row))
+    Console().print(drawn)
+
+
+def number(value: float | None, digits: int = 6) -> str:
+    """A number as people read it; a dash where there is none."""
+    return ABSENT if value is None else f"{value:.{digits}g}"

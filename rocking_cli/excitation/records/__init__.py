@@ -1,0 +1,92 @@
+"""Recorded ground motions: find out what a file is by looking inside it, and read it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Protocol
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records import peer, text
+
+__all__ = ["read_record"]
+
+# Bytes no text file holds. Ctrl-Z (0x1a) is allowed: DOS programs end text files with it.
+_BINARY = bytes(set(range(0x20)) - set(b"\t\n\v\f\r\x1a"))
+
+
+class _Reader(Protocol):
+    """What a record format has to offer."""
+
+    def sniff(self, text: str) -> bool: ...
+
+    def read(self, text: str, file: str, *, dt: float | None = None, units: str | None = None) -> GroundMotion: ...
+
+
+# The most particular format first: delimited text takes nearly anything with numbers in it.
+_READERS: tuple[_Reader, ...] = (peer, text)
+
+
+def read_record(path: str | Path, *, dt: float | None = None, units: str | None = None) -> GroundMotion:
+    """Read a recorded ground motion; the format is found from the content, not from the file's name.
+
+    Parameters
+    ----------
+    path : str or Path
+        A PEER AT2 file, or delimited text with one column (acceleration) or two (time, acceleration).
+    dt : float, optional
+        Interval between samples [s]. Needed for one column; otherwise it must agree with the file.
+    units : str, optional
+        Unit of the accelerations in the file: g, m/s2, cm/s2, mm/s2 or gal. Needed where the file does not name
+        its unit; otherwise it must agree with the file.
+
+    Returns
+    -------
+    GroundMotion
+        Accelerations [m/s2] at a constant interval [s], named after the file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or anything in it is missing, contradictory or not a number.
+    """
+    if dt is not None and not (math.isfinite(dt) and dt > 0):
+        raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="--dt"))
+    file = str(path)
+    content = _load(file)
+    for reader in _READERS:
+        if reader.sniff(content):
+            return reader.read(content, file, dt=dt, units=units)
+    raise InputError(
+        Problem(
+            "not a record format that can be read: no acceleration values found",
+            file=file,
+            hint="give a PEER AT2 file, or text with one column (acceleration) or two (time, acceleration)",
+        )
+    )
+
+
+def _load(file: str) -> str:
+    """Content of a text file, with plain newlines."""
+    path = Path(file)
+    try:
+        if path.is_dir():
+            raise InputError(Problem("this is a directory", file=file, hint="give the path of a record file"))
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(Problem("no such file", file=file, hint="check the path")) from None
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(Problem(f"the file cannot be read: {reason}", file=file)) from None
+    if len(data.translate(None, _BINARY)) != len(data):
+        hint = "a spreadsheet, an archive or UTF-16 text must be saved as plain text (CSV, UTF-8) first"
+        raise InputError(Problem("this is a binary file, not a text record", file=file, hint=hint))
+    try:
+        content = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        content = data.decode("latin-1")  # older processing programs write accents and m/s² that way
+    content = content.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a")
+    if not content.strip():
+        raise InputError(Problem("the file is empty", file=file))
+    return content

@@ -1,0 +1,134 @@
+"""PEER AT2: a few lines of header with the number of points and the interval, then values several to a line."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.text import check_interval, numbers_in
+from rocking_cli.excitation.records.units import UNITS, resolve_unit
+
+_FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
+_NPTS = re.compile(r"\bNPTS\s*=\s*(\d+)", re.IGNORECASE)
+_DT = re.compile(rf"\bDT\s*=\s*({_FLOAT})", re.IGNORECASE)
+_OLD_STYLE = re.compile(rf"^\s*(\d+)[\s,]+({_FLOAT})[\s,]+NPTS\s*,\s*DT\b", re.IGNORECASE)
+_SIGNATURE = re.compile(r"^\s*PEER\b.*\bDATABASE\b", re.IGNORECASE)
+_BEGINS_WITH_NUMBER = re.compile(r"\s*[+-]?\.?\d")
+_GLUED = re.compile(r"(?<=[\d.])(?=[+-])")  # before a sign that follows a digit: Fortran columns run together
+_HEADER_LINES = 30  # where the header must have ended; four lines are usual
+
+
+@dataclass(frozen=True)
+class _Header:
+    """What the header states: number of points, interval [s], line numbers of both, index of the first data line."""
+
+    npts: int
+    dt: float
+    npts_line: int
+    dt_line: int
+    data: int
+
+
+def sniff(text: str) -> bool:
+    """Whether this is a PEER file: its title, or a line with NPTS that is not a comment, is near the top."""
+    head = text[:100_000].split("\n")[:_HEADER_LINES]
+    return any(_SIGNATURE.match(line) or _NPTS.search(line) or _OLD_STYLE.match(line) for line in head if _plain(line))
+
+
+def read(text: str, file: str, *, dt: float | None = None, units: str | None = None) -> GroundMotion:
+    """Read a PEER AT2 file.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file, lines ending in a plain newline.
+    file : str
+        Its path, for the messages and the name of the motion.
+    dt : float, optional
+        Interval between samples [s]; it must agree with the header.
+    units : str, optional
+        Unit of the accelerations; needed where the header does not say it.
+
+    Returns
+    -------
+    GroundMotion
+        Accelerations [m/s2] at a constant interval [s].
+    """
+    lines = text.split("\n")
+    header = _header(file, lines)
+    unit = resolve_unit(file, list(enumerate(lines[: header.data], start=1)), units)
+    check_interval(file, header.dt_line, header.dt, dt)
+    values = _values(file, lines, header.data)
+    if len(values) != header.npts:
+        message = f"the header says NPTS = {header.npts}, but the file has {len(values)} values"
+        hint = "the file may have been cut short or edited: download it again, or correct NPTS"
+        raise InputError(Problem(message, file=file, line=header.npts_line, hint=hint))
+    if header.npts < 2:
+        message = f"a record needs at least two samples, this has {header.npts}"
+        raise InputError(Problem(message, file=file, line=header.npts_line))
+    return GroundMotion(Path(file).name, header.dt, values * UNITS[unit], unit, "PEER AT2")
+
+
+def _header(file: str, lines: Sequence[str]) -> _Header:
+    """Find the number of points and the interval, however many lines the header has."""
+    npts: tuple[str, int] | None = None
+    dt: tuple[str, int] | None = None
+    for number, line in enumerate(lines[:_HEADER_LINES], start=1):
+        if not _plain(line):
+            continue
+        if old := _OLD_STYLE.match(line):
+            npts, dt = (old[1], number), (old[2], number)
+        if npts is None and (match := _NPTS.search(line)):
+            npts = (match[1], number)
+        if dt is None and (match := _DT.search(line)):
+            dt = (match[1], number)
+        if npts and dt:
+            break
+    if npts is None or dt is None:
+        missing = "number of points (NPTS)" if npts is None else "sample interval (DT)"
+        hint = "a PEER AT2 header has a line such as: NPTS=  1991, DT=   .0100 SEC"
+        line_number = npts[1] if npts else None
+        raise InputError(Problem(f"the header does not state the {missing}", file=file, line=line_number, hint=hint))
+
+    interval = float(dt[0].upper().replace("D", "E"))
+    if not (math.isfinite(interval) and interval > 0):
+        raise InputError(Problem(f"the sample interval must be positive, DT = {dt[0]}", file=file, line=dt[1]))
+    data = max(npts[1], dt[1])
+    while data < len(lines) and not _BEGINS_WITH_NUMBER.match(lines[data]):
+        data += 1
+    return _Header(int(npts[0]), interval, npts[1], dt[1], data)
+
+
+def _values(file: str, lines: Sequence[str], data: int) -> NDArray[np.float64]:
+    """All values from line index `data` on; line by line only if something is wrong there."""
+    body = "\n".join(filter(_plain, lines[data:]))
+    if "_" not in body:  # float() would take 1_000
+        try:
+            values = np.array([float(token) for token in _split(body.upper().replace("D", "E"))])
+        except ValueError:
+            pass
+        else:
+            if np.isfinite(values).all():
+                return values
+    found: list[float] = []
+    for number, line in enumerate(lines[data:], start=data + 1):
+        if _plain(line):
+            found.extend(numbers_in(file, number, line, _split(line)))
+    return np.array(found)
+
+
+def _split(text: str) -> list[str]:
+    return _GLUED.sub(" ", text).split()
+
+
+def _plain(line: str) -> bool:
+    """Whether a line is not a comment; delimited text may keep the header of its origin in comments."""
+    return not line.lstrip().startswith(("#", "%"))

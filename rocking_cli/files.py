@@ -1,0 +1,53 @@
+"""Writing files whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO
+
+from rocking_cli.errors import InputError, Problem
+
+
+def check_writable(path: Path) -> None:
+    """Refuse, before any work, a place where no file can be written: `InputError` says why."""
+    if path.is_dir():
+        raise InputError(Problem("this is a folder: give a file name", str(path)))
+    if not path.parent.is_dir():
+        raise InputError(Problem(f"the folder {path.parent} does not exist", str(path), hint="create it first"))
+    if not os.access(path.parent, os.W_OK):
+        raise InputError(Problem(f"the folder {path.parent} cannot be written to", str(path)))
+
+
+def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Write a file through a temporary neighbour, so that no half-written one is ever seen.
+
+    Parameters
+    ----------
+    path : Path
+        Where to.
+    write : callable
+        Gets the open binary file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written; an older file of that name is then untouched.
+    """
+    check_writable(path)
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                write(file)
+            umask = os.umask(0)  # mkstemp makes files private; give this one the usual rights
+            os.umask(umask)
+            os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
+            os.replace(name, path)  # noqa: PTH105
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise InputError(Problem(f"cannot be written: {error.strerror or error}", str(path))) from error

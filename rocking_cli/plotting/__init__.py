@@ -1,0 +1,1 @@
+"""Pictures, as matplotlib figures; never pyplot, which holds state."""

@@ -1,0 +1,98 @@
+"""The mechanisms that are installed, found through the entry points `rocking.mechanisms` and loaded when asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
+from importlib.metadata import EntryPoint, entry_points
+
+from rocking_cli.core import Mechanism
+from rocking_cli.errors import InputError, MechanismError
+
+GROUP = "rocking.mechanisms"
+
+
+def did_you_mean(word: str, known: list[str]) -> str | None:
+    """A hint with the known word nearest to a mistyped one, or the list of all."""
+    close = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
+    return f"did you mean {close[0]}?" if close else f"known: {', '.join(sorted(known))}" if known else None
+
+
+class Registry(Mapping[str, type[Mechanism]]):
+    """Mechanism classes by name. Listing names loads nothing; looking one up loads and checks it.
+
+    Parameters
+    ----------
+    group : str
+        The entry-point group.
+
+    Raises
+    ------
+    InputError
+        On looking up an unknown name.
+    MechanismError
+        On looking up a plugin that cannot be loaded, breaks the contract, or has a name that two packages claim.
+    """
+
+    def __init__(self, group: str = GROUP) -> None:
+        self._points: dict[str, list[EntryPoint]] = {}
+        for point in entry_points(group=group):
+            same_name = self._points.setdefault(point.name, [])
+            # An editable and a normal install of one package list the same entry twice.
+            if all(point.value != other.value for other in same_name):
+                same_name.append(point)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(sorted(self._points))
+
+    def __len__(self) -> int:
+        return len(self._points)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._points
+
+    def __getitem__(self, name: str) -> type[Mechanism]:
+        points = self._points.get(name)
+        if points is None:
+            hint = did_you_mean(name, list(self._points))
+            raise InputError(f"unknown mechanism: {name}" + (f" ({hint})" if hint else ""))
+        if len(points) > 1:
+            claims = " and ".join(f"{self.package(point)} ({point.value})" for point in points)
+            raise MechanismError(f"mechanism {name} is claimed by two packages, {claims}: uninstall one of them")
+        return load(points[0])
+
+    def package_of(self, name: str) -> str:
+        """Distribution and version that a mechanism comes from."""
+        return ", ".join(self.package(point) for point in self._points[name])
+
+    @staticmethod
+    def package(point: EntryPoint) -> str:
+        """Distribution and version of an entry point."""
+        return f"{point.dist.name} {point.dist.version}" if point.dist else "unknown package"
+
+
+def load(point: EntryPoint) -> type[Mechanism]:
+    """Load a plugin and hold it to the contract of `Mechanism`, naming everything that is missing."""
+    origin = f"plugin {point.name} of {Registry.package(point)} ({point.value})"
+    try:
+        plugin = point.load()
+    except Exception as error:  # a plugin may fail in any way; the user needs to know whose it is
+        raise MechanismError(f"{origin} cannot be loaded: {type(error).__name__}: {error}") from error
+    faults = conformance(plugin, point.name)
+    if faults:
+        raise MechanismError(f"{origin} is not a mechanism: " + "; ".join(faults))
+    checked: type[Mechanism] = plugin
+    return checked
+
+
+def conformance(plugin: object, name: str) -> list[str]:
+    """What keeps an object from being the mechanism `name`; empty if nothing does."""
+    if not (isinstance(plugin, type) and issubclass(plugin, Mechanism)):
+        return ["it must be a class derived from rocking_cli.Mechanism"]
+    faults = [f"method {method} is missing" for method in sorted(plugin.__abstractmethods__)]
+    for attribute in ("mechanism", "title", "source"):
+        if not isinstance(getattr(plugin, attribute, None), str):
+            faults.append(f"class attribute {attribute} (a text) is missing")
+    if getattr(plugin, "mechanism", name) != name:
+        faults.append(f"its class says mechanism = {plugin.mechanism!r}, its entry point says {name!r}")
+    return faults
