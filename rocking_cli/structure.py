@@ -76,7 +76,7 @@ class _Document:
         if kind == "null":
             return None
         if kind != "str":
-            self.problems.append(
+            raise InputError(
                 self.problem(f"unknown tag {node.tag}", node.start_mark, hint="write plain text or numbers")
             )
         return text

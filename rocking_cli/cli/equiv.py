@@ -111,7 +111,7 @@ def _print_table(mechanism: Mechanism, equivalence: Equivalence) -> None:
         [key, *(terminal.number(block[key]) for _, block, _ in shown), unit, meaning] for key, unit, meaning in ROWS
     ]
     columns = ["", *(name for name, _, _ in shown), "unit", "meaning"]
-    terminal.table(label(mechanism), columns, rows, numbers=range(1, len(shown) + 1))
+    terminal.table(label(mechanism), columns, rows, numbers=range(1, len(shown) + 1), explained=True)
     for name, block, advice in shown:
         where = "" if equivalence.symmetric else f"{name}: "
         terminal.result(f"{where}critical rotation {degrees(block['phi_cr']):.4g} deg. {advice.why}")

@@ -116,5 +116,10 @@ def _one(cls: type[Mechanism], package: str, as_json: bool) -> None:
         ]
         for row in rows
     ]
-    terminal.table(f"{cls.mechanism}: {cls.title}", ["field", "symbol", "unit", "bounds", "default", "meaning"], cells)
+    terminal.table(
+        f"{cls.mechanism}: {cls.title}",
+        ["field", "symbol", "unit", "bounds", "default", "meaning"],
+        cells,
+        explained=True,
+    )
     terminal.result(f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'by nobody yet'}")

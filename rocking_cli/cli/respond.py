@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
 
 UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal")
+COARSE = 0.1  # s between samples; strong-motion records have 0.02 or less
 NAMES = ("nonlinear", "linear1", "linear2")
 
 
@@ -148,6 +149,10 @@ def _read(record: str, dt: float | None, units: str | None) -> GroundMotion:
         f"record: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:g} s, "
         f"in {motion.unit}, PGA = {motion.pga:.4g} g"
     )
+    if motion.dt > COARSE:
+        terminal.warning(
+            f"dt = {motion.dt:g} s is coarse for a ground motion: is the first column really time in seconds?"
+        )
     return motion
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 ABSENT = "-"
+NARROW = 76  # columns below which a table's explanations are left out: they would break into syllables
 
 
 def result(text: str = "") -> None:
@@ -36,7 +37,14 @@ def error(text: str) -> None:
     click.echo(click.style("error: ", fg="red", bold=True) + text, err=True)
 
 
-def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], *, numbers: Sequence[int] = ()) -> None:
+def table(
+    title: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    numbers: Sequence[int] = (),
+    explained: bool = False,
+) -> None:
     """A table of the result.
 
     Parameters
@@ -48,20 +56,29 @@ def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], *, 
     rows : sequence of sequence of str
         Cells.
     numbers : sequence of int
-        Indexes of columns to align to the right and never to wrap.
+        Indexes of columns to align to the right; these and the first never wrap.
+    explained : bool
+        Whether the last column only explains, and may be left out on a narrow terminal.
     """
     from rich import box
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
+    console = Console()
+    if explained and console.width < NARROW:
+        columns, rows = columns[:-1], [row[:-1] for row in rows]
     drawn = Table(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, title_style="bold", pad_edge=False)
     for k, heading in enumerate(columns):
-        number = k in numbers
-        drawn.add_column(Text(heading), justify="right" if number else "left", no_wrap=number, overflow="fold")
+        drawn.add_column(
+            Text(heading),
+            justify="right" if k in numbers else "left",
+            no_wrap=k == 0 or k in numbers,
+            overflow="fold",
+        )
     for row in rows:
         drawn.add_row(*(Text(cell) for cell in row))
-    Console().print(drawn)
+    console.print(drawn)
 
 
 def number(value: float | None, digits: int = 6) -> str:

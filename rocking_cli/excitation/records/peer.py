@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.text import check_interval, numbers_in
+from rocking_cli.excitation.records.text import check_interval, numbers_in, usable
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
 
 _FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
@@ -116,7 +116,7 @@ def _values(file: str, lines: Sequence[str], data: int) -> NDArray[np.float64]:
         except ValueError:
             pass
         else:
-            if np.isfinite(values).all():
+            if usable(values):
                 return values
     found: list[float] = []
     for number, line in enumerate(lines[data:], start=data + 1):

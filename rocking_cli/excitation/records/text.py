@@ -18,6 +18,7 @@ _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _OTHER_TIME = re.compile(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
 _HEAD = 100_000  # characters looked at to recognise a format: a large file is not searched to its end
+_HUGE = 1e30  # no time or acceleration in any unit; far below where sums and conversions overflow
 _DT_TOLERANCE = 1e-3  # a given interval may be the rounded form of the file's, or the other way round
 
 
@@ -81,6 +82,11 @@ def read(text: str, file: str, *, dt: float | None = None, units: str | None = N
     return GroundMotion(Path(file).name, dt, table[:, -1] * UNITS[unit], unit, "text")
 
 
+def usable(values: NDArray[np.float64]) -> bool:
+    """Whether all values are finite, and not so large that no arithmetic can be done with them."""
+    return bool((np.abs(values) < _HUGE).all())
+
+
 def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) -> list[float]:
     """Values of the numbers printed on a line, Fortran's exponents included.
 
@@ -99,12 +105,12 @@ def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) ->
     Raises
     ------
     InputError
-        At the first one that is not a finite number.
+        At the first one that is not a finite number, or beyond all measure.
     """
     values = []
     for token in tokens:
         value = _value(token.strip())
-        if value is None or not math.isfinite(value):
+        if value is None or not abs(value) < _HUGE:
             raise InputError(_not_a_number(file, line_number, line, token.strip(), known=value is not None))
         values.append(value)
     return values
@@ -170,7 +176,7 @@ def _table(file: str, lines: Sequence[str], start: int, delimiter: str | None, c
     table = _quick_table(lines[start:], delimiter)
     if table is None:  # perhaps only because of comments or empty cells
         table = _quick_table([row for line in lines[start:] if (row := _clean(line))], delimiter)
-    if table is None or table.shape[1] != columns or not np.isfinite(table).all():
+    if table is None or table.shape[1] != columns or not usable(table):
         return _careful_table(file, lines, start, delimiter, columns)
     return table
 
@@ -211,6 +217,9 @@ def _interval(file: str, lines: Sequence[str], start: int, time: NDArray[np.floa
         raise InputError(_at_row(file, lines, start, row, f"time does not increase: {time[row]:g} s {what}", hint))
 
     dt = float((time[-1] - time[0]) / (len(time) - 1))
+    if dt < 1e-9:
+        hint = "the first column must be the time, in seconds"
+        raise InputError(Problem(f"the times give a sample interval of {dt:g} s", file=file, hint=hint))
     usual = float(np.median(steps))
     even = time[0] + dt * np.arange(len(time))
     # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
@@ -245,10 +254,10 @@ def _at_row(file: str, lines: Sequence[str], start: int, row: int, message: str,
 
 
 def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: bool) -> Problem:
-    """Describe a value that cannot be used; `known` for NaN and infinity, which are numbers of a kind."""
+    """Describe a value that cannot be used; `known` for NaN, infinity and the like, which are numbers of a kind."""
     hint = None
     if known:
-        message = f"'{token}' is not a finite number"
+        message = f"'{token}' is not a finite number of sensible size"
         hint = "repair the record first: every sample must have a value"
     elif not token:
         message = "a value is missing"

@@ -1,0 +1,305 @@
+"""The commands as a user runs them: results on standard output, everything else on standard error."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.registry import Registry
+from rocking_cli.structure import parse_structure
+from tests.conftest import EXAMPLES, RECORDS
+
+ACCEL = str(EXAMPLES / "accel.csv")
+FRAME = str(EXAMPLES / "frame.yaml")
+PARAMETERS = {
+    "p", "phi_cr", "lambda", "lambda_lin", "kappa1", "kappa2", "theta_cr1", "theta_cr2", "eta", "I_eq", "G_eq", "B_eq",
+}  # fmt: skip
+RESPONSE = {
+    "peak_positive", "peak_negative", "peak_ratio", "overturned", "overturning_time", "uplift_time", "impacts",
+}  # fmt: skip
+
+
+def run(*arguments, code=0):
+    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    if code:
+        assert result.stdout == ""
+        assert "Traceback" not in result.stderr
+    return result
+
+
+def run_json(*arguments):
+    result = run(*arguments, "--json")
+    (line,) = result.stdout.splitlines()
+    return json.loads(line)
+
+
+class TestHelp:
+    def test_the_group_lists_every_command_and_an_example(self):
+        text = run("--help").stdout
+        assert all(name in text for name in COMMANDS)
+        assert "rocking equiv block.yaml" in text
+
+    @pytest.mark.parametrize("name", COMMANDS)
+    def test_every_command_has_an_example_and_json(self, name):
+        text = run(name, "--help").stdout
+        assert "Example:" in text and f"rocking {name}" in text and "--json" in text
+
+    def test_a_mistyped_command_gets_a_guess(self):
+        assert "did you mean respond?" in run("repsond", code=2).stderr
+
+    def test_the_version_is_that_of_the_distribution(self):
+        from importlib.metadata import version
+
+        assert version("rocking-cli") in run("--version").stdout
+
+
+class TestMechanisms:
+    def test_all_are_listed(self):
+        text = run("mechanisms").stdout
+        assert all(name in text for name in Registry())
+
+    @pytest.mark.parametrize("name", list(Registry()))
+    def test_one_shows_every_field(self, name):
+        data = run_json("mechanisms", name)
+        assert {row["field"] for row in data["fields"]} == set(Registry()[name].model_fields)
+        assert data["source"] and data["package"]
+        shown = "".join(run("mechanisms", name).stdout.split())
+        assert all(field in shown for field in Registry()[name].model_fields)
+
+    def test_an_unknown_one_gets_a_guess(self):
+        assert "did you mean arch?" in run("mechanisms", "ach", code=2).stderr
+
+    @pytest.mark.parametrize("name", list(Registry()))
+    def test_new_prints_a_file_that_works(self, name, tmp_path):
+        file = tmp_path / "new.yaml"
+        file.write_text(run("new", name).stdout, encoding="utf-8")
+        assert run_json("equiv", file)["mechanism"] == name
+        assert run_json("new", name)["yaml"] == file.read_text(encoding="utf-8")
+
+
+class TestEquiv:
+    def test_json_has_the_promised_keys(self):
+        data = run_json("equiv", FRAME)
+        assert set(data) >= {"mechanism", "name", "gravity", "symmetric", "directions"}
+        assert (data["mechanism"], data["name"], data["symmetric"]) == ("asymmetric_frame", "valley bridge", False)
+        assert set(data["directions"]) == {"positive", "negative"}
+        assert all(set(block) >= PARAMETERS for block in data["directions"].values())
+
+    def test_several_files_give_one_object_a_line(self):
+        files = [EXAMPLES / f"{name}.yaml" for name in ("block", "wall", "arch")]
+        lines = run("equiv", *files, "--json").stdout.splitlines()
+        assert [json.loads(line)["mechanism"] for line in lines] == ["block", "wall", "arch"]
+
+    def test_a_symmetric_structure_has_one_column_and_another_two(self):
+        assert "positive" not in run("equiv", EXAMPLES / "block.yaml").stdout
+        text = run("equiv", FRAME).stdout
+        assert "positive" in text and "negative" in text
+
+    def test_csv_has_a_line_for_each_direction(self):
+        rows = list(csv.DictReader(io.StringIO(run("equiv", FRAME, EXAMPLES / "block.yaml", "--csv").stdout)))
+        assert [(row["mechanism"], row["direction"]) for row in rows] == [
+            ("asymmetric_frame", "positive"), ("asymmetric_frame", "negative"),
+            ("block", "positive"), ("block", "negative"),
+        ]  # fmt: skip
+        assert float(rows[0]["lambda [g]"]) == run_json("equiv", FRAME)["directions"]["positive"]["lambda"]
+
+    def test_json_and_csv_exclude_each_other(self):
+        assert "exclude" in run("equiv", FRAME, "--json", "--csv", code=2).stderr
+
+    def test_the_preferred_kappa_follows_effective_slenderness(self):
+        assert "kappa1 and kappa2 serve alike" in run("equiv", EXAMPLES / "wall.yaml").stdout
+        assert "prefer kappa2" in run("equiv", EXAMPLES / "arch.yaml").stdout
+        assert run_json("equiv", EXAMPLES / "arch.yaml")["directions"]["positive"]["prefer"] == "kappa2"
+
+    def test_problems_of_all_files_come_before_any_result(self, tmp_path):
+        one, two = tmp_path / "one.yaml", tmp_path / "two.yaml"
+        one.write_text("mechanism: block\nwidth: 1\n", encoding="utf-8")
+        two.write_text("mechanism: block\nwidth: -1\nheight: 2\n", encoding="utf-8")
+        text = run("equiv", FRAME, one, two, code=2).stderr
+        assert "one.yaml:1:1: height: is missing" in text and "two.yaml:2:8: width: must be more than 0" in text
+
+    def test_a_stocky_block_is_shown_with_a_warning(self, tmp_path):
+        (tmp_path / "slab.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
+        result = run("equiv", "slab.yaml")
+        assert "eta is not positive" in result.stderr and "eta" in result.stdout
+
+    def test_without_a_file_it_takes_the_folder_s_or_the_default(self, tmp_path):
+        assert "default block" in run("equiv").stderr
+        (tmp_path / "rocking.yaml").write_text("mechanism: wall\nthickness: 0.3\nheight: 3\n", encoding="utf-8")
+        result = run("equiv", "--json")
+        assert "rocking.yaml" in result.stderr and json.loads(result.stdout)["mechanism"] == "wall"
+
+
+class TestRespond:
+    def test_json_has_the_promised_keys(self):
+        data = run_json("respond", FRAME, "--record", ACCEL)
+        assert set(data) >= {"structure", "record", "responses"}
+        assert data["record"]["npts"] == 1201 and data["record"]["unit"] == "g"
+        assert set(data["record"]) >= {"name", "npts", "dt", "unit", "pga"}
+        assert list(data["responses"]) == ["nonlinear", "linear1", "linear2"]
+        assert all(set(response) >= RESPONSE for response in data["responses"].values())
+        nonlinear = data["responses"]["nonlinear"]
+        assert (
+            nonlinear["peak_ratio"] > 0 and nonlinear["overturned"] is False and nonlinear["overturning_time"] is None
+        )
+
+    def test_what_was_read_is_said(self):
+        text = run("respond", FRAME, "--record", ACCEL).stderr
+        assert all(words in text for words in ("accel.csv", "1201 points", "dt = 0.01 s", "in g", "PGA = 0.55 g"))
+
+    def test_models_can_be_chosen(self):
+        data = run_json("respond", FRAME, "--record", ACCEL, "--model", "linear2, nonlinear")
+        assert list(data["responses"]) == ["linear2", "nonlinear"]
+        assert "quadratic is not a model" in run("respond", "--record", ACCEL, "--model", "quadratic", code=2).stderr
+
+    def test_overturning_is_a_result_with_null_peaks(self):
+        response = run_json("respond", "--record", ACCEL, "--scale", "4")["responses"]["nonlinear"]
+        assert response["overturned"] is True and response["peak_ratio"] is None
+        assert response["overturning_time"] > response["uplift_time"] > 0
+        assert [response["peak_positive"], response["peak_negative"]].count(None) == 1
+        assert "overturns" in run("respond", "--record", ACCEL, "--scale", "4").stdout
+
+    def test_polarity_mirrors_the_response_of_a_symmetric_structure(self):
+        one = run_json("respond", "--record", ACCEL)["responses"]["nonlinear"]
+        other = run_json("respond", "--record", ACCEL, "--polarity", "-1")["responses"]["nonlinear"]
+        assert (one["peak_positive"], one["peak_negative"]) == (other["peak_negative"], other["peak_positive"])
+        assert one["peak_positive"] > 0
+
+    def test_release_without_a_record(self):
+        data = run_json("respond", EXAMPLES / "arch.yaml", "--release", "-0.5")
+        assert data["record"] is None and data["release"] == -0.5
+        response = data["responses"]["nonlinear"]
+        assert (
+            response["peak_ratio"] == pytest.approx(0.5) and response["peak_negative"] > response["peak_positive"] > 0
+        )
+        assert response["uplift_time"] is None and response["impacts"] > 5
+
+    def test_nothing_to_respond_to(self):
+        assert "--record" in run("respond", FRAME, code=2).stderr
+
+    def test_the_history_file_agrees_with_the_peaks(self):
+        data = run_json("respond", FRAME, "--record", ACCEL, "--scale", "2", "--out", "history.csv")
+        with open("history.csv", encoding="utf-8") as file:  # noqa: PTH123
+            rows = list(csv.DictReader(file))
+        assert list(rows[0])[:5] == [
+            "t [s]", "a_g [g]", "nonlinear phi [rad]", "nonlinear phi_dot [rad/s]", "nonlinear phi/phi_cr",
+        ]  # fmt: skip
+        ground = np.array([float(row["a_g [g]"]) for row in rows])
+        assert np.abs(ground).max() == pytest.approx(2 * 0.55)
+        for model, response in data["responses"].items():
+            phi = np.array([float(row[f"{model} phi [rad]"]) for row in rows])
+            # Peaks lie between samples: a sample may miss one by the curvature over half an interval.
+            assert phi.max() == pytest.approx(response["peak_positive"], rel=1e-3)
+            assert phi.max() <= response["peak_positive"]
+            assert -phi.min() == pytest.approx(response["peak_negative"], rel=1e-3)
+
+    @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+    def test_plots_are_written_by_suffix(self, suffix, tmp_path):
+        run("respond", FRAME, "--record", ACCEL, "--plot", f"plot.{suffix}")
+        start = (tmp_path / f"plot.{suffix}").read_bytes()[:200]
+        assert {"png": b"\x89PNG", "svg": b"<svg", "pdf": b"%PDF"}[suffix] in start or b"<?xml" in start
+
+    @pytest.mark.parametrize(
+        ("option", "value", "words"),
+        [
+            ("--plot", "plot.gif", ".png, .svg, .pdf"),
+            ("--plot", "none/plot.png", "does not exist"),
+            ("--out", "history.txt", ".csv"),
+            ("--out", "none/history.csv", "does not exist"),
+            ("--scale", "nan", "finite"),
+            ("--scale", "big", "not a number"),
+            ("--polarity", "2", "'1', '-1'"),
+            ("--release", "1.5", "between 0 and 1"),
+            ("--release", "0", "between 0 and 1"),
+            ("--tail", "-1", "between 0 and 3600"),
+            ("--dt", "0", "positive"),
+            ("--units", "ft/s2", "gal"),
+        ],
+    )
+    def test_wrong_options_are_refused_and_leave_no_file(self, option, value, words, tmp_path):
+        assert words in run("respond", FRAME, "--record", ACCEL, option, value, code=2).stderr
+        assert list(tmp_path.iterdir()) == []
+
+    def test_a_wrong_record_leaves_no_file(self, tmp_path):
+        (tmp_path / "bad.csv").write_text("time_s,accel_g\n0,0\n0.01,nan\n0.02,0\n", encoding="utf-8")
+        text = run("respond", FRAME, "--record", "bad.csv", "--out", "history.csv", "--plot", "plot.png", code=2).stderr
+        assert "bad.csv:3" in text
+        assert [path.name for path in tmp_path.iterdir()] == ["bad.csv"]
+
+    def test_an_unknown_unit_names_the_option(self, tmp_path):
+        (tmp_path / "bare.txt").write_text("0\n1\n2\n1\n", encoding="utf-8")
+        assert "--units" in run("respond", "--record", "bare.txt", "--dt", "0.01", code=2).stderr
+        run("respond", "--record", "bare.txt", "--dt", "0.01", "--units", "m/s2")
+
+    def test_a_coarse_dt_is_questioned(self, tmp_path):
+        (tmp_path / "indexed.csv").write_text("i,accel_g\n0,0\n1,0.1\n2,0\n", encoding="utf-8")
+        assert "is coarse" in run("respond", "--record", "indexed.csv").stderr
+
+    def test_too_stocky_a_structure_is_refused_with_the_reason_and_the_way_out(self, tmp_path):
+        file = tmp_path / "slab.yaml"
+        file.write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
+        text = run("respond", file, "--record", ACCEL, code=2).stderr
+        assert "slab: restitution: the kinematics give" in text and "too stocky" in text
+        file.write_text("mechanism: block\nwidth: 3\nheight: 1\nrestitution: 0.3\n", encoding="utf-8")
+        run("respond", file, "--record", ACCEL)
+
+    @pytest.mark.skipif(not RECORDS.is_dir(), reason="the folder of real records is not beside the project")
+    def test_the_rinaldi_record_on_the_asymmetric_frame_nonlinear_and_linear(self):
+        """As the paper's Fig. 14: the linear models follow the nonlinear one through the pulse."""
+        data = run_json("respond", FRAME, "--record", RECORDS / "Rinaldi228.AT2", "--scale", "0.5")
+        assert (data["record"]["npts"], data["record"]["pga"]) == (1991, pytest.approx(0.87406, abs=1e-5))
+        peaks = [response["peak_ratio"] for response in data["responses"].values()]
+        assert 0.1 < peaks[0] < 1
+        assert peaks[1:] == pytest.approx([peaks[0]] * 2, rel=0.1)
+
+
+class TestStart:
+    def test_help_and_the_public_api_load_nothing_heavy(self):
+        heavy = "('numba', 'scipy', 'matplotlib', 'numpy', 'pydantic', 'rich', 'yaml')"
+        code = (
+            "import sys, rocking_cli, rocking_cli.cli.main as m;"
+            "m.main(['--help'], standalone_mode=False);"
+            f"print([name for name in {heavy} if name in sys.modules], file=sys.stderr)"
+        )
+        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        assert result.stderr.strip() == "[]"
+
+    def test_equiv_and_pulse_do_without_the_compiler(self):
+        for arguments in (["equiv", str(EXAMPLES / "arch.yaml"), "--json"], ["pulse", "--a", "2", "--omega", "3"]):
+            code = (
+                f"import sys, rocking_cli.cli.main as m; m.main({arguments!r}, standalone_mode=False);"
+                "print([n for n in ('numba', 'scipy', 'matplotlib') if n in sys.modules], file=sys.stderr)"
+            )
+            result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+            assert result.stderr.strip() == "[]"
+
+    def test_every_public_name_can_be_imported(self):
+        import rocking_cli
+
+        assert all(getattr(rocking_cli, name) is not None for name in rocking_cli.__all__)
+        with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+            rocking_cli.nothing  # noqa: B018
+
+
+def test_the_example_in_the_package_docstring_holds():
+    import doctest
+
+    import rocking_cli
+
+    assert doctest.testmod(rocking_cli).attempted > 0
+    assert doctest.testmod(rocking_cli).failed == 0
+
+
+def test_the_default_block_is_a_structure():
+    from rocking_cli.cli.structures import DEFAULT
+
+    assert parse_structure(DEFAULT, "default", "default").mechanism == "block"

@@ -1,0 +1,58 @@
+"""Output files appear whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import pytest
+
+from rocking_cli.errors import InputError
+from rocking_cli.files import check_writable, write_whole
+
+
+def test_a_file_is_written_with_the_usual_rights(tmp_path):
+    path = tmp_path / "a.csv"
+    write_whole(path, lambda file: file.write(b"1\n"))
+    assert path.read_bytes() == b"1\n"
+    plain = tmp_path / "plain"
+    plain.touch()
+    assert path.stat().st_mode == plain.stat().st_mode
+
+
+def test_a_failure_leaves_the_older_file_and_nothing_else(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_bytes(b"old")
+
+    def fail(file):
+        file.write(b"half")
+        raise RuntimeError("stop")
+
+    with pytest.raises(RuntimeError):
+        write_whole(path, fail)
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_full_disk_is_an_input_error(tmp_path):
+    def full(file):
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(InputError, match="No space left"):
+        write_whole(tmp_path / "a.csv", full)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_places_that_take_no_file_are_refused(tmp_path):
+    with pytest.raises(InputError, match="folder"):
+        check_writable(tmp_path)
+    with pytest.raises(InputError, match="does not exist"):
+        check_writable(tmp_path / "none" / "a.csv")
+
+
+@pytest.mark.skipif(sys.platform == "win32" or os.geteuid() == 0, reason="needs a user whose rights are checked")
+def test_a_folder_without_write_permission_is_refused(tmp_path):
+    tmp_path.chmod(0o500)
+    with pytest.raises(InputError, match="cannot be written"):
+        check_writable(tmp_path / "a.csv")
+    tmp_path.chmod(0o700)

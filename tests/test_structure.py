@@ -1,0 +1,195 @@
+"""Structure files: what they mean, and one clear message with its place for everything that is wrong."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mechanisms.asymmetric_frame import AsymmetricFrame
+from mechanisms.block import Block
+from rocking_cli.core.mechanism import DirectionalRestitution
+from rocking_cli.errors import InputError
+from rocking_cli.structure import load_structure, parse_structure
+
+
+def parse(text):
+    return parse_structure(text, "file.yaml", "file")
+
+
+def problems(text):
+    with pytest.raises(InputError) as caught:
+        parse(text)
+    return caught.value.problems
+
+
+BLOCK = "mechanism: block\nwidth: 1\nheight: 4\n"
+
+
+def test_a_file_becomes_a_structure_named_after_it(tmp_path):
+    path = tmp_path / "chimney.yaml"
+    path.write_text("﻿" + BLOCK.replace("\n", "\r\n"), encoding="utf-8")
+    assert load_structure(path) == Block(name="chimney", width=1.0, height=4.0)
+
+
+def test_plain_scalars_are_those_of_yaml_1_2():
+    assert parse("mechanism: block\nwidth: 1e0\nheight: 012\nname: on\n") == Block(name="on", width=1.0, height=12.0)
+    assert parse("mechanism: block\nwidth: +.5\nheight: 1.E+1\n") == Block(name="file", width=0.5, height=10.0)
+
+
+def test_restitution_is_a_number_or_one_for_each_impact():
+    assert parse(BLOCK + "restitution: 0.8\n").restitution == 0.8
+    both = parse(BLOCK + "restitution: {positive_to_negative: 0.9, negative_to_positive: 0.7}\n").restitution
+    assert both == DirectionalRestitution(positive_to_negative=0.9, negative_to_positive=0.7)
+
+
+# text, line, column, field, words of the message or hint
+WRONG = {
+    "unknown mechanism": ("mechanism: blok\nwidth: 1\n", 1, 12, "mechanism", "did you mean block?"),
+    "mechanism missing": ("width: 1\n", 1, 1, "mechanism", "is missing"),
+    "mechanism no word": ("mechanism: [block]\n", 1, 12, "mechanism", "unknown mechanism"),
+    "unknown key": (BLOCK + "heigth: 2\n", 4, 1, "heigth", "did you mean height?"),
+    "field missing": ("mechanism: block\nwidth: 1\n", 1, 1, "height", "is missing: height [m]"),
+    "text for a number": ("mechanism: block\nwidth: wide\nheight: 4\n", 2, 8, "width", "must be a number in m, got wide"),
+    "quoted number": ("mechanism: block\nwidth: '1'\nheight: 4\n", 2, 8, "width", "must be a number"),
+    "truth for a number": ("mechanism: block\nwidth: true\nheight: 4\n", 2, 8, "width", "got true"),
+    "nothing for a number": ("mechanism: block\nwidth:\nheight: 4\n", 2, 7, "width", "got nothing"),
+    "list for a number": ("mechanism: block\nwidth: [1]\nheight: 4\n", 2, 8, "width", "got a list"),
+    "zero": ("mechanism: block\nwidth: 0\nheight: 4\n", 2, 8, "width", "must be more than 0 m, got 0"),
+    "negative": ("mechanism: block\nwidth: 1\nheight: -4\n", 3, 9, "height", "must be more than 0 m, got -4"),
+    "infinite": ("mechanism: block\nwidth: .inf\nheight: 4\n", 2, 8, "width", "finite"),
+    "overflowing": ("mechanism: block\nwidth: 1e999\nheight: 4\n", 2, 8, "width", "finite"),
+    "not a number": ("mechanism: block\nwidth: .nan\nheight: 4\n", 2, 8, "width", "finite"),
+    "beyond any structure": ("mechanism: block\nwidth: 1e9\nheight: 4\n", 2, 8, "width", "at most 1e+06 m"),
+    "given twice": (BLOCK + "width: 2\n", 4, 1, "width", "given twice, first in line 2"),
+    "not YAML": ("mechanism: [block\nwidth: 1\n", 2, 6, None, "not YAML"),
+    "a tab": ("mechanism: block\n\twidth: 1\n", 2, 1, None, "not YAML"),
+    "two documents": (BLOCK + "---\n" + BLOCK, 4, 1, None, "not YAML"),
+    "a list": ("- 1\n", 1, 1, None, "field: value"),
+    "foreign tag": ("mechanism: block\nwidth: !!python/object:os.abort 1\nheight: 4\n", 2, 8, None, "unknown tag"),
+    "nested forever": ("&a [*a]\n", 1, 1, None, "nested too deep"),
+    "eta above 1": (BLOCK + "restitution: 1.1\n", 4, 14, "restitution", "must be at most 1, got 1.1"),
+    "eta of 0": (BLOCK + "restitution: 0\n", 4, 14, "restitution", "must be more than 0, got 0"),
+    "eta in words": (BLOCK + "restitution: high\n", 4, 14, "restitution", "must be a number"),
+    "half a restitution": (
+        BLOCK + "restitution:\n  positive_to_negative: 0.9\n", 5, 3, "restitution.negative_to_positive", "is missing",
+    ),
+    "eta of one impact": (
+        BLOCK + "restitution: {positive_to_negative: 0.9, negative_to_positive: 3}\n", 4, 64,
+        "restitution.negative_to_positive", "at most 1",
+    ),
+    "number for a name": (BLOCK + "name: 12\n", 4, 7, "name", "must be text"),
+    "gravity": (BLOCK + "gravity: -9.81\n", 4, 10, "gravity", "must be more than 0 m/s2"),
+    "half a column": (
+        "mechanism: symmetric_frame\ncolumn_width: 1\ncolumn_height: 5\nmass_ratio: 1\ncolumns: 2.5\n", 5, 10, "columns",
+        "whole number",
+    ),
+    "kind of cone": ("mechanism: cone\nbase_radius: 1\nheight: 5\nkind: full\n", 4, 7, "kind", "shell, solid or hollow"),
+    "hollow of what": ("mechanism: cone\nbase_radius: 1\nheight: 5\nkind: hollow\n", 1, 1, "inner_ratio", "needs inner_ratio"),
+    "inner of a shell": (
+        "mechanism: cone\nbase_radius: 1\nheight: 5\nkind: shell\ninner_ratio: 0.5\n", 5, 14, "inner_ratio", "kind: hollow",
+    ),
+    "thin arch": (
+        "mechanism: arch\nradius: 10\nthickness: 0.5\ninclusion_angle_deg: 180\n", 3, 12, "thickness",
+        "the arch needs at least 1.0748 m",
+    ),
+    "arch without intrados": (
+        "mechanism: arch\nradius: 10\nthickness: 20\ninclusion_angle_deg: 180\n", 3, 12, "thickness", "no intrados",
+    ),
+    "arch too thick": (
+        "mechanism: arch\nradius: 10\nthickness: 5\ninclusion_angle_deg: 10\n", 3, 12, "thickness", "too thick to rock",
+    ),
+    "columns overlap": (
+        "mechanism: asymmetric_frame\ncolumn_width: 1\nleft_height: 5\nright_height: 6\nspacing: 1\nbeam_depth: 1\n"
+        "density: 1\ndepth: 1\n", 5, 10, "spacing", "overlap",
+    ),
+    "half the masses": (
+        "mechanism: asymmetric_frame\ncolumn_width: 1\nleft_height: 5\nright_height: 6\nspacing: 4\nbeam_depth: 1\n"
+        "left_mass: 1\nbeam_mass: 1\n", 1, 1, "density", "left_mass, beam_mass and right_mass",
+    ),
+    "no description of a body": ("mechanism: rigid_body\nR: 1\nalpha_deg: 10\n", 1, 1, "inertia_ratio", "is missing"),
+    "two descriptions": (
+        "mechanism: rigid_body\nR: 1\npolygon: [[0, 0], [1, 0], [1, 3]]\n", 3, 10, "polygon", "one or the other",
+    ),
+    "inverted polygon": ("mechanism: rigid_body\npolygon: [[0, 3], [1, 3], [0.5, 0]]\n", 2, 10, "polygon", "one corner"),
+    "falling polygon": (
+        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [5, 3], [4, 3]]\n", 2, 10, "polygon", "cannot stand",
+    ),
+    "crossing polygon": (
+        "mechanism: rigid_body\npolygon: [[0, 0], [1, 3], [1, 0], [0, 3]]\n", 2, 10, "polygon", "sides cross",
+    ),
+    "flat polygon": ("mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [2, 0]]\n", 2, 10, "polygon", "enclose nothing"),
+    "doubled corner": (
+        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [1, 0], [0, 3]]\n", 2, 10, "polygon", "same point",
+    ),
+    "corner of one number": ("mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [1]]\n", 2, 27, "polygon[3]", "at least 2"),
+    "lands on another side": (
+        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [9, 0.2], [9, 0.4], [0, 0.2], [-9, 0.4], [-9, 0.2]]\n", 2, 10,
+        "polygon", "another corner meets the ground",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_wrong_file_gets_one_message_at_its_place(case):
+    text, line, column, field, words = WRONG[case]
+    found = problems(text)
+    assert len(found) == 1, [str(problem) for problem in found]
+    problem = found[0]
+    assert (problem.file, problem.line, problem.column, problem.field) == ("file.yaml", line, column, field)
+    assert words in str(problem)
+    assert problem.excerpt == text.splitlines()[line - 1].replace("\t", " ")
+
+
+def test_all_problems_are_listed_at_once_in_the_order_of_the_file():
+    found = problems("mechanism: block\nwidht: 1\nheight: -2\nrestitution: 7\nheight: 3\n")
+    assert [problem.line for problem in found] == [1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("text", ["", "# only a comment\n", "---\n"])
+def test_an_empty_file_says_how_to_start(text):
+    (problem,) = problems(text)
+    assert "empty" in problem.message or "field: value" in problem.message
+    assert "rocking new" in problem.hint
+
+
+def test_files_that_cannot_be_read_say_why(tmp_path):
+    binary, latin = tmp_path / "binary.yaml", tmp_path / "latin.yaml"
+    binary.write_bytes(b"\x7fELF\0\0\0")
+    latin.write_bytes("mechanism: block\nname: Façade\n".encode("latin-1"))
+    for path, words in (
+        (tmp_path / "none.yaml", "no such file"), (tmp_path, "folder"), (binary, "binary"), (latin, "latin.yaml:2: not UTF-8"),
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=words):
+            load_structure(path)
+
+
+def test_masses_or_density_describe_the_same_frame():
+    common = {"column_width": 1.0, "left_height": 6.0, "right_height": 7.5, "spacing": 8.0, "beam_depth": 1.0}
+    by_density = AsymmetricFrame(**common, density=2000.0, depth=0.5)
+    by_mass = AsymmetricFrame(**common, left_mass=6000.0, beam_mass=9000.0, right_mass=7500.0)
+    assert by_density.bodies() == by_mass.bodies()
+
+
+@given(st.text(max_size=200))
+def test_no_text_makes_more_than_an_input_error(text):
+    try:
+        parse(text)
+    except InputError as error:
+        assert error.problems
+
+
+@given(st.dictionaries(
+    st.sampled_from(["mechanism", "width", "height", "name", "gravity", "restitution", "polygon"]),
+    st.one_of(
+        st.sampled_from(["block", "rigid_body", "arch"]), st.floats(), st.none(), st.booleans(),
+        st.lists(st.lists(st.floats(-5, 5), max_size=3), max_size=6),
+    ),
+))  # fmt: skip
+def test_no_values_make_more_than_an_input_error(data):
+    import yaml
+
+    try:
+        parse(yaml.safe_dump(data))
+    except InputError as error:
+        assert error.problems
