@@ -1,18 +1,16 @@
 """Where a circular arch hinges when the ground throws it to the right: the quasi-static collapse mechanism.
 
-The least multiplier lambda of horizontal inertia over all admissible four-hinge mechanisms (kinematic theorem) is
-the greatest for which a line of thrust stays inside the ring (static theorem). The search uses both: it takes the
-best mechanism on a few candidate joints, draws its line of thrust, adds the joints where that line leaves the ring
-most, and stops when it stays inside. The result is then proven, not only found: false minima cannot pass.
+The least multiplier lambda of horizontal inertia over all admissible mechanisms (kinematic theorem) is the greatest
+for which a line of thrust stays inside the ring (static theorem). The search uses both: it goes from mechanism to
+mechanism, each time draws the line of thrust through the hinges, and moves a hinge to the joint where that line
+leaves the ring most, until it stays inside. The result is then proven, not only found: false minima cannot pass.
 
 Everything is per unit radius, weight density and depth; angles run from the left springing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +18,13 @@ from numpy.typing import NDArray
 from rocking_cli.errors import MechanismError
 
 Reals = NDArray[np.float64]
-START_JOINTS = 13  # first candidates
-SCAN_JOINTS = 721  # where the line of thrust is looked at when hinges may be anywhere
-TOLERANCE = 1e-13  # moment by which the line of thrust may leave the ring, over that of the ring's weight
-SETTLED = 1e-9  # the same once rounding keeps lambda from falling any further
-ROUNDS = 60
+Hinges = tuple[float, float, float, float]
+SCAN_JOINTS = 721  # where hinges are first looked for if they may be anywhere
+STRONGEST = 100.0  # lambda beyond which an arch counts as too thick to hinge
+FAR = 1e4  # bound on the reactions, over the weight: only to begin with
+TOLERANCE = 1e-12  # moment by which the line of thrust may leave the ring, over that of the ring's weight
+ROUNDS = 200
+FACES = np.array([-1.0, 1.0, -1.0, 1.0])  # of A, B, C, D: intrados -1, extrados +1
 
 
 class ArchCannotStand(Exception):
@@ -78,7 +78,7 @@ class Ring:
         return angle
 
 
-def collapse_hinges(ring: Ring, voussoirs: int | None) -> tuple[float, float, float, float]:
+def collapse_hinges(ring: Ring, voussoirs: int | None) -> Hinges:
     """Angles of the hinges A (intrados), B (extrados), C (intrados) and D (extrados) [rad].
 
     Parameters
@@ -93,37 +93,78 @@ def collapse_hinges(ring: Ring, voussoirs: int | None) -> tuple[float, float, fl
     ArchCannotStand
         If the arch is too thin to stand under its own weight.
     MechanismError
-        If the arch forms no such mechanism (it is too thick to hinge).
+        If it does not collapse on four hinges, because it is too thick.
     """
     joints = np.linspace(0.0, ring.beta, (voussoirs or SCAN_JOINTS - 1) + 1)
-    start = joints[np.unique(np.linspace(0, joints.size - 1, START_JOINTS).round().astype(int))]
-    inside, outside = start, start
-    lowest = np.inf
+    multiplier, hinges, faces = _collapse(ring, joints)
+    if not (np.array_equal(faces, FACES) and (np.diff(hinges) > 0).all()):
+        raise MechanismError(
+            "the arch is too thick to rock on four hinges: "
+            + (f"at {multiplier:.3g} g it lifts off a springing instead" if multiplier < STRONGEST else "none can open")
+        )
+    if voussoirs is None:
+        hinges = _settle(ring, hinges, joints)
+    a, b, c, d = (float(angle) for angle in hinges)
+    return a, b, c, d
+
+
+def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
+    """The least lambda with hinges on given joints, and angles and faces of its hinges in order along the ring.
+
+    Dual simplex: four constraints a . v >= c carry the state v = (M0, Fx, Fy, lambda), and their multipliers y >= 0 are
+    the rotations of the hinges, so that every step is to another mechanism that opens its hinges.
+    """
+    a: list[Reals] = []
+    c: list[Reals] = []
+    for face in (-1, 1):
+        rows, weights = ring.balance(joints, face)
+        a.append(face * rows)
+        c.append(face * weights)
+    # To begin with, bounds that no arch meets: lambda <= STRONGEST, and three on the reactions that carry nothing.
+    weight = ring.beta * ring.thickness
+    A = np.vstack([*a, -np.eye(4)])
+    C = np.concatenate([*c, [-FAR * weight] * 3, [-STRONGEST]])
+    n = joints.size
+    basis = np.arange(2 * n, 2 * n + 4)
     for _ in range(ROUNDS):
-        multiplier, hinges = _best_mechanism(ring, inside, outside)
-        if multiplier <= 0:
+        hinge_rows = A[basis]
+        state = np.linalg.solve(hinge_rows, C[basis])
+        if state[3] <= 0:
             raise ArchCannotStand
-        state = _thrust(ring, hinges)
-        scale = TOLERANCE * ring.thickness * ring.beta
-        stalled = multiplier >= lowest * (1 - 4 * np.finfo(float).eps)
-        lowest = multiplier
-        leaves, furthest = [], 0.0
-        for face in (-1, 1):
-            beyond = ring.excess(joints, face, state)
-            padded = np.concatenate([[-np.inf], beyond, [-np.inf]])
-            peaks = joints[(beyond >= padded[:-2]) & (beyond >= padded[2:]) & (beyond > -1e-6)]
-            if voussoirs is None:
-                peaks = ring.worst(peaks, face, state)
-            excess = ring.excess(peaks, face, state)
-            leaves.append(peaks[excess > scale])
-            furthest = max(furthest, float(excess.max(initial=0.0)))
-        if furthest <= scale or (stalled and furthest < SETTLED * ring.thickness * ring.beta):
-            return hinges
-        if stalled:
+        slack = A @ state - C
+        slack[basis] = 0.0
+        worst = int(slack.argmin())
+        if slack[worst] >= -TOLERANCE * max(weight, float(np.abs(state).max())):
             break
-        inside = np.union1d(leaves[0], [hinges[0], hinges[2]])
-        outside = np.union1d(leaves[1], [hinges[1], hinges[3]])
-    raise MechanismError("the search for the arch's hinges did not settle")
+        turns = np.linalg.solve(hinge_rows.T, np.array([0.0, 0.0, 0.0, -1.0]))
+        share = np.linalg.solve(hinge_rows.T, A[worst])
+        closing = share > 1e-12 * np.abs(share).max()
+        if not closing.any():
+            raise ArchCannotStand  # no state satisfies all constraints: the dual is unbounded
+        ratio = np.where(closing, np.maximum(turns, 0.0) / np.where(closing, share, 1.0), np.inf)
+        basis[int(ratio.argmin())] = worst
+    else:
+        raise MechanismError("the search for the arch's hinges did not settle")
+    order = basis[np.argsort(np.append(np.tile(joints, 2), [np.inf] * 4)[basis], kind="stable")]
+    if order[-1] >= 2 * n:  # a bound is still needed: fewer than four hinges carry the state
+        return float(state[3]), np.zeros(4), np.zeros(4)
+    return float(state[3]), joints[order % n], np.where(order < n, -1.0, 1.0)
+
+
+def _settle(ring: Ring, hinges: Reals, joints: Reals) -> Reals:
+    """Move hinges from the joints of a scan to where the line of thrust touches the ring."""
+    for _ in range(ROUNDS):
+        state = _thrust(ring, hinges)
+        moved = np.array([float(ring.worst(np.array(h), int(f), state)) for h, f in zip(hinges, FACES, strict=True)])
+        settled = np.abs(moved - hinges).max() <= 1e-14 * ring.beta
+        hinges = moved
+        if settled:
+            break
+    state = _thrust(ring, hinges)
+    furthest = max(float(ring.excess(ring.worst(joints, face, state), face, state).max()) for face in (-1, 1))
+    if furthest > 1e-9 * ring.thickness * ring.beta:
+        raise MechanismError("the search for the arch's hinges did not settle")
+    return hinges
 
 
 def least_thickness(beta: float, voussoirs: int | None) -> float:
@@ -136,32 +177,12 @@ def least_thickness(beta: float, voussoirs: int | None) -> float:
             high = middle
         except ArchCannotStand:
             low = middle
+        except MechanismError:  # it stands, and is too thick to hinge
+            high = middle
     return high
 
 
-def _best_mechanism(ring: Ring, inside: Reals, outside: Reals) -> tuple[float, tuple[float, float, float, float]]:
-    """The admissible mechanism of least lambda with hinges at the candidate angles of the two faces."""
-    quads = np.array(
-        [(a, b, c, d) for a, c in combinations(inside, 2) for b, d in combinations(outside, 2) if a < b < c < d]
-    )
-    if quads.size == 0:
-        raise MechanismError("the arch has too few joints for four hinges")
-    balances = [ring.balance(quads[:, k], (-1, 1)[k % 2]) for k in range(4)]
-    rows = np.stack([rows for rows, _ in balances], axis=1)  # (mechanism, hinge, unknown)
-    weights = np.stack([weight for _, weight in balances], axis=1)
-    # Hinge rotations for which the inertia does unit work and the reactions none: virtual work gives lambda.
-    unit_work = np.broadcast_to([[0.0], [0.0], [0.0], [-1.0]], (len(quads), 4, 1))
-    turns = np.linalg.solve(rows.transpose(0, 2, 1), unit_work)[:, :, 0]
-    admissible = (turns * [-1, 1, -1, 1] >= 0).all(axis=1)  # every hinge opens
-    if not admissible.any():
-        raise MechanismError("the arch is too thick to rock on four hinges: none of its mechanisms can open")
-    multipliers = np.where(admissible, -(turns * weights).sum(axis=1), np.inf)
-    best = int(multipliers.argmin())
-    a, b, c, d = (float(angle) for angle in quads[best])
-    return float(multipliers[best]), (a, b, c, d)
-
-
-def _thrust(ring: Ring, hinges: Sequence[float]) -> Reals:
+def _thrust(ring: Ring, hinges: Reals) -> Reals:
     """Reaction at the left springing and lambda (M0, Fx, Fy, lambda) of the line of thrust through the hinges."""
-    balances = [ring.balance(np.array(angle), (-1, 1)[k % 2]) for k, angle in enumerate(hinges)]
+    balances = [ring.balance(np.array(angle), int(face)) for angle, face in zip(hinges, FACES, strict=True)]
     return np.linalg.solve(np.stack([rows for rows, _ in balances]), np.array([weight for _, weight in balances]))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi
+from math import isclose, pi
 from typing import ClassVar, Self
 
+import numpy as np
 from pydantic import model_validator
 
 from rocking_cli.core import (
@@ -93,4 +94,13 @@ class AsymmetricFrame(Mechanism):
         return four_bar(phi, direction, *self.hinges(direction))
 
     def limit(self, direction: Direction) -> float:
-        return min(four_bar_limit(direction, *self.hinges(direction)), pi / 2)  # it locks, or AB lies flat
+        a, b, c, d = self.hinges(direction)
+        end = min(four_bar_limit(direction, a, b, c, d), pi / 2)  # it locks, or AB lies flat
+        if four_bar_limit(direction, d, c, b, a) > pi / 2:  # or CD does: the same linkage driven from D
+            turn = -direction * float(four_bar(np.array([pi / 2]), direction, d, c, b, a)[2].psi[0])
+            # Driven from D, AB may turn back at its lock: only a turn that AB reaches by itself counts.
+            if 0 < turn < end and isclose(
+                abs(self.motion(np.array([turn]), direction)[2].psi[0]), pi / 2, rel_tol=1e-6
+            ):
+                end = turn
+        return end

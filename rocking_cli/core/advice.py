@@ -39,5 +39,7 @@ def preferred_kappa(block: EquivalentBlock) -> Advice:
         return Advice("either", ratio, f"{off}: effectively slender, kappa1 and kappa2 serve alike.")
     share = f"{abs(1 - ratio):.0%}" if abs(1 - ratio) >= 0.1 else f"{abs(1 - ratio):.1%}"
     way = "below" if ratio < 1 else "above"
-    why = f"prefer kappa2; with kappa1 the block would uplift {share} {way} the true acceleration"
-    return Advice("kappa2", ratio, f"{off}: effectively stocky, {why}.")
+    why = (
+        f"prefer kappa2, which keeps the uplift; with kappa1 the block would uplift {share} {way} the true acceleration"
+    )
+    return Advice("kappa2", ratio, f"{off}: {why}.")

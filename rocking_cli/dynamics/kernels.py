@@ -29,6 +29,7 @@ REACHED, IMPACT, LIMIT, STUCK = range(4)
 NONLINEAR, LINEAR = 0, 1
 MARGIN = 1e-12  # of the uplift acceleration: by how much it must be passed, so that rounding never lifts a structure
 FAINT = 1e-9  # of the rate of rest: what still counts as motion while the ground is pushing beyond uplift
+CHATTER = 1000  # impacts in one sample interval that count as rest, however elastic: it rocks to 1e-6 phi_cr or less
 LOOPS = 10_000  # events in one sample interval before giving up
 
 
@@ -92,11 +93,11 @@ def step(cells, row, s, phi, w, u, ramp, h):
 def locate(cells, row, s, phi, w, u, ramp, low, high, turning, level):
     """Where inside the step w vanishes (turning) or phi reaches level: Newton on the step itself, kept in a bracket.
 
-    The sought function has opposite signs at low and high. Stepping anew to each trial point gives the event the
-    full order of the pair, which no interpolant has.
+    The sought function is not zero at low, and zero or of the other sign at high. Stepping anew to each trial point
+    gives the event the full order of the pair, which no interpolant has.
     """
-    phi1, w1, _, _, _, _ = step(cells, row, s, phi, w, u, ramp, high)
-    positive = (w1 if turning else phi1 - level) > 0
+    phi1, w1, _, _, _, _ = step(cells, row, s, phi, w, u, ramp, low)
+    positive = (w1 if turning else phi1 - level) < 0  # at high; there it may be zero
     h = (low + high) / 2
     for _ in range(100):
         phi1, w1, _, b1, _, _ = step(cells, row, s, phi, w, u, ramp, h)
@@ -148,22 +149,25 @@ def fly(cells, row, s, d, t, tau, end, phi, w, u0, ramp, h, rtol, marks):
                 size, phi1, w1, b1, whole = turn, phi2, w2, b2, False
 
         rising = w > 0 or (w == 0 and (phi == 0 or b0 > 0))  # from rest it lifts, whatever rounding says of b0
-        reached = 0.0  # start of the part of the step in which phi falls
-        if rising:
-            top = phi1
-            if w1 <= 0:
-                reached, top = summit(cells, row, s, phi, w, u, ramp, size, b0, b1, w1)
-            marks[PEAK + d] = max(marks[PEAK + d], top)
-            if phi < row[PHI_CR] <= top:
-                x, _, _ = locate(cells, row, s, phi, w, u, ramp, 0.0, reached if w1 <= 0 else size, False, row[PHI_CR])
-                marks[CROSSED] = t + tau + x
-        low = phi1
-        lowest = size
-        if not rising and w1 > 0:  # a valley: phi may dip below zero and come back within the step
-            lowest, low, _ = locate(cells, row, s, phi, w, u, ramp, 0.0, size, True, 0.0)
-        if low <= 0 and (not rising or w1 <= 0):
-            x, _, w1 = locate(cells, row, s, phi, w, u, ramp, reached, lowest, False, 0.0)
-            return IMPACT, min(tau + x, end), 0.0, min(w1, 0.0), h
+        turn, extreme = size, phi1
+        if rising == (w1 <= 0):
+            turn, extreme = turning_point(cells, row, s, phi, w, u, ramp, size, b0, b1, w1, rising)
+        xa, va = 0.0, phi
+        for part in range(2):  # up to where phi turns, then from there
+            if part == 1 and turn == size:
+                break
+            xb, vb = (turn, extreme) if part == 0 else (size, phi1)
+            if rising == (part == 0):
+                marks[PEAK + d] = max(marks[PEAK + d], vb)
+                if va < row[PHI_CR] <= vb:
+                    x, _, _ = locate(cells, row, s, phi, w, u, ramp, xa, xb, False, row[PHI_CR])
+                    marks[CROSSED] = t + tau + x
+            elif vb <= 0:
+                x, w1 = xa, 0.0
+                if va > 0:
+                    x, _, w1 = locate(cells, row, s, phi, w, u, ramp, xa, xb, False, 0.0)
+                return IMPACT, min(tau + x, end), 0.0, min(w1, 0.0), h
+            xa, va = xb, vb
         phi, w = phi1, w1
         tau = end if whole else tau + size
         if phi >= row[END]:
@@ -186,16 +190,16 @@ def hermite_turn(v0, v1, d0, d1):
 
 
 @compile_kernel
-def summit(cells, row, s, phi, w, u, ramp, size, b0, b1, w1):
-    """Where a step that starts rising and ends falling has its peak, and the peak."""
+def turning_point(cells, row, s, phi, w, u, ramp, size, b0, b1, w1, rising):
+    """Where in a step phi turns, from rising to falling or back, and the phi it reaches."""
     start = 0.0
-    if w == 0:  # a start from rest: look for the peak behind the moment of greatest speed
+    if w == 0:  # a start at rest: look behind the moment of greatest speed
         start = size * hermite_turn(w, w1, size * b0, size * b1)
         _, w2, _, _, _, _ = step(cells, row, s, phi, w, u, ramp, start)
-        if w2 <= 0:
+        if w2 == 0 or (w2 > 0) != rising:
             return 0.0, phi
-    x, top, _ = locate(cells, row, s, phi, w, u, ramp, start, size, True, 0.0)
-    return x, top
+    x, extreme, _ = locate(cells, row, s, phi, w, u, ramp, start, size, True, 0.0)
+    return x, extreme
 
 
 @compile_kernel
@@ -218,8 +222,8 @@ def linear_at(p, slack, slope, phi, w, x):
 @compile_kernel
 def linear_root(p, slack, slope, phi, w, low, high, turning, level):
     """Where in [low, high] phi. vanishes (turning) or phi reaches level: Newton kept in a bracket."""
-    v1, w1 = linear_at(p, slack, slope, phi, w, high)
-    positive = (w1 if turning else v1 - level) > 0
+    v1, w1 = linear_at(p, slack, slope, phi, w, low)
+    positive = (w1 if turning else v1 - level) < 0  # at high; there it may be zero
     x = (low + high) / 2
     for _ in range(200):
         v, rate = linear_at(p, slack, slope, phi, w, x)
@@ -306,12 +310,13 @@ def lifts_at(numbers, tau, end, u0, ramp):
     It lifts where the ramp crosses the uplift acceleration, not at the sample.
     """
     for d in range(2):
-        s = 1.0 - 2.0 * d
         threshold = numbers[d, UPLIFT]
-        now = -s * (u0 + ramp * tau) - threshold
-        if now > MARGIN * threshold:
+        if (2.0 * d - 1.0) * (u0 + ramp * tau) - threshold > MARGIN * threshold:
             return tau, d
-        then = -s * (u0 + ramp * end) - threshold
+    for d in range(2):
+        threshold = numbers[d, UPLIFT]
+        now = (2.0 * d - 1.0) * (u0 + ramp * tau) - threshold
+        then = (2.0 * d - 1.0) * (u0 + ramp * end) - threshold
         if then > MARGIN * threshold:
             return min(max(tau - (end - tau) * now / (then - now), tau), end), d
     return end, -1
@@ -384,6 +389,7 @@ def follow(
     resting = phi == 0.0
     h = dt
     t = 0.0
+    before = 0.0  # impacts up to the end of what is drawn
     k = 0
     last = u.size - 1
     while True:
@@ -436,16 +442,17 @@ def follow(
                 s = -s
                 phi = 0.0
                 _, lifted = lifts_at(numbers, tau, tau, u0, ramp)
-                if w <= numbers[d, REST] * (FAINT if lifted >= 0 else 1.0):
+                if w <= numbers[d, REST] * (FAINT if lifted >= 0 else 1.0) or (lifted < 0 and loops > CHATTER):
                     resting, w = True, 0.0
                     marks[ENDED] = t + tau
         t += end
         k += 1
         if drawn:
             t = k * dt
+            before = marks[IMPACTS]
         if not resting and is_certain(kind, numbers[d], certain[d], phi, w, strongest[k] if k < last else 0.0):
             marks[ENDED], marks[SIDE] = t, d
             return OVERTURNED
-        if k > last and marks[IMPACTS] > most_impacts:
+        if not drawn and marks[IMPACTS] - before > most_impacts:
             marks[ENDED], marks[SIDE] = t, d
             return STILL_ROCKING
