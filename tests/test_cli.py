@@ -303,3 +303,11 @@ def test_the_default_block_is_a_structure():
     from rocking_cli.cli.structures import DEFAULT
 
     assert parse_structure(DEFAULT, "default", "default").mechanism == "block"
+
+
+def test_the_units_offered_are_those_the_readers_know():
+    """Written twice so that `--help` needs no numpy."""
+    from rocking_cli.cli.respond import UNITS
+    from rocking_cli.excitation.records import units
+
+    assert set(UNITS) == set(units.UNITS)
