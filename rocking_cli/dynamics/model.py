@@ -80,7 +80,7 @@ def build_model(mechanism: Mechanism, equivalence: Equivalence, name: ModelName)
 
 
 def _nonlinear(mechanism: Mechanism, equivalence: Equivalence) -> Model:
-    tables = [tabulate(mechanism, direction) for direction in Direction]
+    tables = tabulate(mechanism)
     numbers = np.array(
         [
             _row(

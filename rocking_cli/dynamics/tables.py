@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from rocking_cli.core import Direction, Mechanism
 
 Reals = NDArray[np.float64]
-CELLS = 2048  # smooth coefficients are then interpolated to about 1e-13 of their size
+TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then interpolated to 1e-12 of their size
+FEWEST, MOST = 2048, 16384  # cells from rest to the kinematic limit
 END = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at the limit itself
 
 
@@ -39,15 +40,22 @@ class Table:
     certain: Reals
 
 
-def tabulate(mechanism: Mechanism, direction: Direction) -> Table:
-    """Tabulate one direction of a mechanism from rest to its kinematic limit."""
+def tabulate(mechanism: Mechanism) -> tuple[Table, Table]:
+    """Tabulate both directions of a mechanism, positive first, from rest to its kinematic limits."""
+    # A linkage may lock far beyond phi_cr, while its coefficients change within phi_cr.
+    reach = max(mechanism.limit(direction) / mechanism.critical_rotation(direction) for direction in Direction)
+    cells = int(min(max(TO_CRITICAL * reach, FEWEST), MOST))
+    return _one_direction(mechanism, Direction.POSITIVE, cells), _one_direction(mechanism, Direction.NEGATIVE, cells)
+
+
+def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Table:
     end = END * mechanism.limit(direction)
-    phi = np.linspace(0.0, end, CELLS + 1)
+    phi = np.linspace(0.0, end, cells + 1)
     at = mechanism.coefficients(phi, direction)
     c = 1 / np.sqrt(at.I)
     dc = -at.J * c**3  # I' = 2 J
-    width = end / CELLS
-    cells = np.hstack(
+    width = end / cells
+    cubics = np.hstack(
         [
             _cubics(width, c, dc),
             _cubics(width, at.G * c, at.dG * c + at.G * dc),
@@ -58,7 +66,7 @@ def tabulate(mechanism: Mechanism, direction: Direction) -> Table:
     with np.errstate(divide="ignore"):
         enough = np.where(at.G < 0, -mechanism.gravity * at.G / np.abs(at.B), -1.0)
     certain = np.minimum.accumulate(enough[::-1])[::-1]
-    return Table(np.ascontiguousarray(cells), width, end, float(c[0]), certain)
+    return Table(np.ascontiguousarray(cubics), width, end, float(c[0]), certain)
 
 
 def _cubics(width: float, value: Reals, slope: Reals) -> Reals:
