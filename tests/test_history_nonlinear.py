@@ -1,6 +1,7 @@
 """The nonlinear engine against an independent integration, the energy integral, and laws it must obey."""
 
 from functools import cache
+from itertools import pairwise
 from math import acosh, pi, sqrt
 
 import numpy as np
@@ -13,13 +14,14 @@ from mechanisms.block import Block
 from mechanisms.rigid_body import RigidBody
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.mechanism import DirectionalRestitution
 from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
 from tests.conftest import RECORDS
 from tests.reference_history import Nonlinear
 
-# What the tables (2048 cubics) and a local error of 1e-10 allow: the arch, whose linkage locks early, reaches 1e-9.
-TIME, PEAK = 2e-9, 4e-9
+# What the tables and a local error of 1e-10 allow; most structures come ten times closer.
+TIME, PEAK = 5e-10, 5e-10
 
 LEANING = [[0.0, 0.0], [1.0, 0.0], [1.1, 3.0], [0.3, 3.2]]
 
@@ -113,7 +115,7 @@ def test_the_asymmetric_frame_pushed_the_other_way_agrees_too():
 
 
 def test_a_smaller_tolerance_brings_the_block_to_rounding_error():
-    # Tables of sines are exact to 1e-13, so only the steps are left.
+    # The tables of a block are exact to rounding, so only the steps are left.
     dt, samples = noise("block", 2, 2.0)
     history = nonlinear(structure("block"), dt, samples, rtol=1e-13)
     agree(history, Nonlinear(structure("block")).follow(dt, samples), 0.2, time=2e-12, peak=2e-12)
@@ -145,7 +147,7 @@ def released_amplitudes(equation, release, count):
 
 
 @pytest.mark.parametrize("name", ["block", "wall", "frame", "leaning", "arch"])
-@pytest.mark.parametrize("release", [0.6, -0.95])
+@pytest.mark.parametrize("release", [0.8, -0.3])
 def test_free_rocking_takes_the_quarter_periods_of_the_energy_integral(name, release):
     equation = Nonlinear(structure(name))
     history = nonlinear(structure(name), None, None, release=release)
@@ -178,7 +180,7 @@ def test_a_slender_nonlinear_block_tends_to_eq_24():
 @pytest.mark.parametrize("name", ["block", "wall", "frame", "leaning", "arch"])
 def test_energy_stays_between_impacts_and_drops_by_eta_at_each(name):
     equation = Nonlinear(structure(name))
-    history = nonlinear(structure(name), None, None, release=0.9)
+    history = nonlinear(structure(name), None, None, release=0.9, tail=60.0)
     flight = np.searchsorted(history.impacts[:6, 0], history.time)
     levels = []
     for k in range(6):
@@ -193,7 +195,7 @@ def test_energy_stays_between_impacts_and_drops_by_eta_at_each(name):
     start = levels[0][1][0]
     for s, energy in levels:
         np.testing.assert_allclose(energy, energy[0], rtol=0, atol=PEAK * start, err_msg=f"direction {s}")
-    for (s, before), (after_s, after) in zip(levels, levels[1:], strict=False):
+    for (s, before), (after_s, after) in pairwise(levels):
         lost = equation.eta[s] ** 2 * equation.inertia[after_s] / equation.inertia[s]
         assert after[0] / before[0] == pytest.approx(lost, rel=20 * PEAK)
 
@@ -201,12 +203,10 @@ def test_energy_stays_between_impacts_and_drops_by_eta_at_each(name):
 def test_restitution_acts_on_the_rate_of_rotation_not_on_theta():
     # Free flight gives back the rate it started with, so rates before successive impacts are in the ratio eta. The
     # two inertias and kappas differ, so eta on the energy or on theta would show.
-    frame = structure("frame").model_copy(
-        update={"restitution": {"positive_to_negative": 0.9, "negative_to_positive": 0.6}}
-    )
-    frame = AsymmetricFrame.model_validate(frame.model_dump())
+    eta = DirectionalRestitution(positive_to_negative=0.9, negative_to_positive=0.6)
+    frame = structure("frame").model_copy(update={"restitution": eta})
     equation = Nonlinear(frame)
-    assert abs(equation.inertia[1] / equation.inertia[-1] - 1) > 1e-2
+    assert abs(equation.inertia[1] / equation.inertia[-1] - 1) > 1e-3
     for model, history in respond(frame, release=0.5).items():
         rates, sides = history.impacts[:8, 2], history.impacts[:8, 1]
         eta = np.where(sides[:-1] > 0, 0.9, 0.6)

@@ -29,7 +29,8 @@ REACHED, IMPACT, LIMIT, STUCK = range(4)
 NONLINEAR, LINEAR = 0, 1
 MARGIN = 1e-12  # of the uplift acceleration: by how much it must be passed, so that rounding never lifts a structure
 FAINT = 1e-9  # of the rate of rest: what still counts as motion while the ground is pushing beyond uplift
-CHATTER = 1000  # impacts in one sample interval that count as rest, however elastic: it rocks to 1e-6 phi_cr or less
+CHATTER = 1000  # impacts in one sample interval that count as rest, however elastic: with dt < 1 s below 1e-6 phi_cr
+IDLE = 10_000  # intervals of `slow_dt` without impact after the record: swinging in a hollow beyond phi_cr, for ever
 LOOPS = 10_000  # events in one sample interval before giving up
 
 
@@ -390,6 +391,7 @@ def follow(
     h = dt
     t = 0.0
     before = 0.0  # impacts up to the end of what is drawn
+    idle = 0
     k = 0
     last = u.size - 1
     while True:
@@ -433,6 +435,7 @@ def follow(
                 marks[ENDED], marks[SIDE] = t + tau, d
                 return OVERTURNED
             if event == IMPACT:
+                idle = 0
                 n = int(marks[IMPACTS])
                 if n < impacts.shape[0]:
                     impacts[n, 0], impacts[n, 1], impacts[n, 2] = t + tau, s, abs(w) * row[RATE]
@@ -453,6 +456,7 @@ def follow(
         if not resting and is_certain(kind, numbers[d], certain[d], phi, w, strongest[k] if k < last else 0.0):
             marks[ENDED], marks[SIDE] = t, d
             return OVERTURNED
-        if not drawn and marks[IMPACTS] - before > most_impacts:
+        idle += 0 if drawn else 1
+        if marks[IMPACTS] - before > most_impacts or idle > IDLE:
             marks[ENDED], marks[SIDE] = t, d
             return STILL_ROCKING
