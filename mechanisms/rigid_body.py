@@ -68,7 +68,9 @@ class RigidBody(SingleBody):
         size = np.ptp(z.real) + np.ptp(z.imag)
         edges = list(zip(z, np.roll(z, -1), strict=True))
         if any(abs(end - start) <= LEVEL * size for start, end in edges):
-            raise geometry_error("polygon", "two neighbouring corners are the same point")
+            raise geometry_error(
+                "polygon", "two neighbouring corners are the same point; the last need not repeat the first"
+            )
         if abs((z.conj() * np.roll(z, -1)).imag.sum()) / 2 <= LEVEL * size**2 or any(
             _meet(*one, *other) for one, other in combinations(edges, 2)
         ):

@@ -19,6 +19,8 @@ def check_writable(path: Path) -> None:
         raise InputError(Problem(f"the folder {path.parent} does not exist", str(path), hint="create it first"))
     if not os.access(path.parent, os.W_OK):
         raise InputError(Problem(f"the folder {path.parent} cannot be written to", str(path)))
+    if path.exists() and not os.access(path, os.W_OK):
+        raise InputError(Problem("the file is there already and is protected from writing", str(path)))
 
 
 def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
@@ -37,6 +39,7 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
         If the file cannot be written; an older file of that name is then untouched.
     """
     check_writable(path)
+    path = path.resolve()  # through a link, to the file it stands for
     try:
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:

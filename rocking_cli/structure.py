@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -176,7 +177,9 @@ def _read(path: Path, shown: str) -> str:
 def _mechanism(document: _Document, data: dict[str, Any], registry: Registry) -> type[Mechanism] | None:
     """The class the file asks for; None with a problem noted if there is no such mechanism."""
     if "mechanism" not in data:
-        hint = f"add a line `mechanism: NAME`; known: {', '.join(registry)}"
+        known = ", ".join(registry)
+        near = get_close_matches("mechanism", list(data), n=1)
+        hint = f"is {near[0]} meant to be mechanism?" if near else f"add a line `mechanism: NAME`; known: {known}"
         document.problems.append(document.problem("is missing", document.values[()], "mechanism", hint))
         return None
     name, mark = data["mechanism"], document.values[("mechanism",)]
@@ -249,7 +252,9 @@ def _got(given: Any) -> str:
         return "got nothing"
     if isinstance(given, bool):
         return f"got {str(given).lower()}"
-    if isinstance(given, int | float | str):
+    if isinstance(given, str):
+        return f"got the text {given!r}"
+    if isinstance(given, int | float):
         return f"got {given}"
     return f"got a {'list' if isinstance(given, list) else 'mapping'}"
 
@@ -279,7 +284,8 @@ def _say(cls: type[Mechanism], location: Path_, error: ErrorDetails) -> tuple[st
     if kind == "finite_number":
         return f"must be a finite number, {got}", None
     if kind in ("float_type", "float_parsing"):
-        return f"must be a number{f' in{unit}' if unit else ''}, {got}", None
+        comma = isinstance(given, str) and re.fullmatch(r"\s*[-+]?\d+,\d+\s*", given)
+        return f"must be a number{f' in{unit}' if unit else ''}, {got}", "write a decimal point" if comma else None
     if kind in ("int_type", "int_parsing", "int_from_float"):
         return f"must be a whole number, {got}", None
     if kind == "string_type":

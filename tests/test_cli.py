@@ -112,6 +112,17 @@ class TestEquiv:
         ]  # fmt: skip
         assert float(rows[0]["lambda [g]"]) == run_json("equiv", FRAME)["directions"]["positive"]["lambda"]
 
+    def test_another_gravity_is_told_apart_from_the_unit_of_records(self, tmp_path):
+        (tmp_path / "moon.yaml").write_text("mechanism: block\nwidth: 1\nheight: 4\ngravity: 1.62\n", encoding="utf-8")
+        assert "its own gravity of 1.62 m/s2" in run("equiv", "moon.yaml").stderr
+
+    @pytest.mark.parametrize("width", ["20", "50", "60", "80", "200"])
+    def test_no_width_of_the_terminal_cuts_a_number(self, width, monkeypatch):
+        monkeypatch.setenv("COLUMNS", width)
+        text = run("equiv", FRAME).stdout
+        for block in run_json("equiv", FRAME)["directions"].values():
+            assert all(f"{block[key]:.6g}" in text for key in PARAMETERS)
+
     def test_json_and_csv_exclude_each_other(self):
         assert "exclude" in run("equiv", FRAME, "--json", "--csv", code=2).stderr
 
@@ -130,7 +141,8 @@ class TestEquiv:
     def test_a_stocky_block_is_shown_with_a_warning(self, tmp_path):
         (tmp_path / "slab.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
         result = run("equiv", "slab.yaml")
-        assert "eta is not positive" in result.stderr and "eta" in result.stdout
+        assert "slab: eta is not positive" in result.stderr and "eta" in result.stdout
+        assert "slab: eta is not positive" in run("equiv", "slab.yaml", "--json").stderr
 
     def test_without_a_file_it_takes_the_folder_s_or_the_default(self, tmp_path):
         assert "default block" in run("equiv").stderr
@@ -211,9 +223,9 @@ class TestRespond:
     @pytest.mark.parametrize(
         ("option", "value", "words"),
         [
-            ("--plot", "plot.gif", ".png, .svg, .pdf"),
+            ("--plot", "plot.gif", "does not end in .png or .svg or .pdf"),
             ("--plot", "none/plot.png", "does not exist"),
-            ("--out", "history.txt", ".csv"),
+            ("--out", "history.txt", "does not end in .csv"),
             ("--out", "none/history.csv", "does not exist"),
             ("--scale", "nan", "finite"),
             ("--scale", "big", "not a number"),
@@ -228,6 +240,39 @@ class TestRespond:
     def test_wrong_options_are_refused_and_leave_no_file(self, option, value, words, tmp_path):
         assert words in run("respond", FRAME, "--record", ACCEL, option, value, code=2).stderr
         assert list(tmp_path.iterdir()) == []
+
+    def test_an_output_never_replaces_an_input(self, tmp_path):
+        record, structure = tmp_path / "record.csv", tmp_path / "block.csv"
+        record.write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        structure.write_bytes((EXAMPLES / "block.yaml").read_bytes())
+        for out in (record, structure):
+            text = run("respond", structure, "--record", record, "--out", out, code=2).stderr
+            assert "would overwrite what is read" in text
+        assert record.read_bytes() == (EXAMPLES / "accel.csv").read_bytes()
+        both = ("--out", "same.csv", "--plot", "same.png")
+        run("respond", structure, "--record", record, *both)
+
+    def test_a_name_with_a_dollar_can_be_drawn(self, tmp_path):
+        (tmp_path / "odd.yaml").write_text(
+            "mechanism: block\nname: 'a $5 \\alpha$ _x'\nwidth: 1\nheight: 4\n", encoding="utf-8"
+        )
+        run("respond", "odd.yaml", "--release", "0.5", "--plot", "odd.png")
+
+    def test_a_release_drawn_without_a_tail_warns_of_nothing(self):
+        result = run("respond", "--release", "0.5", "--tail", "0", "--plot", "short.png")
+        assert "Warning" not in result.stderr
+
+    def test_options_of_a_record_need_one(self):
+        for option in (("--scale", "2"), ("--polarity", "-1"), ("--dt", "0.1"), ("--units", "g")):
+            assert "give --record" in run("respond", "--release", "0.5", *option, code=2).stderr
+
+    def test_an_impossible_dt_is_refused_before_memory_runs_out(self, tmp_path):
+        (tmp_path / "one.txt").write_text("accel_g\n0\n1\n0\n", encoding="utf-8")
+        assert "is dt in seconds?" in run("respond", "--record", "one.txt", "--dt", "1e-9", code=2).stderr
+
+    def test_an_odd_pga_is_questioned(self, tmp_path):
+        (tmp_path / "cm.csv").write_text("t,accel_g\n0,0\n0.01,300\n0.02,0\n", encoding="utf-8")
+        assert "is the unit really g?" in run("respond", "--record", "cm.csv").stderr
 
     def test_a_wrong_record_leaves_no_file(self, tmp_path):
         (tmp_path / "bad.csv").write_text("time_s,accel_g\n0,0\n0.01,nan\n0.02,0\n", encoding="utf-8")

@@ -836,3 +836,18 @@ def test_the_example_has_unix_newlines():
     assert content.startswith(b"time_s,accel_g\n0.00,0.000000\n")
     assert b"\r" not in content
     assert b"-0.000000" not in content
+
+
+@pytest.mark.parametrize("header", ["accel_g,time_s", "a [g];t [s]", '"acc (g)",Time'])
+def test_columns_in_the_other_order_are_refused_even_if_the_accelerations_rise(tmp_path, header):
+    path = tmp_path / "swapped.csv"
+    mark = ";" if ";" in header else ","
+    path.write_text(header + "\n" + "".join(f"{k * 0.01}{mark}{k * 0.01}\n" for k in range(5)), encoding="utf-8")
+    with pytest.raises(InputError, match=r"swapped.csv:1: the time is in the second column"):
+        read_record(path)
+
+
+def test_a_bare_column_name_that_begins_with_t_is_no_time(tmp_path):
+    path = tmp_path / "named.csv"
+    path.write_text("time_s,transverse_g\n0,0\n0.01,1\n0.02,0\n", encoding="utf-8")
+    assert read_record(path, units="g").npts == 3

@@ -76,6 +76,30 @@ def test_a_plugin_that_is_no_mechanism_says_so():
         load(entry("json:dumps"))
 
 
+def test_a_plugin_that_fails_or_miscounts_is_called_by_its_name():
+    from rocking_cli.core import box, equivalent_block, rotation
+
+    class Odd(Mechanism):
+        mechanism, title, source = "odd", "odd", "odd"
+        fail: bool = False
+
+        def bodies(self):
+            return [box("a", 1.0, 1.0, 4.0, 2j)] * 2
+
+        def motion(self, phi, direction):
+            if self.fail:
+                raise KeyError("lost")
+            return [rotation(phi, 0.5 * direction, -direction)]
+
+        def limit(self, direction):
+            return 1.0
+
+    with pytest.raises(MechanismError, match="1 motions for 2 bodies"):
+        equivalent_block(Odd())
+    with pytest.raises(MechanismError, match="the mechanism odd failed on these sizes: KeyError: 'lost'"):
+        equivalent_block(Odd(fail=True))
+
+
 def test_everything_missing_from_a_plugin_is_named():
     class Half(Mechanism):
         def limit(self, direction):

@@ -64,6 +64,7 @@ def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
             terminal.print_json(_as_json(mechanism, equivalence))
         elif not as_csv:
             _print_table(mechanism, equivalence)
+        _warn(mechanism, equivalence)
 
 
 def _as_json(mechanism: Mechanism, equivalence: Equivalence) -> dict[str, Any]:
@@ -115,8 +116,18 @@ def _print_table(mechanism: Mechanism, equivalence: Equivalence) -> None:
     for name, block, advice in shown:
         where = "" if equivalence.symmetric else f"{name}: "
         terminal.result(f"{where}critical rotation {degrees(block['phi_cr']):.4g} deg. {advice.why}")
-    if any(block["eta"] <= 0 for _, block, _ in shown):
+
+
+def _warn(mechanism: Mechanism, equivalence: Equivalence) -> None:
+    from rocking_cli.excitation.base import STANDARD_GRAVITY
+
+    if any(block.eta <= 0 for _, block in _blocks(equivalence)):
         terminal.warning(
-            "eta is not positive: too stocky to start rocking the other way after an impact; "
+            f"{mechanism.name}: eta is not positive: too stocky to start rocking the other way after an impact; "
             "histories need a measured restitution in the file"
+        )
+    if mechanism.gravity != STANDARD_GRAVITY:
+        terminal.note(
+            f"{mechanism.name}: lambda is over its own gravity of {mechanism.gravity:g} m/s2; records and PGA are in "
+            f"standard gravity, {STANDARD_GRAVITY} m/s2"
         )

@@ -46,6 +46,11 @@ class LazyGroup(click.Group):
         except RockingError as error:
             terminal.error(str(error))
             ctx.exit(error.exit_code)
+        except BrokenPipeError:
+            raise  # the reader has seen enough: click ends quietly
+        except OSError as error:
+            terminal.error(f"cannot write the result: {error.strerror or error}")
+            ctx.exit(1)
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})

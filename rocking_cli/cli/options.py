@@ -8,8 +8,6 @@ from typing import Any
 
 import click
 
-from rocking_cli.errors import InputError, Problem
-
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 as_json: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
@@ -44,9 +42,7 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
             return None
         path = Path(value)
         if path.suffix.lower() not in suffixes:
-            raise InputError(
-                Problem(f"{param.opts[0]} writes {', '.join(suffixes)}, not {path.suffix or 'no suffix'}", value)
-            )
+            raise click.BadParameter(f"{value!r} does not end in {' or '.join(suffixes)}.", ctx, param)
         check_writable(path)
         return path
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal")
 COARSE = 0.1  # s between samples; strong-motion records have 0.02 or less
+PLAUSIBLE = (0.002, 4.0)  # g; the strongest ground motions on record have some 2.5
 NAMES = ("nonlinear", "linear1", "linear2")
 
 
@@ -114,8 +116,9 @@ def command(
         raise click.UsageError("Nothing to respond to: give --record FILE, or --release RATIO, or both.")
     if record is None and (units is not None or dt is not None):
         raise click.UsageError("--units and --dt describe a record: give --record FILE.")
-    if out is not None and out == plot:
-        raise InputError(Problem("--out and --plot cannot be the same file", str(out)))
+    if record is None and (scale != 1 or polarity != "1"):
+        raise click.UsageError("--scale and --polarity change a record: give --record FILE.")
+    _keep_apart(out, plot, file, record)
     from rocking_cli.cli import structures
 
     mechanism = structures.load([file] if file else [])[0]
@@ -129,6 +132,7 @@ def command(
         write_whole(out, lambda stream: stream.write(history_csv(histories, motion).encode()))
         terminal.note(f"wrote {out}")
     if plot is not None:
+        os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
         from rocking_cli.files import write_whole
         from rocking_cli.plotting.history import draw_history
 
@@ -139,6 +143,16 @@ def command(
         terminal.print_json(_as_json(mechanism, as_read, scale, polarity, release, histories))
     else:
         _print_table(mechanism, histories)
+
+
+def _keep_apart(out: Path | None, plot: Path | None, *inputs: str | None) -> None:
+    """Refuse to write over an input, or both outputs to one file."""
+    read = {Path(name).resolve(): name for name in inputs if name is not None}
+    for option, path in (("--out", out), ("--plot", plot)):
+        if path is not None and path.resolve() in read:
+            raise InputError(Problem(f"{option} would overwrite what is read", str(path), hint="give another name"))
+    if out is not None and plot is not None and out.resolve() == plot.resolve():
+        raise InputError(Problem("--out and --plot cannot be the same file", str(out)))
 
 
 def _read(record: str, dt: float | None, units: str | None) -> GroundMotion:
@@ -152,6 +166,10 @@ def _read(record: str, dt: float | None, units: str | None) -> GroundMotion:
     if motion.dt > COARSE:
         terminal.warning(
             f"dt = {motion.dt:g} s is coarse for a ground motion: is the first column really time in seconds?"
+        )
+    if not PLAUSIBLE[0] <= motion.pga <= PLAUSIBLE[1]:
+        terminal.warning(
+            f"a PGA of {motion.pga:.3g} g is unusual for a ground motion: is the unit really {motion.unit}?"
         )
     return motion
 
@@ -202,6 +220,7 @@ def _as_json(
                 "peak_ratio": history.peak_ratio,
                 "overturned": history.overturned,
                 "overturning_time": history.overturning_time,
+                "overturning_direction": history.fell_to.label if history.fell_to else None,
                 "uplift_time": history.uplift_time,
                 "impacts": history.impact_count,
                 "outcome": history.outcome.name.lower(),
@@ -213,6 +232,7 @@ def _as_json(
 
 def _print_table(mechanism: Mechanism, histories: dict[ModelName, History]) -> None:
     from rocking_cli.cli.structures import label
+    from rocking_cli.dynamics.verdict import verdict
 
     number = terminal.number
     runs = list(histories.values())
@@ -226,38 +246,9 @@ def _print_table(mechanism: Mechanism, histories: dict[ModelName, History]) -> N
         ["peak, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
         ["peak, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
         ["first uplift", *(number(run.uplift_time, 5) for run in runs), "s"],
-        ["passes phi_cr for good", *(number(run.overturning_time, 5) for run in runs), "s"],
-        ["impacts until rest", *(str(run.impact_count) for run in runs), ""],
+        ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
+        ["impacts", *(str(run.impact_count) for run in runs), ""],
     ]
     columns = ["", *(run.model for run in runs), "unit"]
     terminal.table(label(mechanism), columns, rows, numbers=range(1, len(runs) + 1))
-    terminal.result(_verdict(histories))
-
-
-def _verdict(histories: dict[ModelName, History]) -> str:
-    """What the histories say together, in words."""
-    fallen = [name for name, run in histories.items() if run.overturned]
-    moved = [name for name, run in histories.items() if run.peak_ratio is None or run.peak_ratio > 0]
-    said = []
-    if not moved:
-        said.append("The structure does not uplift.")
-    elif len(fallen) == len(histories):
-        said.append("The structure overturns.")
-    elif fallen:
-        said.append(
-            f"The models disagree: it overturns by {', '.join(fallen)} only. So close to overturning, "
-            "trust none alone; small changes of the motion decide."
-        )
-    else:
-        peaks = {name: run.peak_ratio or 0.0 for name, run in histories.items()}
-        best = "nonlinear" if "nonlinear" in peaks else next(iter(peaks))
-        said.append(f"The structure rocks to {peaks[best]:.3g} of its critical rotation and does not overturn.")
-        far = [name for name, peak in peaks.items() if abs(peak - peaks[best]) > max(0.2 * peaks[best], 0.02)]
-        if far:
-            said.append(f"Far from the {best} model: {', '.join(far)}.")
-        if max(peaks.values()) > 0.8:
-            said.append("That is close to overturning: vary the scale and polarity before relying on it.")
-    still = [run for run in histories.values() if run.outcome.name == "STILL_ROCKING"]
-    if still:
-        said.append(f"{still[0].model}: {still[0].outcome.value}.")
-    return " ".join(said)
+    terminal.result(verdict(histories))

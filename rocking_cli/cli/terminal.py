@@ -62,6 +62,7 @@ def table(
     """
     from rich import box
     from rich.console import Console
+    from rich.measure import Measurement
     from rich.table import Table
     from rich.text import Text
 
@@ -70,14 +71,19 @@ def table(
         columns, rows = columns[:-1], [row[:-1] for row in rows]
     drawn = Table(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, title_style="bold", pad_edge=False)
     for k, heading in enumerate(columns):
+        whole = k == 0 or k in numbers
         drawn.add_column(
             Text(heading),
             justify="right" if k in numbers else "left",
-            no_wrap=k == 0 or k in numbers,
+            no_wrap=whole,
+            min_width=max(len(cell) for cell in [heading, *(row[k] for row in rows)]) if whole else None,
             overflow="fold",
         )
     for row in rows:
         drawn.add_row(*(Text(cell) for cell in row))
+    # Wider than the terminal rather than with digits cut off.
+    unbounded = console.options.update(max_width=1000)
+    console.width = max(console.width, Measurement.get(console, unbounded, drawn).minimum)
     console.print(drawn)
 
 

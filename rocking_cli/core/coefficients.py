@@ -12,6 +12,7 @@ import numpy as np
 
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
+from rocking_cli.errors import MechanismError
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,14 @@ def coefficients(
     Returns
     -------
     Coefficients
+
+    Raises
+    ------
+    MechanismError
+        If there is not one motion for each body.
     """
+    if len(bodies) != len(motions):
+        raise MechanismError(f"the plugin gives {len(motions)} motions for {len(bodies)} bodies")
     total = Coefficients(phi, *(np.zeros_like(phi) for _ in range(7)))
     for body, motion in zip(bodies, motions, strict=True):
         z, dz, ddz = motion.carry(body.centroid)

@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
-from rocking_cli.errors import MechanismError
+from rocking_cli.errors import MechanismError, RockingError
 
 AGREEMENT = 1e-9  # relative difference below which the two directions count as the same
 
@@ -88,7 +88,8 @@ def equivalent_block(mechanism: Mechanism) -> Equivalence:
     Raises
     ------
     MechanismError
-        If the structure does not stand, has no critical rotation, or is beyond the range of numbers.
+        If the structure does not stand, has no critical rotation or is beyond the range of numbers, or the plugin
+        fails.
 
     Notes
     -----
@@ -99,9 +100,15 @@ def equivalent_block(mechanism: Mechanism) -> Equivalence:
             return Equivalence(
                 _one_direction(mechanism, Direction.POSITIVE), _one_direction(mechanism, Direction.NEGATIVE)
             )
-    except (ArithmeticError, ValueError) as error:
+    except ArithmeticError as error:
         raise MechanismError(
             f"its equivalent block is beyond the range of numbers ({error}): check the sizes and their units"
+        ) from error
+    except RockingError:
+        raise
+    except Exception as error:  # a plugin may fail in any way; the user needs to know that it did
+        raise MechanismError(
+            f"the mechanism {mechanism.mechanism} failed on these sizes: {type(error).__name__}: {error}"
         ) from error
 
 

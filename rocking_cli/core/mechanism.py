@@ -93,7 +93,9 @@ class Mechanism(BaseModel, ABC):
     """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
 
     name: str | None = Field(None, description="what to call the structure")
-    gravity: float = Field(9.80665, gt=0, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"})
+    gravity: float = Field(
+        9.80665, gt=0, le=1000, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"}
+    )
     restitution: Restitution | DirectionalRestitution | None = Field(
         None, description="coefficient of restitution eta; absent: from kinematics"
     )

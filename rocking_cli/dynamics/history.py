@@ -17,6 +17,7 @@ Reals = NDArray[np.float64]
 RTOL = 1e-10  # local error of a nonlinear step
 TAIL = 10.0  # s of motion kept after the record
 MOST_IMPACTS = 20_000  # after the record and its tail, to call it still rocking; eta = 0.999 rests in 14 000
+MOST_SAMPLES = 20_000_000
 RELEASE_DT = 0.005  # s between samples of a free motion without a record
 
 
@@ -52,8 +53,10 @@ class History:
         When the rotation passed the critical one for good [s].
     uplift_time : float or None
         First uplift from rest [s].
+    fell_to : Direction or None
+        The direction in which it overturned.
     impact_count : int
-        Number of impacts until rest.
+        Number of impacts, those of the chatter to rest included.
     impacts : ndarray, shape (k, 3)
         Time [s], sign of the direction that ends, and rate before [rad/s] of each impact.
     end_time : float
@@ -71,6 +74,7 @@ class History:
     peak_ratio: float | None
     overturning_time: float | None
     uplift_time: float | None
+    fell_to: Direction | None
     impact_count: int
     impacts: Reals
     end_time: float
@@ -126,6 +130,9 @@ def respond(
     """
     if motion is None and release is None:
         raise InputError("nothing to respond to: give a ground motion, a release, or both")
+    unknown = [name for name in models if name not in MODELS]
+    if unknown or not models:
+        raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
     if release is not None and not 0 < abs(release) < 1:
         raise InputError(f"release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {release:g}")
     if not (np.isfinite(tail) and tail >= 0):
@@ -146,6 +153,8 @@ def _follow(
     dt = motion.dt if motion is not None else RELEASE_DT
     start = Direction.NEGATIVE if release < 0 else Direction.POSITIVE
     samples = max(accelerations.size, 1) + round(tail / dt)
+    if samples > MOST_SAMPLES:
+        raise InputError(f"dt = {dt:g} s makes {samples:,} samples with a tail of {tail:g} s: is dt in seconds?")
     phi, rate = np.empty(samples), np.empty(samples)
     impacts, marks = np.empty((MOST_IMPACTS, 3)), np.empty(kernels.MARKS)
     strongest = np.maximum.accumulate(np.abs(accelerations[::-1]))[::-1].copy()
@@ -192,6 +201,7 @@ def _follow(
         peak_ratio=None if fallen else float(max(peaks[d] / equivalence[d].phi_cr for d in Direction)),
         overturning_time=float(marks[kernels.CROSSED]) if fallen else None,
         uplift_time=float(first) if np.isfinite(first) else None,
+        fell_to=fell_to,
         impact_count=count,
         impacts=impacts[: min(count, MOST_IMPACTS)],
         end_time=float(marks[kernels.ENDED]),

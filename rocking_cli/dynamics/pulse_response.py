@@ -118,7 +118,8 @@ def closed_form(a: float, omega: float, eta: float) -> ClosedForm:
     root = sqrt(a * a - 1)
     end = (2 * pi - asin(1 / a)) / omega  # tau from uplift to the end of the pulse
     if end > LONG:
-        return ClosedForm(None, None, True, _conditions(True, True, (root - omega) <= 0))
+        # The growing term decides all: D0 is beyond numbers, with the sign of root - omega.
+        return ClosedForm(None, None, root < omega, _conditions(True, root >= omega, root <= omega))
     grow, decay = exp(end), exp(-end)
     D0 = (omega / (omega**2 + 1)) ** 2 * (
         omega**2 - 2 * a**2 + 1 + (root + omega) * a * decay + (root - omega) * a * grow

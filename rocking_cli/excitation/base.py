@@ -67,5 +67,6 @@ class GroundMotion:
         return float(np.abs(self.acceleration).max() / STANDARD_GRAVITY)
 
     def scaled(self, factor: float) -> GroundMotion:
-        """The same motion with every acceleration multiplied by `factor` (a negative one reverses it)."""
-        return GroundMotion(self.name, self.dt, factor * self.acceleration, self.unit, self.format)
+        """The same motion with every acceleration multiplied by `factor` (a negative one reverses it), named so."""
+        name = self.name if factor == 1 else f"{self.name} x {factor:g}"
+        return GroundMotion(name, self.dt, factor * self.acceleration, self.unit, self.format)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from textwrap import shorten
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,6 +16,8 @@ from rocking_cli.plotting import style
 
 TALLEST = 1.6  # phi/phi_cr shown at most: beyond, the structure is falling
 FELT = 0.02  # of the strongest impact: weaker ones, of a chatter to rest, are not marked
+LONGEST = 95  # characters of a heading
+SHORTEST = 0.1  # s of the time axis
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
 
 
@@ -40,14 +43,15 @@ def draw_history(histories: Mapping[ModelName, History], motion: GroundMotion | 
         _draw_motion(above, motion)
     else:
         above = below = figure.subplots()
-    above.set_title(title, loc="left", fontsize=10, color=style.INK)
+    heading = shorten(title, LONGEST, placeholder=" ...")
+    above.set_title(heading, loc="left", fontsize=10, color=style.INK, parse_math=False)  # a $ in a name is a $
     for lane, (name, run) in enumerate(histories.items()):
         _draw_run(below, name, run, (len(histories) - lane) * LANE)
     for level in (-1.0, 1.0):
         below.axhline(level, color=style.FAINT, linewidth=0.8, linestyle=":")
     below.axhline(0.0, color=style.FAINT, linewidth=0.6)
-    ends = [run.time[-1] for run in histories.values()]
-    below.set_xlim(0.0, max(ends))
+    ends = [1.1 * run.end_time if run.overturned else run.time[-1] for run in histories.values()]
+    below.set_xlim(0.0, max(*ends, SHORTEST))
     reach = max(float(np.nanmax(np.abs(run.ratio))) for run in histories.values())
     tall = min(max(1.1 * reach, 1e-3), TALLEST)
     below.set_ylim(-1.2 * tall, tall)  # room for the impacts below
@@ -72,6 +76,8 @@ def _draw_motion(axes: Axes, motion: GroundMotion) -> None:
         ha="right",
         va="top",
         fontsize=8,
+        parse_math=False,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
     )
     style.tidy(axes)
 
@@ -80,6 +86,9 @@ def _draw_run(axes: Axes, name: str, run: History, height: float) -> None:
     look = style.LINES[name]
     fate = ", overturns" if run.overturned else ""
     axes.plot(run.time, run.ratio, label=style.LABELS[name] + fate, **look)  # type: ignore[arg-type]
+    if run.overturned:
+        last = np.flatnonzero(np.isfinite(run.ratio) & (np.abs(run.ratio) <= TALLEST))[-1]
+        axes.plot(run.time[last], run.ratio[last], marker="x", markersize=6, color=look["color"])
     if len(run.impacts):
         felt = run.impacts[run.impacts[:, 2] >= FELT * run.impacts[:, 2].max(), 0]
         axes.plot(

@@ -17,6 +17,7 @@ from rocking_cli.excitation.records.units import UNITS, resolve_unit
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _OTHER_TIME = re.compile(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
+_TIME_LABEL = re.compile(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
 _HEAD = 100_000  # characters looked at to recognise a format: a large file is not searched to its end
 _HUGE = 1e30  # no time or acceleration in any unit; far below where sums and conversions overflow
 _DT_TOLERANCE = 1e-3  # a given interval may be the rounded form of the file's, or the other way round
@@ -164,6 +165,10 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
         cells = _clean(line).split(delimiter)
         if len(cells) == 2 and _value(cells[1].strip()) is not None:
             raise InputError(_not_a_number(file, number, line, cells[0].strip(), known=False))
+        if len(cells) == 2 and _TIME_LABEL.match(cells[1].strip()) and not _TIME_LABEL.match(cells[0].strip()):
+            raise InputError(
+                Problem("the time is in the second column", file, number, excerpt=line, hint="put the time first")
+            )
     found = comments + header
     if found and columns == 2 and (match := _OTHER_TIME.search(found[-1][1])):
         message = f"the time column is in '{match[1]}'"
