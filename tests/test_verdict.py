@@ -26,7 +26,7 @@ def fell(direction):
     ("histories", "words", "not_said"),
     [
         ({"nonlinear": peak(0.0), "linear2": peak(0.0)}, "does not uplift", "Far"),
-        ({"nonlinear": peak(0.0), "linear1": peak(0.3)}, "uplift. Far from the nonlinear model: linear1 (0.3)", "rocks"),
+        ({"nonlinear": peak(0.0), "linear1": peak(0.3)}, "uplift. Far from the nonlinear model: linear1", "rocks"),
         ({"nonlinear": peak(0.4), "linear1": peak(0.45)}, "rocks to 0.4 of", "Far"),
         ({"nonlinear": peak(0.4), "linear1": peak(0.6)}, "Far from the nonlinear model: linear1 (0.6)", "close"),
         ({"linear2": peak(0.9)}, "rocks to 0.9 of its critical rotation and does not overturn. That is close", "Far"),
