@@ -1,0 +1,533 @@
+"""Pulses: Eqs. 41-42 against the linear equation solved with symbols, the exact answer against one of 30 digits.
+
+The reference below knows only x'' = x - 1 +- a sin(omega tau + asin(1/a)), x = phi/phi_cr, and the impact. It steps
+over nothing: x = 1 - k sin + P e^s + Q e^-s, and (x'' - x') e^s, x' e^-s and x are each monotone between two zeros of
+the one before, the first of them between two zeros of cos.
+"""
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from dataclasses import dataclass, field, fields
+from functools import cache
+from itertools import chain, product
+from math import asin, exp, inf, isfinite, nan, pi, sqrt
+
+import mpmath
+import numpy as np
+import pytest
+import sympy
+from click.testing import CliRunner
+from pytest import approx
+
+from mechanisms.block import Block
+from rocking_cli.cli.main import main
+from rocking_cli.core import equivalent_block
+from rocking_cli.dynamics.history import respond
+from rocking_cli.dynamics.pulse_response import closed_form, exact_pulse
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import GroundMotion
+
+MP = mpmath.mp.clone()  # a precision of its own, whatever other tests set
+MP.dps = 30
+NEAR = 1e-6  # of a boundary, where rounding may decide
+STILL = 1e-5  # rate after an impact at which the reference rests, if the bouncing dies out well before the next lift
+EXACT_KEYS = {
+    "max_ratio",
+    "first_excursion",
+    "first_rebound",
+    "overturns",
+    "impacts_before_overturning",
+    "first_impact",
+    "impact_during_pulse",
+}
+
+
+# The reference
+
+
+@dataclass
+class Reference:
+    """What happens, and how far it is from happening otherwise."""
+
+    peaks: list = field(default_factory=list)  # of the excursions that end with an impact, and the free last one
+    impacts: list = field(default_factory=list)  # tau from uplift
+    overturns: bool = False
+    fell_to: int = 0  # side
+    end: float = 0.0  # of the pulse, tau from uplift
+    rested: bool = False  # inside the pulse
+    lifted_again: bool = False  # from rest
+    margin: float = inf
+
+    def near(self, distance):
+        self.margin = min(self.margin, abs(float(distance)))
+
+    def during_pulse(self):
+        return [t for t in self.impacts if t < self.end]
+
+
+def zero(f, sign, low, high, scale=None):
+    """Where f, of this sign after low, changes it before high (Illinois); after 0 an octave comes first."""
+    while low == 0 or (scale and 2 * low < high):
+        middle = min(scale, high / 2) if low == 0 else 2 * low
+        if sign * f(middle) > 0:
+            low = middle
+        else:
+            high = middle
+    f_low, f_high = f(low), f(high)
+    tolerance, last = high * MP.mpf("1e-22"), 0
+    while high - low > tolerance:
+        middle = high - f_high * (high - low) / (f_high - f_low)
+        value = f(middle)
+        if abs(value) < MP.eps:
+            return middle
+        if sign * value < 0:
+            high, f_high = middle, value
+            f_low, last = (f_low / 2, 1) if last == 1 else (f_low, 1)
+        else:
+            low, f_low = middle, value
+            f_high, last = (f_high / 2, -1) if last == -1 else (f_high, -1)
+    return high
+
+
+def zeros(f, sign, scale, cuts):
+    """The zeros of f in order, and the last cut: at most one between two cuts; `sign` is f's just after 0."""
+    low = MP.zero
+    for high in cuts:
+        if sign * f(high) < 0:
+            yield zero(f, sign, low, high, None if low else scale)
+            sign = -sign
+        low = high
+    yield low
+
+
+@cache
+def reference(a, omega, eta):
+    a, w, eta = MP.mpf(a), MP.mpf(omega), MP.mpf(eta)
+    phase = MP.asin(1 / a)
+    end = (2 * MP.pi - phase) / w
+    motion = Reference(end=float(end))
+    side, tau, v0, at_threshold = 1, MP.zero, MP.zero, True
+    while True:
+        angle0, k = w * tau + phase, side * a / (1 + w * w)
+        P = (k * MP.sin(angle0) - 1 + v0 + k * w * MP.cos(angle0)) / 2
+        Q = (k * MP.sin(angle0) - 1 - v0 - k * w * MP.cos(angle0)) / 2
+
+        def x(s, angle0=angle0, k=k, P=P, Q=Q):
+            e = MP.exp(s)
+            return 1 - k * MP.sin(angle0 + w * s) + P * e + Q / e
+
+        def v(s, angle0=angle0, k=k, P=P, Q=Q):
+            e = MP.exp(s)
+            return -k * w * MP.cos(angle0 + w * s) + P * e - Q / e
+
+        def g(s, angle0=angle0, k=k, Q=Q):
+            return k * w * (w * MP.sin(angle0 + w * s) + MP.cos(angle0 + w * s)) + 2 * Q * MP.exp(-s)
+
+        whole = end - tau
+        quarters = [((n + MP.mpf("0.5")) * MP.pi - angle0) / w for n in range(3)]
+        cuts = [s for s in quarters if 0 < s < whole] + [whole]
+        upward = 1 if at_threshold else MP.sign(g(MP.zero))
+        low, peak, hit, rising = MP.zero, MP.zero, None, True
+        for turn in zeros(v, 1, v0 or 1 / w, zeros(g, upward, 1 / w, cuts)):
+            height = x(turn)
+            if turn < whole and not rising:
+                motion.near(height)  # the lowest point: how far from a graze
+            if height < 0:
+                hit = zero(x, 1, low, turn)
+                break
+            peak, low, rising = max(peak, height), turn, not rising
+        if hit is None:  # free motion x = 1 + P e^s + Q e^-s
+            height, rate = x(whole), v(whole)
+            P, Q = (height - 1 + rate) / 2, (height - 1 - rate) / 2
+            motion.near(P)
+            if P >= 0:
+                motion.overturns, motion.fell_to = True, side
+                return motion
+            if rate > 0:
+                peak = max(peak, 1 - 2 * MP.sqrt(P * Q))
+            u = (1 + MP.sqrt(1 - 4 * P * Q)) / (-2 * P)
+            tau, v0 = end + MP.log(u), eta * (Q / u - P * u)
+            if not motion.impacts:
+                motion.near(tau - end)
+            motion.impacts.append(float(tau))
+            motion.peaks.append(float(peak))
+            motion.near(v0 - 1)
+            motion.overturns, motion.fell_to = v0 >= 1, -side
+            if not motion.overturns:
+                motion.peaks.append(float(1 - MP.sqrt(1 - v0 * v0)))
+            return motion
+        tau, v0, side, at_threshold = tau + hit, -eta * v(hit), -side, False
+        motion.near(end - tau)
+        motion.impacts.append(float(tau))
+        motion.peaks.append(float(peak))
+        angle = w * tau + phase
+        lift = MP.pi + phase  # where the ground next lifts it, to the other side
+        quiet = (lift - angle if angle < lift else 2 * MP.pi - angle) / w
+        bouncing = 4 * v0 / (1 - a * abs(MP.sin(angle))) / (1 - eta) if eta < 1 else inf  # twice as long as it will
+        if v0 < STILL and len(motion.impacts) > 1 and 0 < 20 * bouncing < quiet:
+            motion.rested = True
+            if angle > lift:
+                return motion
+            motion.lifted_again = True
+            tau, v0, side, at_threshold = MP.pi / w, MP.zero, -1, True
+
+
+def kinds(motion):
+    """What a motion is an example of."""
+    during = motion.during_pulse()
+    names = {
+        "no impact during the pulse": not during,
+        "one impact during the pulse": len(during) == 1,
+        "several impacts during the pulse": len(during) > 1 and not motion.rested,
+        "rest inside the pulse and lift again": motion.lifted_again,
+        "rocks": not motion.overturns,
+        "overturns without impact": motion.overturns and not motion.impacts,
+        "overturns after one impact after the pulse": motion.overturns and len(motion.impacts) == 1 and not during,
+        "overturns after one impact in the pulse": motion.overturns and len(motion.impacts) == 1 and bool(during),
+        "overturns after more impacts": motion.overturns and len(motion.impacts) > 1 and not motion.rested,
+        "overturns after rest": motion.overturns and motion.rested,
+        "the second half throws it over": motion.overturns and motion.fell_to < 0 and bool(during),
+        "the first excursion is the largest": not motion.overturns and motion.peaks[0] == max(motion.peaks),
+        "a rebound is the largest": not motion.overturns and motion.peaks[0] < max(motion.peaks),
+    }
+    return {name for name, holds in names.items() if holds}
+
+
+def draw(rng, count, over, omega, eta, power=0):
+    """Random (a, omega, eta), a = 1 + over omega^power, log-uniform over the ranges."""
+    for _ in range(count):
+        c, w, e = (float(exp(rng.uniform(np.log(low), np.log(high)))) for low, high in (over, omega, eta))
+        yield 1 + c * w**power, w, e
+
+
+def grid():
+    """Everything; strong pulses; slow ones with many impacts, with rest; and without loss at impacts."""
+    rng = np.random.default_rng(20140)
+    yield from draw(rng, 35, (0.01, 7), (0.2, 12), (0.3, 1))
+    yield from draw(rng, 25, (1, 30), (1, 30), (0.5, 1))
+    yield from draw(rng, 20, (0.45, 0.9), (1.7, 7), (0.85, 1), power=1)
+    yield from draw(rng, 30, (0.15, 0.45), (0.3, 1), (0.72, 0.95), power=2)
+    yield from draw(rng, 25, (0.05, 0.4), (0.1, 1), (0.1, 0.45), power=2)
+    yield from draw(rng, 7, (0.1, 7), (0.5, 12), (1, 1))
+
+
+REST_THEN_OVER = [(1.011186, 0.15, 0.05), (1.0111868, 0.15, 0.1), (1.0111865, 0.15, 0.08)]
+IMPACTS_THEN_OVER = [(1.679, 2.048, 0.642), (1.529, 1.241, 0.828), (1.088, 0.589, 0.859), (1.069, 0.594, 0.926)]
+LIFTED_WITH_A_FAINT_RATE = [(1.33, 1.9, 1e-4), (1.4, 1.9, 3e-5)]
+POINTS = [*grid(), *REST_THEN_OVER, *IMPACTS_THEN_OVER, *LIFTED_WITH_A_FAINT_RATE]
+
+
+def assert_matches(point):
+    motion, got = reference(*point), exact_pulse(*point)
+    assert got.overturns == motion.overturns
+    assert got.max_ratio == (None if motion.overturns else approx(max(motion.peaks), abs=1e-9))
+    assert got.first_excursion == (approx(motion.peaks[0], abs=1e-9) if motion.peaks else None)
+    assert got.first_rebound == (approx(motion.peaks[1], abs=1e-9) if len(motion.peaks) > 1 else None)
+    assert got.first_impact == (approx(motion.impacts[0], abs=1e-9) if motion.impacts else None)
+    assert got.impact_during_pulse == bool(motion.during_pulse())
+    assert got.pulse_end == approx(motion.end, rel=1e-13)
+    assert got.uplift == approx(asin(1 / point[0]) / point[1], rel=1e-12)
+    if not motion.overturns:
+        assert got.impacts_before_overturning is None
+    elif motion.rested:  # after impacts without number
+        assert got.impacts_before_overturning > 1
+    else:
+        assert got.impacts_before_overturning == len(motion.impacts)
+
+
+# Eqs. 41-42 and their conditions
+
+
+@cache
+def solved():
+    """x and x' at the end of the pulse, of a block that has not hit the ground, as functions of a and omega."""
+    a, w, t = sympy.symbols("a omega tau", positive=True)
+    grow, decay, in_phase, out_of_phase = sympy.symbols("A B C D")
+    angle = w * t + sympy.asin(1 / a)
+    x = 1 + grow * sympy.exp(t) + decay * sympy.exp(-t) + in_phase * sympy.sin(angle) + out_of_phase * sympy.cos(angle)
+    wrong = sympy.expand(sympy.diff(x, t, 2) - (x - 1 + a * sympy.sin(angle)))
+    at_rest = [x.subs(t, 0), sympy.diff(x, t).subs(t, 0)]
+    found = sympy.solve(
+        [wrong.coeff(sympy.sin(angle)), wrong.coeff(sympy.cos(angle)), *at_rest], [grow, decay, in_phase, out_of_phase]
+    )
+    x = x.subs(found)
+    assert sympy.simplify(sympy.diff(x, t, 2) - (x - 1 + a * sympy.sin(angle))) == 0
+    ended = (2 * sympy.pi - sympy.asin(1 / a)) / w
+    return sympy.lambdify((a, w), [x.subs(t, ended), sympy.diff(x, t).subs(t, ended)], modules="mpmath")
+
+
+@dataclass
+class Free:
+    """The motion after the pulse of a block that has not hit the ground, and what follows from it."""
+
+    D0: float  # (1 - x)^2 - x'^2, which stays; at the impact x = 0, so that x'^2 = 1 - D0
+    left: float  # 1 - the square of the rate after the impact
+    in_the_air: bool
+    comes_back: bool  # the coefficient of exp(tau) is negative
+    overturns_after_it: bool
+    margin: float  # how far from another verdict
+
+
+def free(a, omega, eta):
+    with mpmath.workdps(max(50, 20 + int(8 / omega))):  # exp(2 pi/omega) cancels
+        x, v = solved()(mpmath.mpf(a), mpmath.mpf(omega))
+        D0 = (1 - x) ** 2 - v**2
+        left = 1 - mpmath.mpf(eta) ** 2 * (1 - D0)
+        margin = min(abs(x), abs(x + v - 1), abs(left))
+        return Free(float(D0), float(left), x > 0, x + v < 1, left <= 0, float(margin))
+
+
+CLOSED = [*draw(np.random.default_rng(7), 300, (1e-3, 20), (0.25, 20), (0.1, 1))]
+
+
+def assert_conditions(closed, end):
+    assert closed.conditions == {
+        "uplift": True,
+        "first_impact_after_pulse": end.in_the_air,
+        "no_overturning_without_impact": end.comes_back,
+    }
+    assert closed.valid == (end.in_the_air and end.comes_back)
+
+
+@pytest.mark.parametrize("point", CLOSED[:60])
+def test_D0_is_the_energy_of_the_free_motion(point):
+    a, omega, eta = point
+    got, wanted = closed_form(*point), free(*point)
+    end = (2 * pi - asin(1 / a)) / omega
+    # what rounding may do: every term, and the error of a large exponent
+    terms = (omega / (omega**2 + 1)) ** 2 * (omega**2 + 2 * a**2 + 1 + 2 * a * (a + omega) * (1 + end) * exp(end))
+    assert approx(wanted.D0, rel=1e-12, abs=1e-15 * terms) == got.D0
+    assert got.overturns == wanted.overturns_after_it
+    if wanted.overturns_after_it:
+        assert got.max_ratio is None
+    else:
+        root = sqrt(wanted.left)
+        assert got.max_ratio == approx(1 - root, rel=1e-12, abs=1e-15 * (1 + eta**2 * terms / root))
+
+
+def test_conditions_are_in_the_air_and_coming_back_at_the_end_of_the_pulse():
+    ends = [(closed_form(*point), free(*point)) for point in CLOSED]
+    clear = [(closed, end) for closed, end in ends if end.margin > NEAR]
+    for closed, end in clear:
+        assert_conditions(closed, end)
+    held = Counter((end.in_the_air, end.comes_back) for _, end in clear)
+    assert len(clear) >= len(CLOSED) - 3
+    assert min(held[True, True], held[True, False], held[False, True]) > 20, held
+
+
+def test_conditions_and_eq_41_are_those_of_the_exact_motion():
+    rng, seen, skipped = np.random.default_rng(11), Counter(), 0
+    many = draw(rng, 250, (0.05, 20), (0.7, 20), (0.3, 1))
+    strong = draw(rng, 150, (0.45, 0.9), (1.7, 7), (0.85, 1), power=1)
+    for point in chain(many, strong):
+        if free(*point).margin < NEAR:
+            skipped += 1
+            continue
+        closed, exact = closed_form(*point), exact_pulse(*point)
+        assert closed.conditions["first_impact_after_pulse"] == (not exact.impact_during_pulse), point
+        without = exact.overturns and exact.impacts_before_overturning == 0
+        assert closed.conditions["no_overturning_without_impact"] == (not without), point
+        if closed.valid:
+            assert closed.overturns == exact.overturns, point
+            if closed.overturns:
+                assert exact.impacts_before_overturning == 1, point
+                assert exact.first_rebound is None
+            else:
+                assert exact.first_rebound == approx(closed.max_ratio, abs=1e-10), point
+        seen["valid, overturns" if closed.overturns else "valid, rocks"] += closed.valid
+        seen["impact in the pulse"] += exact.impact_during_pulse
+        seen["overturns without impact"] += without
+    assert skipped <= 3
+    assert min(seen.values()) > 10, seen
+    assert len(seen) == 4
+
+
+def test_the_first_excursion_may_be_larger_than_the_closed_form():
+    closed, exact = closed_form(6, 9, 0.8), exact_pulse(6, 9, 0.8)
+    assert closed.valid
+    assert exact.first_rebound == approx(closed.max_ratio, abs=1e-12)
+    assert exact.max_ratio == exact.first_excursion > closed.max_ratio + 0.01
+
+
+def test_a_pulse_during_which_the_block_hits_the_ground_is_outside_the_closed_form():
+    closed, exact = closed_form(2, 3, 0.9), exact_pulse(2, 3, 0.9)
+    assert closed.conditions == {
+        "uplift": True,
+        "first_impact_after_pulse": False,
+        "no_overturning_without_impact": True,
+    }
+    assert not closed.valid
+    assert exact.impact_during_pulse
+    assert exact.first_impact < exact.pulse_end
+
+
+@pytest.mark.parametrize("point", [(1.00001, 0.006, 0.9), (1.0000001, 1e-3, 0.9), (2, 1e-3, 0.5), (1e3, 0.009, 0.9)])
+def test_closed_form_of_a_very_slow_pulse_keeps_to_its_formulas(point):
+    got, end = closed_form(*point), free(*point)
+    assert_conditions(got, end)
+    assert not got.valid
+    assert got.D0 is None  # beyond 1e308
+    assert got.overturns == end.overturns_after_it
+
+
+# The exact answer
+
+
+@pytest.mark.parametrize("point", POINTS)
+def test_exact_answer_agrees_with_30_digits(point):
+    if reference(*point).margin > NEAR:
+        assert_matches(point)
+
+
+def test_the_grid_holds_every_kind_of_motion_and_hardly_a_point_on_a_boundary():
+    compared = [reference(*point) for point in POINTS if reference(*point).margin > NEAR]
+    count = Counter(name for motion in compared for name in kinds(motion))
+    assert len(compared) >= len(POINTS) - 3
+    assert len(count) == 13
+    assert min(count.values()) >= 3, count
+
+
+@pytest.mark.parametrize(
+    "point",
+    [
+        (1.0931, 0.4526, 0.001),  # decides about overturning
+        (1.2999, 1.9, 0.003),
+        (1.319, 3.27, 0.0036),
+        (1.1588, 0.655, 0.0011),
+        (1.229, 1.0, 0.002),
+        (1.0541258547174834, 1.6044540341208628, 0.8781819258892375),
+        (1.1145369772101248, 1.1617213402089153, 0.6065501695307708),
+        (1.1537171372718127, 2.37711819342948, 0.4455922506664635),
+    ],
+)
+def test_an_impact_soon_after_another_and_just_before_the_next_lift_is_not_missed(point):
+    assert reference(*point).margin > NEAR
+    assert_matches(point)
+
+
+@pytest.mark.parametrize("point", [(1.003, 1.0, 0.5), (1.0005, 2.0, 0.9), (1.002, 5.0, 0.9), (1.003, 1.5, 0.7)])
+def test_the_smallest_first_excursion_is_seen(point):
+    motion, got = reference(*point), exact_pulse(*point)
+    assert got.first_excursion == approx(motion.peaks[0], rel=1e-6)
+    assert got.first_impact == approx(motion.impacts[0], rel=1e-6)
+
+
+@pytest.mark.parametrize(("a", "omega"), [(1.0, 3.0), (0.999999, 0.01), (0.3, 1e-3), (1e-3, 1e3)])
+def test_a_pulse_too_weak_to_lift_moves_nothing(a, omega):
+    closed, exact = closed_form(a, omega, 0.9), exact_pulse(a, omega, 0.9)
+    assert closed.conditions["uplift"] is False
+    assert not closed.valid
+    assert not closed.overturns
+    assert closed.D0 is None
+    assert closed.max_ratio is None
+    assert exact.max_ratio == 0
+    assert not exact.overturns
+    assert not exact.impact_during_pulse
+    assert {exact.first_excursion, exact.first_rebound, exact.impacts_before_overturning, exact.first_impact} == {None}
+
+
+@pytest.mark.parametrize(
+    "point",
+    [*product((1.0000001, 1e3), (1e-3, 0.009, 1e3), (1e-6, 0.5, 0.9)), (1.0000001, 1e3, 1.0), (1e3, 1e3, 1.0)],
+)
+def test_extreme_pulses_have_finite_answers_or_none(point):
+    for answer in (closed_form(*point), exact_pulse(*point)):
+        for each in fields(answer):
+            value = getattr(answer, each.name)
+            assert value is None or isinstance(value, dict) or isfinite(value), (each.name, value)
+
+
+def test_a_block_that_bounces_without_loss_is_answered_or_refused_at_once():
+    """It overturns after 313 000 impacts; giving up on the way is no reason to call it safe."""
+    script = """
+from rocking_cli.dynamics.pulse_response import exact_pulse
+from rocking_cli.errors import RockingError
+try:
+    print(exact_pulse(1.0000036, 0.003, 1.0).overturns)
+except RockingError:
+    print("refused")
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=5, check=True)
+    assert done.stdout.strip() in {"True", "refused"}
+
+
+@pytest.mark.parametrize("function", [closed_form, exact_pulse])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        *product(("a", "omega"), (0.0, -2.0, nan, inf)),
+        *product(("eta",), (0.0, -0.5, 1.1, nan, inf)),
+    ],
+)
+def test_bad_input_is_refused_by_name(function, name, value):
+    with pytest.raises(InputError, match=rf"^{name} must be "):
+        function(**({"a": 2.0, "omega": 3.0, "eta": 0.9} | {name: value}))
+
+
+# The engine of the time histories, and the command
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("a", "omega"), [(2, 3), (4, 6), (1.3, 1.2), (1.8, 1.4), (3, 2.5), (3, 1.5), (5, 4)])
+def test_the_history_of_a_sampled_pulse_agrees(a, omega, side):
+    block = Block(width=0.7, height=2.8, restitution=0.9)
+    equivalence = equivalent_block(block).positive
+    steps = 8192  # in the pulse: straight lines are a (2 pi/steps)^2/8 off
+    dt = 2 * pi / (omega * equivalence.p) / steps
+    amplitude = a * equivalence.lambda_lin * block.gravity
+    ground = -side * amplitude * np.sin(2 * pi / steps * np.arange(steps + 1))  # to the left lifts to the positive side
+    history = respond(block, GroundMotion("sine", dt, ground), models=("linear1",))["linear1"]
+    exact = exact_pulse(a, omega, 0.9)
+    assert history.uplift_time * equivalence.p == approx(exact.uplift, abs=1e-6)
+    assert history.overturned == exact.overturns
+    if exact.overturns:
+        assert history.impact_count == exact.impacts_before_overturning
+    else:
+        assert history.peak_ratio == approx(exact.max_ratio, abs=1e-6)
+        first = history.peak_positive if side > 0 else history.peak_negative
+        assert first / equivalence.phi_cr >= exact.first_excursion - 1e-6
+    if exact.first_impact is None:
+        assert len(history.impacts) == 0
+    else:
+        time, ended, _ = history.impacts[0]
+        assert ended == side
+        assert time * equivalence.p == approx(exact.uplift + exact.first_impact, abs=2e-6)
+
+
+def run(*arguments):
+    result = CliRunner().invoke(main, ["pulse", *map(str, arguments), "--json"])
+    assert result.exit_code == 0, result.output
+    assert result.stdout.count("\n") == 1
+    assert result.stdout.endswith("\n")
+
+    def not_json(word):
+        raise AssertionError(f"{word} is not JSON")
+
+    return json.loads(result.stdout, parse_constant=not_json)
+
+
+def test_the_command_prints_both_answers_as_one_line_of_json():
+    got = run("--a", 4, "--omega", 6)
+    assert set(got) == {"a", "omega", "eta", "closed_form", "exact"}
+    assert (got["a"], got["omega"], got["eta"]) == (4, 6, 0.9)
+    assert set(got["closed_form"]) >= {"D0", "max_ratio", "overturns", "valid", "conditions"}
+    assert set(got["exact"]) >= EXACT_KEYS
+    closed, exact = closed_form(4, 6, 0.9), exact_pulse(4, 6, 0.9)
+    for name in ("D0", "max_ratio", "overturns", "valid", "conditions"):
+        assert got["closed_form"][name] == getattr(closed, name)
+    for name in EXACT_KEYS:
+        assert got["exact"][name] == getattr(exact, name)
+
+
+def test_the_command_gives_its_eta_on():
+    assert run("--a", 4, "--omega", 6, "--eta", 0.5)["exact"]["first_rebound"] == exact_pulse(4, 6, 0.5).first_rebound
+
+
+@pytest.mark.parametrize(("a", "omega"), [(0.5, 3), (30, 2), (1000, 0.009)])
+def test_what_has_no_value_is_null_in_json(a, omega):
+    got = run("--a", a, "--omega", omega)
+    assert got["closed_form"]["valid"] is False
+    assert got["exact"]["first_impact"] is None
+    assert got["exact"]["first_rebound"] is None
