@@ -58,7 +58,7 @@ class Arch(Mechanism):
                 "thickness", f"the ring has no intrados: thickness must be less than {2 * self.radius:g} m"
             )
         try:
-            self._hinge_angles  # noqa: B018 - found once, here, so that a structure that exists can rock
+            self.hinge_angles  # noqa: B018 - found once, here, so that a structure that exists can rock
         except ArchCannotStand:
             least = least_thickness(self._beta, self.voussoirs) * self.radius
             raise geometry_error(
@@ -75,12 +75,9 @@ class Arch(Mechanism):
         return radians(self.inclusion_angle_deg)
 
     @cached_property
-    def _hinge_angles(self) -> tuple[float, float, float, float]:
-        return collapse_hinges(Ring(self.thickness / self.radius, self._beta), self.voussoirs)
-
-    def hinge_angles(self, direction: Direction) -> tuple[float, float, float, float]:
+    def hinge_angles(self) -> tuple[float, float, float, float]:
         """Angles of A, B, C and D from the springing on the left (positive) or right (negative) [rad]."""
-        return self._hinge_angles
+        return collapse_hinges(Ring(self.thickness / self.radius, self._beta), self.voussoirs)
 
     def hinges(self, direction: Direction) -> tuple[complex, complex, complex, complex]:
         """Rest positions of A, B, C and D [m]; the centre of the ring is the origin."""
@@ -88,15 +85,15 @@ class Arch(Mechanism):
         radii = (self.radius - half, self.radius + half) * 2  # intrados, extrados, intrados, extrados
         a, b, c, d = (
             complex(radius * np.exp(1j * (pi / 2 + direction * (self._beta / 2 - angle))))
-            for radius, angle in zip(radii, self._hinge_angles, strict=True)
+            for radius, angle in zip(radii, self.hinge_angles, strict=True)
         )
         return a, b, c, d
 
     @cached_property
     def _cuts(self) -> tuple[float, ...]:
         # Bodies must be rigid in both directions: the ring is cut at the hinges of both.
-        mirrored = [self._beta - angle for angle in self._hinge_angles]
-        cuts = sorted({*self._hinge_angles, *mirrored})
+        mirrored = [self._beta - angle for angle in self.hinge_angles]
+        cuts = sorted({*self.hinge_angles, *mirrored})
         # A cut that is its own mirror image (up to rounding) is one cut, not a sliver between two.
         return tuple(cut for k, cut in enumerate(cuts) if k == 0 or cut - cuts[k - 1] > 1e-12)
 
@@ -115,7 +112,7 @@ class Arch(Mechanism):
         links = (rotation(phi, hinges[0], 0.0), *four_bar(phi, direction, *hinges), rotation(phi, hinges[3], 0.0))
         middles = (np.array(self._cuts[:-1]) + np.array(self._cuts[1:])) / 2
         along = middles if direction > 0 else self._beta - middles
-        return tuple(links[k] for k in np.searchsorted(self._hinge_angles, along))
+        return tuple(links[k] for k in np.searchsorted(self.hinge_angles, along))
 
     def limit(self, direction: Direction) -> float:
         return four_bar_limit(direction, *self.hinges(direction))

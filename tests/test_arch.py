@@ -125,7 +125,7 @@ def test_no_set_of_four_hinges_has_a_smaller_lambda(beta, ratio, n):
     assert ring.uplift(POSITIVE) == approx(least, rel=1e-9)
     assert [face for _, face in hinges] == list("IEIE")
     for direction in BOTH:
-        assert ring.hinge_angles(direction) == approx([k * np.radians(beta) / n for k, _ in hinges], abs=1e-12)
+        assert ring.hinge_angles == approx([k * np.radians(beta) / n for k, _ in hinges], abs=1e-12)
 
 
 @pytest.mark.parametrize(("beta", "ratio", "n"), RINGS)
@@ -134,7 +134,7 @@ def test_hinges_are_where_the_thrust_touches(beta, ratio, n):
     assert [face for _, face in hinges] == list("IEIE")
     ring = arch(beta, ratio, n)
     angles = [k * np.radians(beta) / n for k, _ in hinges]
-    assert ring.hinge_angles(POSITIVE) == approx(angles, abs=1e-12)
+    assert ring.hinge_angles == approx(angles, abs=1e-12)
     for direction in BOTH:
         # Measured from the left springing (positive) or the right one; the negative mechanism is the mirror image.
         mirror = 1 if direction > 0 else -1
@@ -218,7 +218,7 @@ def test_equivalent_block_is_equation_39(beta, ratio, n):
     wide = np.radians(beta)
     # Of voussoirs the hinges are those of statics, so that nothing here is the project's.
     joints = Voussoirs(wide, ratio, n).thrust()[1] if n else []
-    scan = Scan(wide, ratio, [k * wide / n for k, _ in joints] or ring.hinge_angles(POSITIVE), radius=3.0)
+    scan = Scan(wide, ratio, [k * wide / n for k, _ in joints] or ring.hinge_angles, radius=3.0)
     assert min(abs(scan.psi[0]), abs(scan.psi[2])) > 1e-3  # what Eq. 39 has and Eq. 38 has not
     phi_cr = scan.critical(0.95 * ring.limit(POSITIVE))
     inertia, _, G, B = scan.eq_39(phi_cr)

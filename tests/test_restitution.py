@@ -240,7 +240,7 @@ def arch_eta(angles, beta, ratio, s):
 @pytest.mark.parametrize("direction", BOTH)
 def test_arch_is_that_of_impulses(beta, ratio, n, direction):
     arch = Arch(radius=10.0, thickness=10 * ratio, inclusion_angle_deg=beta, voussoirs=n)
-    expected = arch_eta(arch.hinge_angles(direction), np.radians(beta), ratio, int(direction))
+    expected = arch_eta(arch.hinge_angles, np.radians(beta), ratio, int(direction))
     assert arch.restitution_from_kinematics(direction) == approx(expected, rel=1e-9, abs=1e-11)
 
 

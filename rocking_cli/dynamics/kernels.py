@@ -7,7 +7,7 @@ direction, and w = sqrt(I) phi., the root of twice the kinetic energy. In w Lagr
 
 so three tables describe a mechanism. The linear model has I = 1, hence w = phi., and is advanced in closed form.
 
-All of it stands in one file because the compiled code is kept by file: a helper elsewhere could go stale.
+All of it stands in one file because the compiled code is kept by file: a function elsewhere could go stale.
 """
 
 from __future__ import annotations
