@@ -124,8 +124,7 @@ def test_no_set_of_four_hinges_has_a_smaller_lambda(beta, ratio, n):
     least, hinges = brute_force(np.radians(beta), ratio, n)
     assert ring.uplift(POSITIVE) == approx(least, rel=1e-9)
     assert [face for _, face in hinges] == list("IEIE")
-    for direction in BOTH:
-        assert ring.hinge_angles == approx([k * np.radians(beta) / n for k, _ in hinges], abs=1e-12)
+    assert ring.hinge_angles == approx([k * np.radians(beta) / n for k, _ in hinges], abs=1e-12)
 
 
 @pytest.mark.parametrize(("beta", "ratio", "n"), RINGS)
