@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
-from math import pi, radians
+from math import ceil, floor, log10, pi, radians
 from typing import ClassVar, Self
 
 import numpy as np
@@ -64,7 +64,7 @@ class Arch(Mechanism):
             raise geometry_error(
                 "thickness",
                 f"too thin to stand under its own weight (t/r = {self.thickness / self.radius:.4g}): "
-                f"the arch needs at least {np.ceil(least * 1e4) / 1e4:.6g} m (t/r = {least / self.radius:.4f})",
+                f"the arch needs at least {_round_up(least, 6):.6g} m (t/r = {_round_up(least / self.radius, 4):.4g})",
             ) from None
         except MechanismError as error:
             raise geometry_error("thickness", str(error)) from None
@@ -116,3 +116,9 @@ class Arch(Mechanism):
 
     def limit(self, direction: Direction) -> float:
         return four_bar_limit(direction, *self.hinges(direction))
+
+
+def _round_up(value: float, digits: int) -> float:
+    """A positive number rounded up to some digits, so that what an error recommends is accepted."""
+    unit = 10.0 ** (floor(log10(value)) - digits + 1)
+    return ceil(value / unit) * unit

@@ -67,10 +67,8 @@ class RigidBody(SingleBody):
     def _check_polygon(self, z: np.ndarray) -> None:
         size = np.ptp(z.real) + np.ptp(z.imag)
         edges = list(zip(z, np.roll(z, -1), strict=True))
-        if any(abs(end - start) <= LEVEL * size for start, end in edges):
-            raise geometry_error(
-                "polygon", "two neighbouring corners are the same point; the last need not repeat the first"
-            )
+        if any(abs(one - other) <= LEVEL * size for one, other in combinations(z, 2)):
+            raise geometry_error("polygon", "two corners are the same point; the last need not repeat the first")
         if abs((z.conj() * np.roll(z, -1)).imag.sum()) / 2 <= LEVEL * size**2 or any(
             _meet(*one, *other) for one, other in combinations(edges, 2)
         ):
@@ -128,7 +126,7 @@ class RigidBody(SingleBody):
 
 
 def _meet(a: complex, b: complex, c: complex, d: complex) -> bool:
-    """Whether segments ab and cd cross or touch, other than in a shared corner."""
+    """Whether two sides ab and cd cross or touch; neighbours share a corner, and only neighbours do."""
     if len({a, b, c, d}) < 4:
         return False
 

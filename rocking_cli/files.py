@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -45,9 +46,12 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
         try:
             with os.fdopen(handle, "wb") as file:
                 write(file)
-            umask = os.umask(0)  # mkstemp makes files private; give this one the usual rights
-            os.umask(umask)
-            os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
+            if path.exists():
+                shutil.copymode(path, name)
+            else:  # mkstemp makes files private; give this one the usual rights
+                umask = os.umask(0)
+                os.umask(umask)
+                os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
             os.replace(name, path)  # noqa: PTH105
         except BaseException:
             Path(name).unlink(missing_ok=True)

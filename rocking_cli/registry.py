@@ -18,6 +18,12 @@ def did_you_mean(word: str, known: list[str]) -> str | None:
     return f"did you mean {close[0]}?" if close else f"known: {', '.join(sorted(known))}" if known else None
 
 
+class UnknownMechanismError(InputError, KeyError):
+    """A name that no installed package gives a mechanism."""
+
+    __str__ = InputError.__str__  # a KeyError would show its message in quotes
+
+
 class Registry(Mapping[str, type[Mechanism]]):
     """Mechanism classes by name. Listing names loads nothing; looking one up loads and checks it.
 
@@ -29,7 +35,7 @@ class Registry(Mapping[str, type[Mechanism]]):
     Raises
     ------
     InputError
-        On looking up an unknown name.
+        On looking up an unknown name (it is a `KeyError` too).
     MechanismError
         On looking up a plugin that cannot be loaded, breaks the contract, or has a name that two packages claim.
     """
@@ -55,7 +61,7 @@ class Registry(Mapping[str, type[Mechanism]]):
         points = self._points.get(name)
         if points is None:
             hint = did_you_mean(name, list(self._points))
-            raise InputError(f"unknown mechanism: {name}" + (f" ({hint})" if hint else ""))
+            raise UnknownMechanismError(f"unknown mechanism: {name}" + (f" ({hint})" if hint else ""))
         if len(points) > 1:
             claims = " and ".join(f"{self.package(point)} ({point.value})" for point in points)
             raise MechanismError(f"mechanism {name} is claimed by two packages, {claims}: uninstall one of them")

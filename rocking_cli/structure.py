@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -35,6 +36,13 @@ for _tag, _first, _pattern in (
 ):
     _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first))
 
+SCALARS: dict[str, Callable[[str], Any]] = {
+    "int": int,
+    "float": lambda text: float(text.lower().replace(".inf", "inf").replace(".nan", "nan")),
+    "bool": lambda text: ["false", "true"].index(text.lower()) == 1,
+    "null": lambda text: None,
+    "str": str,
+}
 Path_ = tuple[str | int, ...]
 
 
@@ -68,19 +76,13 @@ class _Document:
         if isinstance(node, yaml.MappingNode):
             return self._mapping(node, path)
         kind, text = node.tag.rpartition(":")[2], node.value
-        if kind == "int":
-            return int(text)
-        if kind == "float":
-            return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
-        if kind == "bool":
-            return text.lower() == "true"
-        if kind == "null":
-            return None
-        if kind != "str":
-            raise InputError(
-                self.problem(f"unknown tag {node.tag}", node.start_mark, hint="write plain text or numbers")
-            )
-        return text
+        try:
+            return SCALARS[kind](text)
+        except KeyError:
+            message = f"unknown tag {node.tag}"
+        except ValueError:  # !!int abc, or thousands of digits
+            message = f"not a {kind}"
+        raise InputError(self.problem(message, node.start_mark, hint="write plain text or numbers"))
 
     def _mapping(self, node: yaml.MappingNode, path: Path_) -> dict[str, Any]:
         data: dict[str, Any] = {}
@@ -165,6 +167,8 @@ def _read(path: Path, shown: str) -> str:
         raise InputError(Problem("this is a folder, not a structure file", shown)) from None
     except OSError as error:
         raise InputError(Problem(f"cannot be read: {error.strerror or error}", shown)) from None
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # what a redirection writes in older shells of Windows
+        raw = raw.decode("utf-16", errors="replace").encode()
     if b"\0" in raw or len(raw) > LARGEST:
         raise InputError(Problem("this is not a structure file: it is binary or far too large", shown))
     try:

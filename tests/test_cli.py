@@ -293,7 +293,7 @@ class TestRespond:
         file = tmp_path / "slab.yaml"
         file.write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
         text = run("respond", file, "--record", ACCEL, code=2).stderr
-        assert "slab: restitution: the kinematics give" in text and "too stocky" in text
+        assert "restitution: slab: the kinematics give" in text and "too stocky" in text
         file.write_text("mechanism: block\nwidth: 3\nheight: 1\nrestitution: 0.3\n", encoding="utf-8")
         run("respond", file, "--record", ACCEL)
 

@@ -94,7 +94,7 @@ WRONG = {
     ),
     "thin arch": (
         "mechanism: arch\nradius: 10\nthickness: 0.5\ninclusion_angle_deg: 180\n", 3, 12, "thickness",
-        "the arch needs at least 1.0748 m",
+        "the arch needs at least 1.0747",
     ),
     "arch without intrados": (
         "mechanism: arch\nradius: 10\nthickness: 20\ninclusion_angle_deg: 180\n", 3, 12, "thickness", "no intrados",
@@ -196,3 +196,43 @@ def test_no_values_make_more_than_an_input_error(data):
         parse(yaml.safe_dump(data))
     except InputError as error:
         assert error.problems
+
+
+@pytest.mark.parametrize("value", ["!!int abc", "!!float abc", "!!bool maybe", "9" * 5000])
+def test_a_tag_that_does_not_fit_is_an_input_error(value):
+    (problem,) = problems(f"mechanism: block\nwidth: {value}\nheight: 4\n")
+    assert problem.line == 2
+
+
+def test_a_file_of_an_older_windows_shell_is_read(tmp_path):
+    path = tmp_path / "wide.yaml"
+    path.write_bytes(BLOCK.encode("utf-16"))
+    assert load_structure(path).width == 1.0
+
+
+@pytest.mark.parametrize(("radius", "beta"), [(10.0, 180.0), (1000.0, 180.0), (10000.0, 180.0), (3.7, 120.0)])
+def test_the_least_thickness_that_an_error_recommends_is_accepted(radius, beta):
+    text = f"mechanism: arch\nradius: {radius}\ninclusion_angle_deg: {beta}\nthickness: "
+    (problem,) = problems(f"{text}{0.001 * radius}\n")
+    least = problem.message.split("at least ")[1].split(" m")[0]
+    assert parse(f"{text}{least}\n").thickness == float(least)
+
+
+def test_a_corner_visited_twice_is_refused_even_if_the_outline_closes():
+    (problem,) = problems("mechanism: rigid_body\npolygon: [[0,0],[1,0],[.5,4],[.6,5],[.4,5],[.5,4]]\n")
+    assert "same point" in problem.message
+
+
+def test_a_changed_copy_is_a_new_structure():
+    from mechanisms.arch import Arch
+    from rocking_cli.core import Direction
+
+    thin = Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5)
+    assert thin.uplift(Direction.POSITIVE) > 0
+    thick, fresh = (
+        thin.model_copy(update={"thickness": 3.0}),
+        Arch(radius=10.0, thickness=3.0, inclusion_angle_deg=157.5),
+    )
+    assert thick.uplift(Direction.POSITIVE) == fresh.uplift(Direction.POSITIVE)
+    with pytest.raises(ValueError, match="too thin"):
+        thin.model_copy(update={"thickness": 0.1})

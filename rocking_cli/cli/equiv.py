@@ -29,7 +29,7 @@ ROWS = (
 
 
 @click.command(short_help="The equivalent single rocking block of structures.")
-@click.argument("files", metavar="FILE...", nargs=-1, type=click.Path())
+@click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @options.as_json
 @click.option("--csv", "as_csv", is_flag=True, help="Print comma-separated values, a line for each direction.")
 def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import sys
 from importlib import import_module
 from typing import Any
 
@@ -35,12 +37,15 @@ class LazyGroup(click.Group):
         from difflib import get_close_matches
 
         close = get_close_matches(args[0], COMMANDS, n=1)
-        if args[0] not in COMMANDS and close and not args[0].startswith("-"):
+        if args[0] not in COMMANDS and close and not ctx.resilient_parsing and not args[0].startswith("-"):
             raise click.UsageError(f"No such command '{args[0]}': did you mean {close[0]}?", ctx)
         return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; a known error ends it with a message on standard error."""
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="replace")  # a name that an old code page cannot spell ends nothing
         try:
             return super().invoke(ctx)
         except RockingError as error:
@@ -49,7 +54,7 @@ class LazyGroup(click.Group):
         except BrokenPipeError:
             raise  # the reader has seen enough: click ends quietly
         except OSError as error:
-            terminal.error(f"cannot write the result: {error.strerror or error}")
+            terminal.error(f"the system refused: {error.strerror or error}")
             ctx.exit(1)
 
 
@@ -68,5 +73,6 @@ def main() -> None:
       rocking respond block.yaml --record accel.csv --plot response.png
       rocking pulse --a 4 --omega 6
 
-    Exit codes: 0 done (an overturned structure is a result), 2 wrong input, 3 mechanism or plugin, 4 solver.
+    Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
+    3 mechanism or plugin, 4 solver.
     """

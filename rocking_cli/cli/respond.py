@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.base import GroundMotion
 
+# The names of units and models stand here again so that `--help` needs no numpy; a test holds them together.
 UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal")
 COARSE = 0.1  # s between samples; strong-motion records have 0.02 or less
 PLAUSIBLE = (0.002, 4.0)  # g; the strongest ground motions on record have some 2.5
@@ -147,9 +148,9 @@ def command(
 
 def _keep_apart(out: Path | None, plot: Path | None, *inputs: str | None) -> None:
     """Refuse to write over an input, or both outputs to one file."""
-    read = {Path(name).resolve(): name for name in inputs if name is not None}
+    read = [Path(name) for name in inputs if name is not None and Path(name).exists()]
     for option, path in (("--out", out), ("--plot", plot)):
-        if path is not None and path.resolve() in read:
+        if path is not None and path.exists() and any(path.samefile(each) for each in read):
             raise InputError(Problem(f"{option} would overwrite what is read", str(path), hint="give another name"))
     if out is not None and plot is not None and out.resolve() == plot.resolve():
         raise InputError(Problem("--out and --plot cannot be the same file", str(out)))

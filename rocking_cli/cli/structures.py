@@ -22,13 +22,11 @@ def load(files: Sequence[str]) -> list[Mechanism]:
     InputError
         With the problems of all files.
     """
-    if not files:
-        return [_unnamed()]
     found: list[Mechanism] = []
     problems: list[Problem] = []
-    for file in files:
+    for file in files or [""]:
         try:
-            found.append(load_structure(file))
+            found.append(load_structure(file) if files else _unnamed())
         except InputError as error:
             problems += error.problems
         except MechanismError as error:

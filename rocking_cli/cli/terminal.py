@@ -19,7 +19,7 @@ def result(text: str = "") -> None:
 
 def print_json(data: Mapping[str, Any]) -> None:
     """One JSON object on one line of standard output; NaN is a bug, not a value."""
-    click.echo(json.dumps(data, allow_nan=False, ensure_ascii=False))
+    click.echo(json.dumps(data, allow_nan=False))
 
 
 def note(text: str) -> None:

@@ -127,8 +127,8 @@ def _one_direction(mechanism: Mechanism, direction: Direction) -> EquivalentBloc
         lambda_lin=lambda_lin,
         kappa1=kappa1,
         kappa2=kappa2,
-        theta_cr1=phi_cr / kappa1,  # Eq. 17
-        theta_cr2=phi_cr / kappa2,  # Eq. 17
+        theta_cr1=lambda_lin,  # Eq. 17: phi_cr/kappa1
+        theta_cr2=lam,  # Eq. 17: phi_cr/kappa2
         eta=mechanism.eta(direction),
         I_eq=I_eq,
         G_eq=G_eq,

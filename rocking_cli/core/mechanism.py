@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -99,6 +99,12 @@ class Mechanism(BaseModel, ABC):
     restitution: Restitution | DirectionalRestitution | None = Field(
         None, description="coefficient of restitution eta; absent: from kinematics"
     )
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""
+        return type(self).model_validate(
+            {**{key: getattr(self, key) for key in self.model_fields_set}, **(update or {})}
+        )
 
     @abstractmethod
     def bodies(self) -> Sequence[Body]:

@@ -46,4 +46,7 @@ def needs_compiling() -> bool:
     source = Path(__file__).with_name("kernels.py")
     tag = f"py{sys.version_info.major}{sys.version_info.minor}"
     indexes = cache_folder().glob(f"*/kernels.follow-*.{tag}.nbi")
-    return not any(index.stat().st_mtime >= source.stat().st_mtime for index in indexes)
+    try:
+        return not any(index.stat().st_mtime >= source.stat().st_mtime for index in indexes)
+    except OSError:  # another process is at work on the cache
+        return False

@@ -29,7 +29,7 @@ class Outcome(Enum):
     STILL_ROCKING = "still rocking long after the record, and not going to overturn"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class History:
     """The motion of one model of a structure.
 

@@ -42,7 +42,7 @@ class Model:
     @property
     def kind(self) -> int:
         """0 for the nonlinear equation, 1 for a linear one."""
-        return 0 if self.name == "nonlinear" else 1
+        return 0 if self.name == "nonlinear" else 1  # NONLINEAR and LINEAR of the kernels, without importing numba
 
 
 def build_model(mechanism: Mechanism, equivalence: Equivalence, name: ModelName) -> Model:
@@ -67,9 +67,8 @@ def build_model(mechanism: Mechanism, equivalence: Equivalence, name: ModelName)
         if eta <= 0:
             raise InputError(
                 Problem(
-                    f"the kinematics give {eta:.4g} for an impact that ends motion in the {direction.label} "
-                    "direction: the structure is too stocky to start rocking the other way",
-                    file=mechanism.name,
+                    f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends motion in "
+                    f"the {direction.label} direction: it is too stocky to start rocking the other way",
                     field="restitution",
                     hint="give a measured value as restitution, a number in (0, 1]",
                 )

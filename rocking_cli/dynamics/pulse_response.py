@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from math import asin, cosh, exp, inf, isfinite, log, pi, sin, sinh, sqrt
+from math import asin, cosh, exp, inf, log, pi, sin, sinh, sqrt
 
 from rocking_cli.errors import InputError, SolverError
 
 EXCURSIONS = 20_000  # inside the pulse; to come to rest a restitution of 0.99 needs 2000
 FAINT = 1e-10  # rate of an impact below which the block rests: it would rock to 5e-21
+LARGEST = 1e6  # a or omega, and 1/omega
 LONG = 690.0  # exp of more, with a factor of omega^2, overflows
 
 
@@ -82,10 +83,10 @@ class ExactPulse:
 
 def check_pulse(a: float, omega: float, eta: float) -> None:
     """Refuse what is no pulse: `InputError` names the parameter."""
-    if not (isfinite(a) and a > 0):
-        raise InputError(f"a must be a positive number (a_g over the uplift acceleration), got {a:g}")
-    if not (isfinite(omega) and omega > 0):
-        raise InputError(f"omega must be a positive number (omega_g/p), got {omega:g}")
+    if not 0 < a <= LARGEST:
+        raise InputError(f"a must be a positive number up to {LARGEST:g} (a_g over the uplift acceleration), got {a:g}")
+    if not 1 / LARGEST <= omega <= LARGEST:
+        raise InputError(f"omega must be a number from {1 / LARGEST:g} to {LARGEST:g} (omega_g/p), got {omega:g}")
     if not 0 < eta <= 1:
         raise InputError(f"eta must be in (0, 1], got {eta:g}")
 

@@ -12,7 +12,7 @@ from rocking_cli.errors import InputError
 STANDARD_GRAVITY = 9.80665  # m/s2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GroundMotion:
     """A horizontal ground acceleration history, positive to the right.
 
@@ -27,7 +27,7 @@ class GroundMotion:
     unit : str
         Unit the acceleration was recorded in, for the reader's eyes only.
     format : str
-        Where it came from: a record format, or `"pulse"`.
+        Where it came from: a record format, or `"array"`.
 
     Raises
     ------
@@ -69,4 +69,6 @@ class GroundMotion:
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion with every acceleration multiplied by `factor` (a negative one reverses it), named so."""
         name = self.name if factor == 1 else f"{self.name} x {factor:g}"
+        if not np.isfinite(factor * float(np.abs(self.acceleration).max())):
+            raise InputError(f"{self.name}: a factor of {factor:g} makes accelerations beyond the range of numbers")
         return GroundMotion(name, self.dt, factor * self.acceleration, self.unit, self.format)
