@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
+from typing import cast
 
+from rocking_cli import plugins
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError
 
@@ -41,12 +43,7 @@ class Registry(Mapping[str, type[Mechanism]]):
     """
 
     def __init__(self, group: str = GROUP) -> None:
-        self._points: dict[str, list[EntryPoint]] = {}
-        for point in entry_points(group=group):
-            same_name = self._points.setdefault(point.name, [])
-            # An editable and a normal install of one package list the same entry twice.
-            if all(point.value != other.value for other in same_name):
-                same_name.append(point)
+        self._points = plugins.find(group)
 
     def __iter__(self) -> Iterator[str]:
         return iter(sorted(self._points))
@@ -62,10 +59,7 @@ class Registry(Mapping[str, type[Mechanism]]):
         if points is None:
             hint = did_you_mean(name, list(self._points))
             raise UnknownMechanismError(f"unknown mechanism: {name}" + (f" ({hint})" if hint else ""))
-        if len(points) > 1:
-            claims = " and ".join(f"{self.package(point)} ({point.value})" for point in points)
-            raise MechanismError(f"mechanism {name} is claimed by two packages, {claims}: uninstall one of them")
-        return load(points[0])
+        return load(plugins.only("mechanism", name, points))
 
     def package_of(self, name: str) -> str:
         """Distribution and version that a mechanism comes from."""
@@ -74,21 +68,16 @@ class Registry(Mapping[str, type[Mechanism]]):
     @staticmethod
     def package(point: EntryPoint) -> str:
         """Distribution and version of an entry point."""
-        return f"{point.dist.name} {point.dist.version}" if point.dist else "unknown package"
+        return plugins.package(point)
 
 
 def load(point: EntryPoint) -> type[Mechanism]:
     """Load a plugin and hold it to the contract of `Mechanism`, naming everything that is missing."""
-    origin = f"plugin {point.name} of {Registry.package(point)} ({point.value})"
-    try:
-        plugin = point.load()
-    except Exception as error:  # a plugin may fail in any way; the user needs to know whose it is
-        raise MechanismError(f"{origin} cannot be loaded: {type(error).__name__}: {error}") from error
+    plugin = plugins.load(point)
     faults = conformance(plugin, point.name)
     if faults:
-        raise MechanismError(f"{origin} is not a mechanism: " + "; ".join(faults))
-    checked: type[Mechanism] = plugin
-    return checked
+        raise MechanismError(f"{plugins.origin(point)} is not a mechanism: " + "; ".join(faults))
+    return cast("type[Mechanism]", plugin)
 
 
 def conformance(plugin: object, name: str) -> list[str]:

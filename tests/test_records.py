@@ -785,24 +785,6 @@ def test_a_real_record_without_a_unit_is_refused():
     assert "--units" in problem(SHARED / "elcentro_NS_full_2col.dat").hint
 
 
-@NEEDS_SHARED
-@pytest.mark.parametrize(
-    "name",
-    [
-        "0111a.smc",
-        "017m30lw.s0a",
-        "20180212_211557_WPWS_20.V2A",
-        "AOM0011801241951.EW",
-        "Cosmos12TimeSeriesTest.v1",
-        "NGNH311106302345.EW1",
-        "ce36456p_CE36456.V2",
-        "us1000hyfh_akbmrp_AKBMR--n.1000hyfh.BNZ.--.acc.V2c",
-    ],
-)
-def test_formats_that_are_not_read_are_not_misread(name):
-    assert problems(SHARED / "formats" / name, dt=0.01, units="gal")
-
-
 @pytest.fixture(scope="module")
 def make_accel():
     return runpy.run_path(str(EXAMPLES / "make_accel.py"))

@@ -117,14 +117,14 @@ def test_a_name_that_differs_from_the_entry_point_is_a_fault():
 
 def test_a_name_claimed_twice_is_an_error_that_names_both(monkeypatch):
     points = [entry("mechanisms.block:Block", "block"), entry("elsewhere:Block", "block")]
-    monkeypatch.setattr("rocking_cli.registry.entry_points", lambda group: points)
+    monkeypatch.setattr("rocking_cli.plugins.entry_points", lambda group: points)
     with pytest.raises(MechanismError, match=r"mechanisms\.block:Block.*elsewhere:Block"):
         Registry()["block"]
 
 
 def test_the_same_entry_listed_twice_is_one(monkeypatch):
     monkeypatch.setattr(
-        "rocking_cli.registry.entry_points", lambda group: [entry("mechanisms.block:Block", "block")] * 2
+        "rocking_cli.plugins.entry_points", lambda group: [entry("mechanisms.block:Block", "block")] * 2
     )
     assert Registry()["block"] is Block
 

@@ -49,11 +49,12 @@ def _tail(ctx: click.Context, param: click.Parameter, value: float) -> float:
 
 @click.command(short_help="Response to a ground motion: nonlinear and linear histories.")
 @click.argument("file", required=False, type=click.Path())
-@click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: delimited text or PEER AT2.")
+@click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format.")
 @click.option("--units", type=click.Choice(UNITS), help="Unit of the record, where the file does not say.")
 @click.option(
     "--dt", type=options.Finite(positive=True), metavar="SECONDS", help="Sample interval of a one-column record."
 )
+@click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name.")
 @click.option("--scale", type=options.Finite(), default=1.0, show_default=True, help="Factor on the record.")
 @click.option(
     "--polarity", type=click.Choice(["1", "-1"]), default="1", show_default=True, help="-1 reverses the record."
@@ -90,6 +91,7 @@ def command(
     record: str | None,
     units: str | None,
     dt: float | None,
+    channel: str | None,
     scale: float,
     polarity: str,
     release: float | None,
@@ -117,13 +119,15 @@ def command(
         raise click.UsageError("Nothing to respond to: give --record FILE, or --release RATIO, or both.")
     if record is None and (units is not None or dt is not None):
         raise click.UsageError("--units and --dt describe a record: give --record FILE.")
+    if record is None and channel is not None:
+        raise click.UsageError("--channel is one of a record: give --record FILE.")
     if record is None and (scale != 1 or polarity != "1"):
         raise click.UsageError("--scale and --polarity change a record: give --record FILE.")
     _keep_apart(out, plot, file, record)
     from rocking_cli.cli import structures
 
     mechanism = structures.load([file] if file else [])[0]
-    as_read = _read(record, dt, units) if record is not None else None
+    as_read = _read(record, dt, units, channel) if record is not None else None
     motion = as_read.scaled(scale * int(polarity)) if as_read is not None else None
     histories = _respond(mechanism, motion, cast("tuple[ModelName, ...]", models), release, tail)
     if out is not None:
@@ -156,10 +160,10 @@ def _keep_apart(out: Path | None, plot: Path | None, *inputs: str | None) -> Non
         raise InputError(Problem("--out and --plot cannot be the same file", str(out)))
 
 
-def _read(record: str, dt: float | None, units: str | None) -> GroundMotion:
+def _read(record: str, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
     from rocking_cli.excitation.records import read_record
 
-    motion = read_record(record, dt=dt, units=units)
+    motion = read_record(record, dt=dt, units=units, channel=channel)
     terminal.note(
         f"record: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:g} s, "
         f"in {motion.unit}, PGA = {motion.pga:.4g} g"

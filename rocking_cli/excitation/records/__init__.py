@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Protocol
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import peer, text
+from rocking_cli.excitation.records.registry import load_readers, reader_for
 
 __all__ = ["read_record"]
 
@@ -16,30 +15,23 @@ __all__ = ["read_record"]
 _BINARY = bytes(set(range(0x20)) - set(b"\t\n\v\f\r\x1a"))
 
 
-class _Reader(Protocol):
-    """What a record format has to offer."""
-
-    def sniff(self, text: str) -> bool: ...
-
-    def read(self, text: str, file: str, *, dt: float | None = None, units: str | None = None) -> GroundMotion: ...
-
-
-# The most particular format first: delimited text takes nearly anything with numbers in it.
-_READERS: tuple[_Reader, ...] = (peer, text)
-
-
-def read_record(path: str | Path, *, dt: float | None = None, units: str | None = None) -> GroundMotion:
+def read_record(
+    path: str | Path, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
     """Read a recorded ground motion; the format is found from the content, not from the file's name.
 
     Parameters
     ----------
     path : str or Path
-        A PEER AT2 file, or delimited text with one column (acceleration) or two (time, acceleration).
+        A file in the format of a data centre, of any reader of the entry points `rocking.records`, or delimited
+        text with one column (acceleration) or two (time, acceleration).
     dt : float, optional
         Interval between samples [s]. Needed for one column; otherwise it must agree with the file.
     units : str, optional
         Unit of the accelerations in the file: g, m/s2, cm/s2, mm/s2 or gal. Needed where the file does not name
         its unit; otherwise it must agree with the file.
+    channel : str, optional
+        Which channel of a file with several: its place, counted from 1, or its name in the file.
 
     Returns
     -------
@@ -55,16 +47,8 @@ def read_record(path: str | Path, *, dt: float | None = None, units: str | None 
         raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="--dt"))
     file = str(path)
     content = _load(file)
-    for reader in _READERS:
-        if reader.sniff(content):
-            return reader.read(content, file, dt=dt, units=units)
-    raise InputError(
-        Problem(
-            "not a record format that can be read: no acceleration values found",
-            file=file,
-            hint="give a PEER AT2 file, or text with one column (acceleration) or two (time, acceleration)",
-        )
-    )
+    reader = reader_for(content, file, load_readers())
+    return reader.read(content, file, dt=dt, units=units, channel=channel)
 
 
 def _load(file: str) -> str:

@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.text import check_interval, numbers_in, usable
+from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
+
+TITLE = "PEER AT2"
+SIGN = "a title with PEER and DATABASE, or a line with NPTS="
 
 _FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
 _NPTS = re.compile(r"\bNPTS\s*=\s*(\d+)", re.IGNORECASE)
@@ -40,10 +43,14 @@ class _Header:
 def sniff(text: str) -> bool:
     """Whether this is a PEER file: its title, or a line with NPTS that is not a comment, is near the top."""
     head = text[:100_000].split("\n")[:_HEADER_LINES]
+    if text.lstrip().startswith("{"):  # JSON, which may well quote the header of its origin
+        return False
     return any(_SIGNATURE.match(line) or _NPTS.search(line) or _OLD_STYLE.match(line) for line in head if _plain(line))
 
 
-def read(text: str, file: str, *, dt: float | None = None, units: str | None = None) -> GroundMotion:
+def read(
+    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
     """Read a PEER AT2 file.
 
     Parameters
@@ -56,12 +63,15 @@ def read(text: str, file: str, *, dt: float | None = None, units: str | None = N
         Interval between samples [s]; it must agree with the header.
     units : str, optional
         Unit of the accelerations; needed where the header does not say it.
+    channel : str, optional
+        There is only the first.
 
     Returns
     -------
     GroundMotion
         Accelerations [m/s2] at a constant interval [s].
     """
+    only_channel(file, channel)
     lines = text.split("\n")
     header = _header(file, lines)
     unit = resolve_unit(file, list(enumerate(lines[: header.data], start=1)), units)
@@ -74,7 +84,7 @@ def read(text: str, file: str, *, dt: float | None = None, units: str | None = N
     if header.npts < 2:
         message = f"a record needs at least two samples, this has {header.npts}"
         raise InputError(Problem(message, file=file, line=header.npts_line))
-    return GroundMotion(Path(file).name, header.dt, values * UNITS[unit], unit, "PEER AT2")
+    return GroundMotion(Path(file).name, header.dt, values * UNITS[unit], unit, TITLE)
 
 
 def _header(file: str, lines: Sequence[str]) -> _Header:

@@ -14,6 +14,9 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
 
+TITLE = "delimited text"
+SIGN = "a line that begins with a number"
+
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _OTHER_TIME = re.compile(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
@@ -29,7 +32,9 @@ def sniff(text: str) -> bool:
     return not head.lstrip().startswith(("{", "[", "<")) and _first_row(head.split("\n")) is not None
 
 
-def read(text: str, file: str, *, dt: float | None = None, units: str | None = None) -> GroundMotion:
+def read(
+    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
     """Read delimited text.
 
     Parameters
@@ -42,12 +47,15 @@ def read(text: str, file: str, *, dt: float | None = None, units: str | None = N
         Interval between samples [s]; needed for one column, checked against the times of two.
     units : str, optional
         Unit of the accelerations; needed where no header says it.
+    channel : str, optional
+        There is only the first.
 
     Returns
     -------
     GroundMotion
         Accelerations [m/s2] at a constant interval [s].
     """
+    only_channel(file, channel)
     lines = text.split("\n")
     start = _first_row(lines)
     if start is None:
@@ -115,6 +123,13 @@ def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) ->
             raise InputError(_not_a_number(file, line_number, line, token.strip(), known=value is not None))
         values.append(value)
     return values
+
+
+def only_channel(file: str, asked: str | None) -> None:
+    """Refuse any channel but the first, of a file that can hold no other."""
+    if asked is not None and asked.strip() != "1":
+        message = f"there is no channel '{asked}': the file holds one component"
+        raise InputError(Problem(message, file=file, field="--channel", hint="leave --channel out"))
 
 
 def check_interval(file: str, line_number: int | None, own: float, given: float | None) -> None:
@@ -277,5 +292,5 @@ def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: 
 def _too_many_columns(file: str, line_number: int, line: str, columns: int) -> Problem:
     """Describe a table that is wider than time and acceleration."""
     message = f"{columns} columns: only one (acceleration) or two (time, acceleration) can be read for now"
-    hint = "keep the time and one acceleration; of the data centres' own formats, PEER AT2 is read"
+    hint = "keep the time and one acceleration, or give the file as the data centre made it"
     return Problem(message, file=file, line=line_number, excerpt=line.strip()[:100], hint=hint)

@@ -1,0 +1,162 @@
+"""COSMOS V1 and V2c (format 1.20): text, integer, real and comment headers that say their own lengths, then values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+
+TITLE = "COSMOS"
+SIGN = "a first line with (Format v01.20 with 13 text lines)"
+
+_FIRST = re.compile(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
+_NUMBERS = re.compile(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?, *Format *= *(\S+)", re.I)
+_COMMENTS = re.compile(r"\s*(\d+) Comment line", re.I)
+_DATA = re.compile(
+    r"\s*(\d+)\s+(\w+)\s+pts, approx\s+(\S+)\s+secs, *units *= *([^(,]+)(?:\(\d+\))?, *Format *= *(\S+)", re.I
+)
+_WIDTH = re.compile(r"\(\d*[A-Z](\d+)(?:\.\d+)?\)", re.I)
+_AZIMUTH = re.compile(r"Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)
+_END = re.compile(r"End-of-data for Chan *(\S+)", re.I)
+# Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
+_DT_MS, _DT_RAW = 62, 34
+
+
+@dataclass(frozen=True)
+class _Headers:
+    """What the headers of a channel say: name, real numbers and where they begin, index of the first data line."""
+
+    name: str
+    reals: NDArray[np.float64]
+    reals_line: int
+    data: int
+
+
+def sniff(text: str) -> bool:
+    """Whether the first line gives the version and the number of text lines."""
+    return _FIRST.match(text[:200].split("\n")[0]) is not None
+
+
+def read(
+    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
+    """Read a COSMOS V1 or V2c file.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file, lines ending in a plain newline.
+    file : str
+        Its path, for the messages and the name of the motion.
+    dt : float, optional
+        Interval between samples [s]; it must agree with the file.
+    units : str, optional
+        Unit of the accelerations; it must agree with the file.
+    channel : str, optional
+        Which one: its place, counted from 1, or its name.
+
+    Returns
+    -------
+    GroundMotion
+        Accelerations [m/s2] at a constant interval [s].
+    """
+    lines = text.split("\n")
+    channels: list[Channel] = []
+    others: list[str] = []
+    index = 0
+    while index < len(lines):
+        if not lines[index].strip() or lines[index].startswith(("/&", "End-of-data")):
+            index += 1
+            continue
+        headers = _headers(file, lines, index)
+        index = headers.data
+        while index == headers.data or (index < len(lines) and _DATA.match(lines[index])):
+            found, index = _history(file, lines, headers, index, units)
+            if isinstance(found, Channel):
+                channels.append(found)
+            else:
+                others.append(found)
+    if not channels:
+        message = f"the file holds no acceleration, but {', '.join(dict.fromkeys(others))}"
+        raise InputError(Problem(message, file, hint="give the file with the acceleration"))
+    return choose(file, TITLE, channels, channel, dt)
+
+
+def _headers(file: str, lines: Sequence[str], start: int) -> _Headers:
+    """Go through the headers of a channel, from line index `start` on."""
+    first = _FIRST.match(lines[start])
+    if first is None:
+        message = "a channel must begin here, with a line that says (Format v01.20 with 13 text lines)"
+        hint = "the file may have been cut or edited: download it again"
+        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
+    index = start + int(first[3])
+    azimuth = next((match[1] for line in lines[start:index] if (match := _AZIMUTH.match(line))), "")
+    reals, reals_line = np.array([]), start + 1
+    for kind in ("integer", "real"):
+        match = _NUMBERS.match(lines[index]) if index < len(lines) else None
+        if match is None or match[2].lower() != kind:
+            message = f"the line that announces the {kind} header must be here"
+            hint = "the number of text lines may be wrong: download the file again"
+            raise InputError(Problem(message, file, min(index + 1, len(lines)), hint=hint))
+        reals_line = index + 1
+        block = Block(index + 1, int(match[1]), _width(file, reals_line, match[3]), reals_line)
+        reals, index = fixed_width(file, lines, block, last=False)
+    if index < len(lines) and (match := _COMMENTS.match(lines[index])):
+        index += 1 + int(match[1])
+    return _Headers(azimuth, reals, reals_line, index)
+
+
+def _history(
+    file: str, lines: Sequence[str], headers: _Headers, index: int, units: str | None
+) -> tuple[Channel | str, int]:
+    """Read the values announced at line index `index`, or say what they are if not accelerations; the index after."""
+    line_number = index + 1
+    line = lines[index] if index < len(lines) else ""
+    match = _DATA.match(line)
+    if match is None:
+        message = "the line that announces the values, such as 7000 acceleration pts, must be here"
+        hint = "the number of comment lines may be wrong: download the file again"
+        raise InputError(Problem(message, file, min(line_number, len(lines)), excerpt=line.strip()[:100], hint=hint))
+    count = int(number(file, line_number, line, match[1], "number of points", least=1))
+    block = Block(line_number, count, _width(file, line_number, match[5]), line_number)
+    values, end = fixed_width(file, lines, block)
+    if not match[2].lower().startswith("acc"):
+        return match[2], end
+    unit = stated_unit(file, line_number, match[4].strip(), units)
+    own = _interval(file, headers, count, number(file, line_number, line, match[3], "length of the record"))
+    mark = _END.match(lines[end]) if end < len(lines) else None
+    name = mark[1] if mark and not mark[1].isdecimal() else headers.name
+    return Channel(name, own, in_si(values, unit), unit, headers.reals_line), end
+
+
+def _interval(file: str, headers: _Headers, count: int, length: float) -> float:
+    """Sample interval [s]: the one of the header that agrees with the length [s] of this history."""
+    places = ((_DT_MS, 0.001), (_DT_RAW, 1.0))
+    stated = [headers.reals[place - 1] * size for place, size in places if place <= headers.reals.size]
+    for candidate in stated:
+        # The length is rounded to a second, and some count the intervals for it, some the samples.
+        if candidate > 0 and abs(candidate * count - length) <= 1 + 2 * candidate:
+            return float(candidate)
+    intervals = " and ".join(f"{candidate:g} s" for candidate in stated if candidate > 0) or "nothing"
+    message = (
+        f"the sample interval is unclear: the real header gives {intervals}, neither of which makes "
+        f"{count} points of {length:g} s"
+    )
+    raise InputError(
+        Problem(message, file, headers.reals_line, hint="the file may have been edited: download it again")
+    )
+
+
+def _width(file: str, line_number: int, form: str) -> int:
+    """Characters to a number in a Fortran format such as (8F10.5)."""
+    match = _WIDTH.match(form)
+    if match is None or not int(match[1]):
+        raise InputError(Problem(f"a format such as (8F10.5) is needed, this is {form}", file, line_number))
+    return int(match[1])

@@ -1,0 +1,97 @@
+"""GeoNet V2A (GNS Science, New Zealand): for each component 16 lines of text, 10 of numbers, and three histories."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+
+TITLE = "GeoNet V2A"
+SIGN = "a first line Corrected accelerogram, and Number of points below it"
+
+_TEXT_LINES = 16
+_NUMBER_LINES = 10
+_WIDTH = 8
+_FIRST = re.compile(r"Corrected accelerogram\b")
+_COUNT = re.compile(r"Number of points\s+(\d+)")
+_DT = re.compile(r"data at\s+(\S+)\s+sec intervals")
+_COMPONENT = re.compile(r"Component\s+(\S+)")
+_UNIT = re.compile(r"Acceleration:\s+peak\s+\S+\s+(\S+)")
+
+
+def sniff(text: str) -> bool:
+    """Whether the first two lines of the header are those of a corrected GeoNet record."""
+    head = text[:5000].split("\n")[:_TEXT_LINES]
+    return bool(_FIRST.match(head[0])) and any(_COUNT.match(line) for line in head)
+
+
+def read(
+    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
+    """Read a GeoNet V2A file.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file, lines ending in a plain newline.
+    file : str
+        Its path, for the messages and the name of the motion.
+    dt : float, optional
+        Interval between samples [s]; it must agree with the file.
+    units : str, optional
+        Unit of the accelerations; it must agree with the file.
+    channel : str, optional
+        Which one: its place, counted from 1, or its name.
+
+    Returns
+    -------
+    GroundMotion
+        Accelerations [m/s2] at a constant interval [s].
+    """
+    lines = text.split("\n")
+    channels = []
+    start = 0
+    while start < len(lines) and lines[start].strip():
+        found, start = _component(file, lines, start, units)
+        channels.append(found)
+    return choose(file, TITLE, channels, channel, dt)
+
+
+def _component(file: str, lines: Sequence[str], start: int, units: str | None) -> tuple[Channel, int]:
+    """Read one component from line index `start` on; the index after it."""
+    if not _FIRST.match(lines[start]):
+        message = "a component must begin with the line Corrected accelerogram here"
+        hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
+        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
+    count_line, count = _find(file, lines, start, _COUNT, "number of points")
+    dt_line, interval = _find(file, lines, start, _DT, "sample interval")
+    _, name = _find(file, lines, start, _COMPONENT, "component")
+    unit_line, spelling = _find(file, lines, start, _UNIT, "unit of the accelerations")
+    unit = stated_unit(file, unit_line, spelling, units)
+    own = number(file, dt_line, lines[dt_line - 1], interval, "sample interval")
+    npts = int(number(file, count_line, lines[count_line - 1], count, "number of points", least=1))
+
+    # The fourth line of numbers says how long each of the three histories is; the last two may be left out.
+    sizes_line = start + _TEXT_LINES + 3
+    sizes = lines[sizes_line].split()[3:6] if sizes_line < len(lines) else []
+    if len(sizes) < 3 or not all(size.isdecimal() for size in sizes) or int(sizes[0]) != npts:
+        message = f"the numbers of the header do not give the {npts} points of its text, followed by two more counts"
+        raise InputError(
+            Problem(message, file, sizes_line + 1, hint="the file may have been edited: download it again")
+        )
+    end = start + _TEXT_LINES + _NUMBER_LINES
+    values, end = fixed_width(file, lines, Block(end, npts, _WIDTH, count_line), last=False)
+    for size in sizes[1:]:  # velocity and displacement
+        _, end = fixed_width(file, lines, Block(end, int(size), _WIDTH, sizes_line + 1), last=False)
+    return Channel(name, own, in_si(values, unit), unit, dt_line), end
+
+
+def _find(file: str, lines: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:
+    """Line number and value of something in the text header of a component."""
+    for line_number, line in enumerate(lines[start : start + _TEXT_LINES], start=start + 1):
+        if match := pattern.search(line):
+            return line_number, match[1]
+    raise InputError(Problem(f"the header does not state the {what}", file, start + 1))

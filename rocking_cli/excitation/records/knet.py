@@ -1,0 +1,74 @@
+"""K-NET and KiK-net (NIED, Japan): a header of 17 lines, then counts of the digitiser, scaled and about no zero."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+
+TITLE = "K-NET/KiK-net"
+SIGN = "header lines Sampling Freq(Hz) and Scale Factor"
+
+_RATE = re.compile(r"Sampling Freq\.? *\(Hz\)\s+([\d.]+) *Hz\s*$")
+_DURATION = re.compile(r"Duration Time *\(s\)\s+(\S+)\s*$")
+_SCALE = re.compile(r"Scale Factor\s+([\d.]+) *\((.*?)\) */ *([\d.]+)\s*$")
+_DIRECTION = re.compile(r"Dir\.\s+(\S+)")
+_HEADER_LINES = 17
+_WIDTH = 9
+
+
+def sniff(text: str) -> bool:
+    """Whether the header has the rate and the scale factor under the names of K-NET."""
+    head = text[:5000].split("\n")[:_HEADER_LINES]
+    return all(any(line.startswith(key) for line in head) for key in ("Sampling Freq", "Scale Factor"))
+
+
+def read(
+    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
+    """Read a K-NET or KiK-net file; the mean, which is the digitiser's zero, is taken off.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file, lines ending in a plain newline.
+    file : str
+        Its path, for the messages and the name of the motion.
+    dt : float, optional
+        Interval between samples [s]; it must agree with the file.
+    units : str, optional
+        Unit of the accelerations; it must agree with the file.
+    channel : str, optional
+        Its place, 1, or its name, should it be asked for: there is only one.
+
+    Returns
+    -------
+    GroundMotion
+        Accelerations [m/s2] at a constant interval [s].
+    """
+    lines = text.split("\n")
+    rate_line, (rate_text,) = _find(file, lines, _RATE, "sampling frequency, such as 100Hz")
+    scale_line, scale = _find(file, lines, _SCALE, "scale factor, such as 3920(gal)/6182761")
+    length_line, (length_text,) = _find(file, lines, _DURATION, "duration")
+    unit = stated_unit(file, scale_line, scale[1], units)
+    rate = number(file, rate_line, lines[rate_line - 1], rate_text, "sampling frequency")
+    length = number(file, length_line, lines[length_line - 1], length_text, "duration")
+    full, counts = (number(file, scale_line, lines[scale_line - 1], part, "scale factor") for part in scale[::2])
+    # The format has no number of points: it is the rate times the duration.
+    block = Block(_HEADER_LINES, round(rate * length), _WIDTH, length_line)
+    number(file, length_line, lines[length_line - 1], str(block.count), "number of points", least=1)
+    values, _ = fixed_width(file, lines, block)
+    acceleration = in_si((values - values.mean()) * (full / counts), unit)
+    direction = next((match[1] for line in lines[:_HEADER_LINES] if (match := _DIRECTION.match(line))), "")
+    return choose(file, TITLE, [Channel(direction, 1 / rate, acceleration, unit, rate_line)], channel, dt)
+
+
+def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, tuple[str, ...]]:
+    """Line number and values of something in the header."""
+    for line_number, line in enumerate(lines[:_HEADER_LINES], start=1):
+        if match := pattern.match(line):
+            return line_number, match.groups()
+    raise InputError(Problem(f"the header does not state the {what}", file, 1))

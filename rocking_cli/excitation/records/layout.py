@@ -1,0 +1,216 @@
+"""What the data centres' formats share: Fortran's fixed-width numbers, stated units, and several channels in a file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.records.text import check_interval, numbers_in, usable
+from rocking_cli.excitation.records.units import UNITS, resolve_unit
+
+# A row of numbers has no letters but those of exponents; asterisks are an overflow, for `numbers_in` to refuse.
+_NO_ROW = re.compile(r"[^\s\d.+\-*EeDd]")
+_NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Block:
+    """Where a run of numbers is, and how many there must be.
+
+    Parameters
+    ----------
+    start : int
+        Index of its first line, counted from 0.
+    count : int
+        How many numbers the header says.
+    width : int
+        Characters to a number.
+    header_line : int
+        Line number of the header that gives `count`, counted from 1.
+    margin : int, optional
+        Characters before the first number of a line.
+    """
+
+    start: int
+    count: int
+    width: int
+    header_line: int
+    margin: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """One component of a record.
+
+    Parameters
+    ----------
+    name : str
+        What the file calls it, such as an azimuth; empty if it gives no name.
+    dt : float
+        Interval between samples [s].
+    acceleration : ndarray, shape (npts,)
+        Ground acceleration [m/s2].
+    unit : str
+        Unit in the file.
+    dt_line : int, optional
+        Line number of the interval.
+    """
+
+    name: str
+    dt: float
+    acceleration: NDArray[np.float64]
+    unit: str
+    dt_line: int | None = None
+
+
+def fixed_width(file: str, lines: Sequence[str], block: Block, *, last: bool = True) -> tuple[NDArray[np.float64], int]:
+    """Read numbers that stand in columns of a constant width, with or without blanks between them.
+
+    Parameters
+    ----------
+    file : str
+        The file, for the messages.
+    lines : sequence of str
+        All its lines.
+    block : Block
+        Where the numbers are, and how many.
+    last : bool, optional
+        Whether no other numbers may follow.
+
+    Returns
+    -------
+    values : ndarray, shape (block.count,)
+        The numbers.
+    end : int
+        Index of the line after the last one.
+
+    Raises
+    ------
+    InputError
+        If one is no finite number, or there are more or fewer than there must be.
+    """
+    values: list[float] = []
+    index = block.start
+    while index < len(lines) and _is_row(lines[index]) and (last or len(values) < block.count):
+        row = lines[index].rstrip()
+        cells = [row[place : place + block.width].strip() for place in range(block.margin, len(row), block.width)]
+        try:
+            values.extend([float(cell.upper().replace("D", "E")) for cell in cells])
+        except ValueError:
+            values.extend(numbers_in(file, index + 1, row, cells))
+        if not usable(np.array(values[-len(cells) :] if cells else [])):
+            numbers_in(file, index + 1, row, cells)
+        index += 1
+    if len(values) != block.count:
+        excerpt = lines[index].strip()[:100] if index < len(lines) else None
+        where = f", up to line {index}" if index < len(lines) else ""
+        message = f"the header says {block.count} values, but {len(values)} follow{where}"
+        hint = "the file may have been cut short or edited: download it again"
+        raise InputError(Problem(message, file=file, line=block.header_line, excerpt=excerpt or None, hint=hint))
+    return np.array(values), index
+
+
+def stated_unit(file: str, line_number: int, unit: str, units: str | None) -> str:
+    """Canonical unit of the accelerations that a header, or the definition of a format, states.
+
+    Parameters
+    ----------
+    file, line_number : str, int
+        Where it is stated, for the messages.
+    unit : str
+        The unit as spelled there.
+    units : str, optional
+        The unit the user gave, which must not contradict it.
+
+    Returns
+    -------
+    str
+        One of `UNITS`.
+    """
+    return resolve_unit(file, [(line_number, f"units: {unit}")], units)
+
+
+def number(file: str, line_number: int, line: str, token: str, what: str, *, least: float = 0.0) -> float:
+    """A number of the header, which must be more than `least`; `what` says which it is."""
+    (value,) = numbers_in(file, line_number, line, [token])
+    if not value > least:
+        message = f"the {what} must be more than {least:g}, this is {token.strip()}"
+        raise InputError(Problem(message, file=file, line=line_number, excerpt=line.strip()[:100]))
+    return value
+
+
+def choose(
+    file: str, form: str, channels: Sequence[Channel], asked: str | None = None, dt: float | None = None
+) -> GroundMotion:
+    """Make a ground motion of the channel that is asked for, or of the only one.
+
+    Parameters
+    ----------
+    file : str
+        The file, for the messages and the name of the motion.
+    form : str
+        Name of its format.
+    channels : sequence of Channel
+        What it holds.
+    asked : str, optional
+        The channel, by its place counted from 1, or by its name.
+    dt : float, optional
+        Interval the user gave [s], which must agree.
+
+    Returns
+    -------
+    GroundMotion
+        Accelerations [m/s2], named after the file, and after the channel if there are several.
+    """
+    if asked is None and len(channels) > 1:
+        message = f"the file has {len(channels)} channels, and only one can shake a structure"
+        raise InputError(Problem(message, file=file, hint=f"choose one with --channel:{_listed(channels)}"))
+    chosen = channels[0] if asked is None else _find(file, channels, asked)
+    check_interval(file, chosen.dt_line, chosen.dt, dt)
+    name = Path(file).name
+    if len(channels) > 1:
+        name += f" channel {chosen.name or 1 + list(channels).index(chosen)}"
+    return GroundMotion(name, chosen.dt, chosen.acceleration, chosen.unit, form)
+
+
+def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
+    """Accelerations [m/s2] from values in one of `UNITS`."""
+    return values * UNITS[unit]
+
+
+def _is_row(line: str) -> bool:
+    return bool(line.strip()) and not _NO_ROW.search(_NOT_FINITE.sub("0", line))
+
+
+def _find(file: str, channels: Sequence[Channel], asked: str) -> Channel:
+    """Look up a channel by place or name; a number is a place first, as names such as 90 DEG may be numbers too."""
+    word = _plain(asked)
+    if word.isdecimal() and 1 <= int(word) <= len(channels):
+        return channels[int(word) - 1]
+    named = [channel for channel in channels if channel.name and _plain(channel.name) == word]
+    if len(named) == 1:
+        return named[0]
+    message = f"{len(named)} channels are called '{asked}'" if named else f"there is no channel '{asked}'"
+    hint = f"there {'is' if len(channels) == 1 else 'are'}:{_listed(channels)}"
+    raise InputError(Problem(message, file=file, field="--channel", hint=hint))
+
+
+def _plain(name: str) -> str:
+    """Put a name in lower case, with single blanks, and without the unit of an azimuth."""
+    return re.sub(r"(?<=\d) ?deg(?:rees)?$", "", " ".join(name.lower().split()))
+
+
+def _listed(channels: Sequence[Channel]) -> str:
+    """Number, name, points and peak of every channel."""
+    return "".join(
+        f"\n    {place}: {channel.name + ', ' if channel.name else ''}{channel.acceleration.size} points, "
+        f"PGA {float(np.abs(channel.acceleration).max()) / STANDARD_GRAVITY:.4g} g"
+        for place, channel in enumerate(channels, start=1)
+    )

@@ -1,0 +1,94 @@
+"""The record readers that are installed, found through the entry points `rocking.records`, and which one a file is for.
+
+A reader is a module, or any object, with a `TITLE` (the name of its format), a `SIGN` (what it recognises a file
+by, for the messages) and the functions `sniff` and `read` of `Reader`.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol, cast
+
+from rocking_cli import plugins
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.excitation.base import GroundMotion
+
+GROUP = "rocking.records"
+FALLBACK = "text"
+"""The reader that is asked last: delimited text takes nearly anything with numbers in it."""
+
+
+class Reader(Protocol):
+    """What a record format has to offer."""
+
+    TITLE: str
+    SIGN: str
+
+    def sniff(self, text: str) -> bool:
+        """Whether a file with this content is of this format; quick, and never by raising."""
+        ...
+
+    def read(
+        self, text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+    ) -> GroundMotion:
+        """Read the content of a file, lines ending in a plain newline; `file` is for messages and the name."""
+        ...
+
+
+def load_readers(group: str = GROUP) -> dict[str, Reader]:
+    """All readers of an entry-point group by name, in alphabetic order.
+
+    Raises
+    ------
+    MechanismError
+        If one cannot be loaded or is no reader, or two packages claim a name.
+    """
+    readers = {}
+    for name, points in sorted(plugins.find(group).items()):
+        point = plugins.only("record reader", name, points)
+        reader = plugins.load(point)
+        missing = [word for word in ("sniff", "read") if not callable(getattr(reader, word, None))]
+        missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(reader, word, None), str)]
+        if missing:
+            raise MechanismError(f"{plugins.origin(point)} is not a record reader: it has no {', '.join(missing)}")
+        readers[name] = cast("Reader", reader)
+    return readers
+
+
+def reader_for(text: str, file: str, readers: dict[str, Reader]) -> Reader:
+    """Choose the one reader that claims a file, or the fallback if none of the others does.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file.
+    file : str
+        Its path, for the messages.
+    readers : dict of str to Reader
+        The readers to ask.
+
+    Returns
+    -------
+    Reader
+        The only one whose `sniff` said yes.
+
+    Raises
+    ------
+    InputError
+        If several claim the file, or none does.
+    """
+    claims = [name for name, reader in readers.items() if name != FALLBACK and reader.sniff(text)]
+    if not claims and FALLBACK in readers and readers[FALLBACK].sniff(text):
+        claims = [FALLBACK]
+    if len(claims) == 1:
+        return readers[claims[0]]
+    if claims:
+        why = "; ".join(_described(name, readers[name]) for name in claims)
+        hint = "the file holds the marks of both: take out what is not its own, such as another file in its comments"
+        raise InputError(Problem(f"more than one format claims this file: {why}", file=file, hint=hint))
+    tried = "".join(f"\n    {_described(name, reader)}" for name, reader in readers.items())
+    message = "not a record format that can be read: no acceleration values found"
+    raise InputError(Problem(message, file=file, hint=f"tried, and what each looks for:{tried or ' nothing'}"))
+
+
+def _described(name: str, reader: Reader) -> str:
+    return f"{name} ({reader.TITLE}: {reader.SIGN})"

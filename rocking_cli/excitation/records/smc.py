@@ -1,0 +1,80 @@
+"""USGS SMC: 11 lines of text, 48 whole and 50 real numbers, comments, then values 8 to a line without blanks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+
+TITLE = "USGS SMC"
+SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"
+
+_FIRST = re.compile(r"(\d) +([A-Z].*)")
+_ACCELERATIONS = ("1", "2")  # uncorrected, corrected; then velocity, displacement and spectra
+_TEXT_LINES = 11
+_INTEGERS = Block(_TEXT_LINES, 48, 10, 1)
+_REALS, _REAL_WIDTH, _REAL_LINES = _TEXT_LINES + 6, 15, 10  # index of the first line, characters, lines
+_DATA_WIDTH = 10
+
+
+def sniff(text: str) -> bool:
+    """Whether the first line says what it is as SMC does, and the second is a bare asterisk."""
+    head = text[:1000].split("\n")
+    return bool(_FIRST.match(head[0])) and len(head) > 1 and head[1].strip() == "*"
+
+
+def read(
+    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
+    """Read a USGS SMC file.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file, lines ending in a plain newline.
+    file : str
+        Its path, for the messages and the name of the motion.
+    dt : float, optional
+        Interval between samples [s]; it must agree with the file.
+    units : str, optional
+        Unit of the accelerations; it must agree with the file.
+    channel : str, optional
+        Its place, 1, or its name, should it be asked for: there is only one.
+
+    Returns
+    -------
+    GroundMotion
+        Accelerations [m/s2] at a constant interval [s].
+    """
+    lines = text.split("\n")
+    kind = _FIRST.match(lines[0])
+    if kind is None or kind[1] not in _ACCELERATIONS:
+        message = f"the header says this is not an acceleration: {lines[0].strip()}"
+        raise InputError(Problem(message, file, 1, hint="give the file with the acceleration"))
+    unit = stated_unit(file, 1, "cm/s2", units)  # the definition of the format says so, not the file
+    integers, _ = fixed_width(file, lines, _INTEGERS, last=False)
+    # Counted from 1: integer 16 is the number of comment lines, 17 that of points; real 2 the samples per second.
+    comments, count = int(integers[15]), int(integers[16])
+    comment_line, count_line, rate_line = _TEXT_LINES + 2, _TEXT_LINES + 3, _REALS + 1
+    start = _REALS + _REAL_LINES
+    if start + comments >= len(lines):
+        raise InputError(Problem("the file ends before its values", file, len(lines)))
+    number(file, count_line, lines[count_line - 1], str(count), "number of points", least=1)
+    rate = number(
+        file, rate_line, lines[_REALS], lines[_REALS][_REAL_WIDTH : 2 * _REAL_WIDTH], "number of samples per second"
+    )
+    if not all(line.startswith("|") for line in lines[start : start + comments]) or _more(lines, start + comments):
+        message = f"the header says {comments} comment lines, but another number begins with |"
+        raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
+    block = Block(start + max(comments, 0), count, _DATA_WIDTH, count_line)
+    values, _ = fixed_width(file, lines, block)
+    component = re.search(r"component *= *(-?\w+)", "\n".join(lines[:_TEXT_LINES]))
+    found = Channel(component[1] if component else "", 1 / rate, in_si(values, unit), unit, rate_line)
+    return choose(file, TITLE, [found], channel, dt)
+
+
+def _more(lines: Sequence[str], index: int) -> bool:
+    return index < len(lines) and lines[index].startswith("|")

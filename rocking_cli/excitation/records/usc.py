@@ -1,0 +1,102 @@
+"""USC V1 (Volume I, also of Caltech): an uncorrected film record, pairs of time and acceleration at uneven times."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, stated_unit
+from rocking_cli.excitation.records.units import CHOICES, canonical
+
+TITLE = "USC V1"
+SIGN = "a first line with UNCORRECTED ACCELEROGRAM DATA OF VOLUME I"
+
+_FIRST = re.compile(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
+_COUNT = re.compile(r"NO\. OF POINTS *= *(\d+)")
+_UNITS = re.compile(r"UNITS ARE SEC AND (.*?)(?: {2,}.*)?$")
+_COMPONENT = re.compile(r"COMP\s+(\S+)")
+_INTEGERS, _REALS = 100, 50
+_TENTH_OF_G = "g/10"
+_GRID = 1e-3  # s; times are printed with three decimals
+
+
+def sniff(text: str) -> bool:
+    """Whether the first line is that of an uncorrected record of Volume I."""
+    return _FIRST.match(text[:200]) is not None
+
+
+def read(
+    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
+    """Read a USC V1 file.
+
+    Between its points the accelerogram is straight lines, at times that are whole milliseconds. The motion has the
+    largest interval that meets all of these times, so it is the same lines, not an approximation: more samples
+    than the file has points, though none of them made up.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file, lines ending in a plain newline.
+    file : str
+        Its path, for the messages and the name of the motion.
+    dt : float, optional
+        Interval between samples [s]; it must agree with the file.
+    units : str, optional
+        Unit of the accelerations; it must agree with the file.
+    channel : str, optional
+        Its place, 1, or its name, should it be asked for: there is only one.
+
+    Returns
+    -------
+    GroundMotion
+        Accelerations [m/s2] at a constant interval [s].
+    """
+    lines = text.split("\n")
+    count_line, count_text = _find(file, lines, _COUNT, "number of points (NO. OF POINTS)")
+    unit_line, spelling = _find(file, lines, _UNITS, "unit (UNITS ARE SEC AND ...)")
+    count = int(count_text)
+    if count < 2:
+        raise InputError(Problem(f"a record needs at least two points, this has {count}", file, count_line))
+    unit, tenths = _unit(file, unit_line, spelling, units)
+
+    start = next((index for index, line in enumerate(lines) if not re.search(r"[A-Za-z]", line)), len(lines))
+    for size, width in ((_INTEGERS, 5), (_REALS, 10)):
+        _, start = fixed_width(file, lines, Block(start, size, width, 1), last=False)
+    pairs, end = fixed_width(file, lines, Block(start, 2 * count, 7, count_line, margin=1))
+    time, values = pairs.reshape(-1, 2).T
+    ticks = np.rint(time / _GRID).astype(np.int64)
+    steps = np.diff(ticks)
+    if (steps <= 0).any():
+        point = int(np.argmax(steps <= 0)) + 1
+        message = f"time does not increase: point {point + 1} is at {time[point]:g} s, after {time[point - 1]:g} s"
+        raise InputError(Problem(message, file, hint=f"it is among lines {start + 1} to {end}"))
+    step = int(np.gcd.reduce(steps))
+    even = np.arange(ticks[0], ticks[-1] + 1, step)
+    acceleration = in_si(np.interp(even, ticks, values), "g" if tenths else unit) / (10 if tenths else 1)
+    name = next((match[1] for line in lines[:15] if (match := _COMPONENT.match(line))), "")
+    return choose(file, TITLE, [Channel(name, step * _GRID, acceleration, unit)], channel, dt)
+
+
+def _unit(file: str, line: int, spelling: str, units: str | None) -> tuple[str, bool]:
+    """Name of the unit, and whether it is a tenth of g, which only these old files are in."""
+    if spelling.replace(" ", "").lower() != _TENTH_OF_G:
+        return stated_unit(file, line, spelling, units), False
+    if units is not None:
+        if canonical(units) is None:
+            raise InputError(Problem(f"unknown unit '{units}'", field="--units", hint=f"choose one of: {CHOICES}"))
+        message = f"the header says the unit is {_TENTH_OF_G}, but --units says {units}"
+        raise InputError(Problem(message, file, line, hint="leave --units out"))
+    return _TENTH_OF_G, True
+
+
+def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, str]:
+    """Line number and value of something in the text header."""
+    for line_number, line in enumerate(lines[:30], start=1):
+        if match := pattern.search(line.rstrip()):
+            return line_number, match[1]
+    raise InputError(Problem(f"the header does not state the {what}", file, 1))

@@ -1,0 +1,45 @@
+"""Entry points of an installed package: found by group, loaded when asked for, named by whose they are."""
+
+from __future__ import annotations
+
+from importlib.metadata import EntryPoint, entry_points
+
+from rocking_cli.errors import MechanismError
+
+
+def find(group: str) -> dict[str, list[EntryPoint]]:
+    """Entry points of a group by name; more than one under a name is a conflict for the caller to report."""
+    points: dict[str, list[EntryPoint]] = {}
+    for point in entry_points(group=group):
+        same_name = points.setdefault(point.name, [])
+        # An editable and a normal install of one package list the same entry twice.
+        if all(point.value != other.value for other in same_name):
+            same_name.append(point)
+    return points
+
+
+def package(point: EntryPoint) -> str:
+    """Distribution and version of an entry point."""
+    return f"{point.dist.name} {point.dist.version}" if point.dist else "unknown package"
+
+
+def origin(point: EntryPoint) -> str:
+    """Which plugin of which package this is, for a message."""
+    return f"plugin {point.name} of {package(point)} ({point.value})"
+
+
+def only(kind: str, name: str, points: list[EntryPoint]) -> EntryPoint:
+    """The one entry point of a name; `kind` is what the plugins are, for the message if there are two."""
+    if len(points) > 1:
+        claims = " and ".join(f"{package(point)} ({point.value})" for point in points)
+        raise MechanismError(f"{kind} {name} is claimed by two packages, {claims}: uninstall one of them")
+    return points[0]
+
+
+def load(point: EntryPoint) -> object:
+    """What an entry point names."""
+    try:
+        loaded: object = point.load()
+    except Exception as error:  # a plugin may fail in any way; the user needs to know whose it is
+        raise MechanismError(f"{origin(point)} cannot be loaded: {type(error).__name__}: {error}") from error
+    return loaded
