@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.records.text import numbers_in
 
 TITLE = "COSMOS"
 SIGN = "a first line with (Format v01.20 with 13 text lines)"
@@ -130,7 +131,8 @@ def _history(
     if not match[2].lower().startswith("acc"):
         return match[2], end
     unit = stated_unit(file, line_number, match[4].strip(), units)
-    own = _interval(file, headers, count, number(file, line_number, line, match[3], "length of the record"))
+    (length,) = numbers_in(file, line_number, line, [match[3]])
+    own = _interval(file, headers, count, length)
     mark = _END.match(lines[end]) if end < len(lines) else None
     name = mark[1] if mark and not mark[1].isdecimal() else headers.name
     return Channel(name, own, in_si(values, unit), unit, headers.reals_line), end

@@ -1,0 +1,486 @@
+"""The data centres' formats: real files where they are here, and small made ones with everything that can be wrong."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from rocking_cli.cli.main import main
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.records import layout, read_record
+from rocking_cli.excitation.records.registry import FALLBACK, GROUP, load_readers, reader_for
+from tests.conftest import RECORDS
+
+G = STANDARD_GRAVITY
+FORMATS = RECORDS / "formats"
+VALUES = np.array([0.0, 1.5, -2.25, 3.0, -4.5, 0.75, 1.25, -0.5, 2.0, 10.0, -7.0])  # more than a line of any format
+
+
+def problem(path: Path, **options) -> Problem:
+    """The one thing `read_record` finds wrong."""
+    with pytest.raises(InputError) as caught:
+        read_record(path, **options)
+    (found,) = caught.value.problems
+    return found
+
+
+def columns(values, form: str, per_line: int, margin: str = "") -> str:
+    """Fortran's fixed-width columns."""
+    cells = [format(value, form) for value in values]
+    return "".join(margin + "".join(cells[i : i + per_line]) + "\n" for i in range(0, len(cells), per_line))
+
+
+# --- real files -----------------------------------------------------------------------------------------------------
+
+
+def real(name: str) -> Path:
+    path = RECORDS / name
+    if not path.is_file():
+        pytest.skip(f"the real record {name} is not here (shared/records)")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("name", "channel", "form", "unit", "npts", "dt", "pga", "peak"),
+    [
+        # pga [cm/s2] as the header of the file itself, or its catalogue, says; peak: its sign
+        ("formats/0111a.smc", None, "USGS SMC", "cm/s2", 6001, 0.005, 104.4078, 1),
+        ("formats/20180212_211557_WPWS_20.V2A", "1", "GeoNet V2A", "mm/s2", 5800, 0.02, 4.16, -1),
+        ("formats/20180212_211557_WPWS_20.V2A", "s74e", "GeoNet V2A", "mm/s2", 5800, 0.02, 19.40, -1),
+        ("formats/20180212_211557_WPWS_20.V2A", "Up", "GeoNet V2A", "mm/s2", 5800, 0.02, 2.73, -1),
+        ("formats/AOM0011801241951.EW", None, "K-NET/KiK-net", "gal", 10200, 0.01, 4.078, None),
+        ("formats/NGNH311106302345.EW1", None, "K-NET/KiK-net", "gal", 12000, 0.01, 0.192, None),
+        ("formats/Cosmos12TimeSeriesTest.v1", None, "COSMOS", "cm/s2", 7000, 0.01, 161.962, -1),
+        ("formats/HL.DLFA..HNE.D.20190728.160908.C.ACC.ASC", "HNE", "ESM ASCII", "cm/s2", 13876, 0.005, 0.227973, -1),
+        ("formats/RSN763_LOMAP_GIL067.AT2", None, "PEER AT2", "g", 7999, 0.005, 351.6006, None),
+        ("formats/ce36456p_CE36456.V2", "1", "CSMIP V2", "cm/s2", 3251, 0.02, 267.957, -1),
+        ("formats/ce36456p_CE36456.V2", "up", "CSMIP V2", "cm/s2", 3250, 0.02, 94.805, -1),
+        ("formats/ce36456p_CE36456.V2", "0", "CSMIP V2", "cm/s2", 3250, 0.02, 256.231, -1),
+        (
+            "formats/us1000hyfh_akbmrp_AKBMR--n.1000hyfh.BNZ.--.acc.V2c",
+            "BNZ",
+            "COSMOS",
+            "cm/s2",
+            42000,
+            0.005,
+            6.851512,
+            -1,
+        ),
+        ("SimCenter_Rinaldi.json", None, "SimCenter JSON", "g", 1991, 0.01, 0.874059 * 980.665, None),
+    ],
+)
+def test_real_records(name, channel, form, unit, npts, dt, pga, peak):
+    motion = read_record(real(name), channel=channel)
+    assert (motion.format, motion.unit, motion.npts) == (form, unit, npts)
+    assert motion.dt == pytest.approx(dt, rel=1e-9)
+    largest = 100 * motion.acceleration[np.argmax(np.abs(motion.acceleration))]
+    assert abs(largest) == pytest.approx(pga, rel=2e-4, abs=6e-4)
+    assert peak is None or np.sign(largest) == peak
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds"),  # of the peak, as the header says
+    [
+        ("Cosmos12TimeSeriesTest.v1", 27.85),
+        ("us1000hyfh_akbmrp_AKBMR--n.1000hyfh.BNZ.--.acc.V2c", 76.215),
+        ("HL.DLFA..HNE.D.20190728.160908.C.ACC.ASC", 36.31),
+        ("0111a.smc", 10.17),
+    ],
+)
+def test_the_peak_of_a_real_record_is_when_its_header_says(name, seconds):
+    motion = read_record(real(f"formats/{name}"))
+    assert np.argmax(np.abs(motion.acceleration)) * motion.dt == pytest.approx(seconds, abs=1.01 * motion.dt)
+
+
+def test_the_real_usc_record_is_the_same_straight_lines():
+    path = real("formats/017m30lw.s0a")
+    motion = read_record(path)
+    assert (motion.format, motion.unit, motion.dt, motion.npts) == ("USC V1", "g/10", 0.001, 34717)
+    rows = path.read_text().split("\n")[27:]
+    pairs = np.array([float(cell) for row in rows for cell in re.findall(".{7}", row[1:])]).reshape(-1, 2)
+    assert len(pairs) == 8095
+    at_points = motion.acceleration[np.rint(pairs[:, 0] * 1000).astype(int)]
+    np.testing.assert_allclose(at_points, pairs[:, 1] * G / 10, rtol=1e-12)
+    assert motion.pga == pytest.approx(0.2647, abs=1e-9)
+    assert np.sqrt((pairs[:, 1] ** 2).mean()) == pytest.approx(0.400, abs=0.001)  # as its header says
+
+
+def test_the_real_records_of_simcenter_and_peer_agree():
+    ours, theirs = read_record(real("SimCenter_Rinaldi.json")), read_record(real("Rinaldi228.AT2"))
+    np.testing.assert_array_equal(ours.acceleration, theirs.acceleration)
+
+
+@pytest.mark.skipif(not FORMATS.is_dir(), reason="the real records are not here (shared/records/formats)")
+def test_each_real_record_is_claimed_by_one_reader():
+    readers = {name: reader for name, reader in load_readers().items() if name != FALLBACK}
+    files = [path for path in [*FORMATS.iterdir(), *RECORDS.iterdir()] if path.suffix not in ("", ".md", ".dat")]
+    assert len(files) > 10
+    for path in files:
+        content = path.read_text("latin-1")
+        assert sum(reader.sniff(content) for reader in readers.values()) == 1, path.name
+
+
+# --- made files -----------------------------------------------------------------------------------------------------
+
+
+def simcenter(values=VALUES, **changes) -> str:
+    data = {"info": "ACCELERATION IN UNITS OF G", "numPoints": len(values), "dT": 0.01, "accel_data": list(values)}
+    return json.dumps({key: value for key, value in {**data, **changes}.items() if value is not None}, indent=1)
+
+
+def esm(values=VALUES, count=None, unit="cm/s^2", kind="ACCELERATION") -> str:
+    header = {"EVENT_NAME": "MADE UP", "SAMPLING_INTERVAL_S": "0.010000", "NDATA": count or len(values)}
+    header |= {"STREAM": "HNE", "UNITS": unit, "PGA_CM/S^2": "1.0", "DATA_TYPE": kind, "USER5": ""}
+    return "".join(f"{key}: {value}\n" for key, value in header.items()) + columns(values, ".6f", 1)
+
+
+def geonet(values=VALUES, count=None, unit="mm/s/s", names=("S16W", "S74E", "Up")) -> str:
+    count = count or len(values)
+    out = ""
+    for factor, name in enumerate(names, start=1):
+        out += "Corrected accelerogram made up\nSite\n" + "x\n" * 7 + f"Number of points {count:5d}    Duration 1 sec\n"
+        out += f"Instrument corrected data at 0.010 sec intervals\nx\nComponent {name}  Axis\n"
+        out += f"Acceleration:  peak    -41.6 {unit} at  43.68 sec     rms      2.2 {unit}\n"
+        out += "Velocity:      peak     1.65 mm/s   at  43.56 sec\nDisplacement:  peak    0.131 mm\n"
+        out += columns([0] * 30, "8d", 10) + f"   21200     250     250{count:8d}{count:8d}       0       0\n"
+        out += columns([0.0] * 60, "8.1f", 10)
+        out += columns(factor * values, "8.2f", 10) + columns(values, "8.2f", 10)
+    return out
+
+
+def csmip(
+    values=VALUES, count=None, unit="(UNITS: CM/SEC/SEC)", names=("90 DEG", "UP"), kinds=("ACCEL", "VELOC")
+) -> str:
+    out = ""
+    for place, name in enumerate(names, start=1):
+        out += f"CORRECTED ACCELEROGRAM   36456-S4384       CHAN {place:2d}: {name:8}   FROM\n"
+        out += "UNCORRECTED ACCELEROGRAM DATA\nMADE UP EARTHQUAKE\n" + f"CHAN {place:2d}: {name}\n"
+        out += columns([0] * 20, "5d", 16) + columns([0.0] * 20, "10.3f", 8)
+        for kind in kinds:
+            what = unit if kind == "ACCEL" else "(UNITS: CM/SEC)"
+            out += f" {count or len(values)} POINTS OF {kind} DATA EQUALLY SPACED AT  .010 SEC.  {what}\n"
+            out += columns(place * values, "10.3f", 8)
+        out += f"/&  ----------  END OF DATA FOR CHANNEL {place}  ----------\n"
+    return out
+
+
+def smc(values=VALUES, count=None, first="2 CORRECTED ACCELEROGRAM", rate=100.0, comments=2, said=2) -> str:
+    integers, reals = [-32768] * 48, [1.7e38] * 50
+    integers[15], integers[16], reals[1] = said, count or len(values), rate
+    cells = [f"{value:10.4E}".replace("E+0", "E+").replace("E-0", "E-").rjust(10) for value in values]
+    return (
+        f"{first:80}\n*\nMADE\n" + "component=    360\n" + "*\n" * 7
+        + columns(integers, "10d", 8) + columns(reals, "15.7E", 5) + "| 1 comment\n" * comments
+        + columns(cells, "s", 8)
+    )  # fmt: skip
+
+
+def cosmos(
+    values=VALUES, count=None, unit="cm/sec2(04)", kind="acceleration", dt_ms=10.0, length=0, names=("340 deg",)
+) -> str:
+    out = ""
+    for factor, name in enumerate(names, start=1):
+        reals = [-999.0] * 100
+        reals[33], reals[61] = 0.5, dt_ms
+        out += "Corrected acceleration    (Format v01.20 with 13 text lines) Src: made up\n" + "x\n" * 7
+        out += f"Sta Cha:  {factor}: {name} (Rcrdr Chan  1) Location: nowhere\n" + "x\n" * 4
+        out += " 100 Integer-header values follow on  10 lines, Format= (10I8)\n" + columns([-999] * 100, "8d", 10)
+        out += " 100 Real-header values follow on  17 lines, Format= (6F13.6)\n" + columns(reals, "13.6f", 6)
+        out += '  1 Comment line(s) follow, each starting with a "|":\n| 3.0 made up\n'
+        out += f"   {count or len(values)}  {kind} pts, approx   {length} secs, units={unit},Format=(8F10.5)\n"
+        out += columns(factor * values, "10.5f", 8) + f"/&  ------  End of data for channel  {factor}  ------\n"
+    return out
+
+
+def usc(values=VALUES, times=None, count=None, unit="G/10") -> str:
+    times = 0.01 * np.arange(len(values)) if times is None else times
+    pairs = np.column_stack([times, values]).ravel()
+    head = "FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\nMADE UP EARTHQUAKE\nCOMP N90E             9\n"
+    head += f"NO. OF POINTS =   {count or len(values)}      DURATION =  34.716 SEC       50\n"
+    head += f"UNITS ARE SEC AND {unit}                    22\n"
+    return head + columns([0] * 100, "5d", 16) + columns([0.0] * 50, "10.3f", 8) + columns(pairs, "7.3f", 10, " ")
+
+
+def knet(values=VALUES, duration=11, rate="1Hz", scale="2000(gal)/1000000") -> str:
+    header = {"Origin Time": "2018/01/24 19:51:00", "Lat.": 41.0, "Long.": 142.5, "Depth. (km)": 30, "Mag.": 6.2}
+    header |= {"Station Code": "MADE", "Station Lat.": 1, "Station Long.": 1, "Station Height(m)": 39, "Record Time": 0}
+    header |= {"Sampling Freq(Hz)": rate, "Duration Time(s)": duration, "Dir.": "E-W", "Scale Factor": scale}
+    header |= {"Max. Acc. (gal)": 4.078, "Last Correction": 0, "Memo.": ""}
+    counts = np.rint(500 * values).astype(int) - 12000
+    return "".join(f"{key:<18}{value}\n" for key, value in header.items()) + columns(counts, "9d", 8)
+
+
+MADE = {
+    "simcenter": (simcenter, "g", G, 0.01),
+    "esm": (esm, "cm/s2", 0.01, 0.01),
+    "geonet_v2a": (lambda *a, **k: geonet(*a, **{"names": ("S16W",)} | k), "mm/s2", 0.001, 0.01),
+    "csmip_v2": (lambda *a, **k: csmip(*a, **{"names": ("90 DEG",)} | k), "cm/s2", 0.01, 0.01),
+    "smc": (smc, "cm/s2", 0.01, 0.01),
+    "cosmos": (cosmos, "cm/s2", 0.01, 0.01),
+    "usc_v1": (usc, "g/10", G / 10, 0.01),
+    "knet": (knet, "gal", 0.01, 1.0),
+}
+BY_FORMAT = pytest.mark.parametrize("name", MADE)
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write(content: str) -> Path:
+        path = tmp_path / "record.txt"
+        path.write_text(content)
+        return path
+
+    return write
+
+
+@BY_FORMAT
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_made_files_are_read(name, newline, tmp_path):
+    make, unit, size, dt = MADE[name]
+    path = tmp_path / "record.dat"
+    path.write_bytes(make().replace("\n", newline).encode())
+    motion = read_record(path)
+    expected = (VALUES - VALUES.mean() if name == "knet" else VALUES) * size
+    np.testing.assert_allclose(motion.acceleration, expected, rtol=1e-12, atol=1e-9)
+    assert (motion.name, motion.unit, motion.format) == ("record.dat", unit, load_readers()[name].TITLE)
+    assert motion.dt == pytest.approx(dt, rel=1e-12)
+
+
+@BY_FORMAT
+def test_a_made_file_is_claimed_by_its_reader_alone(name):
+    content = MADE[name][0]()
+    assert [other for other, reader in load_readers().items() if other != FALLBACK and reader.sniff(content)] == [name]
+
+
+@BY_FORMAT
+def test_the_unit_of_the_file_may_not_be_contradicted(name, write):
+    path = write(MADE[name][0]())
+    assert "but --units says m/s2" in problem(path, units="m/s2").message
+    assert "unknown unit" in problem(path, units="ft/s2").message
+
+
+@BY_FORMAT
+def test_the_interval_of_the_file_may_not_be_contradicted(name, write):
+    make, _, _, dt = MADE[name]
+    path = write(make())
+    assert read_record(path, dt=dt).dt == pytest.approx(dt)
+    assert f"--dt says {2 * dt:g} s" in problem(path, dt=2 * dt).message
+
+
+@BY_FORMAT
+@pytest.mark.parametrize("count", [10, 13])
+def test_a_wrong_number_of_points_is_refused(name, count, write):
+    if name == "knet":
+        content = knet(duration=count)
+    else:
+        content = MADE[name][0](**{"numPoints" if name == "simcenter" else "count": count})
+    found = problem(write(content))
+    assert found.file.endswith("record.txt")
+    assert found.line
+    assert found.hint
+
+
+@BY_FORMAT
+def test_a_file_cut_short_is_refused(name, write):
+    # Accelerations without the velocities that often follow are whole.
+    content = MADE[name][0](**{"kinds": ("ACCEL",)} if name == "csmip_v2" else {})
+    lines = content.split("\n")
+    for end in range(1, len(lines)):
+        cut = "\n".join(lines[:end])
+        if cut.split() == content.split() or (lines[end].startswith(("/&",)) and not "".join(lines[end + 1 :])):
+            continue  # only an end mark is missing
+        with pytest.raises(InputError):
+            read_record(write(cut))
+
+
+@BY_FORMAT
+def test_a_spoilt_value_is_pointed_at(name, write):
+    lines = MADE[name][0]().split("\n")
+    spoilt = {"simcenter": ("-4.5", "oops"), "knet": ("  -11625", "    oops"), "esm": ("1.500000", "oops")}
+    spoilt |= {"smc": ("1.5000E+0", "     oops"), "cosmos": ("   1.50000", "   *******"), "usc_v1": ("1.500", " oops")}
+    old, new = spoilt.get(name, ("1.500", "*****") if name == "csmip_v2" else (" 1.50", " oops"))
+    place = next(index for index, line in enumerate(lines) if old in line)
+    lines[place] = lines[place].replace(old, new)
+    found = problem(write("\n".join(lines)))
+    assert found.line is not None
+
+
+def test_simcenter_errors(write):
+    assert "--units" in problem(write(simcenter(info=None))).hint
+    assert read_record(write(simcenter(info=None)), units="m/s2").acceleration[1] == 1.5
+    assert "dT is missing" in problem(write(simcenter(dT=None))).message
+    for wrong in (0, -1, "0.01", True):
+        assert "dT must be positive" in problem(write(simcenter(dT=wrong))).message
+    assert "list of numbers" in problem(write(simcenter(accel_data=3))).message
+    assert "value 2 is not a finite number" in problem(write(simcenter([0.0, None]))).message
+    assert "value 1 is not a finite number" in problem(write(simcenter([float("nan"), 1.0]))).message
+    assert "value 2 is not a finite number" in problem(write(simcenter([1, 10**400]))).message
+    assert "at least two" in problem(write(simcenter([1.0]))).message
+    found = problem(write(simcenter()[:-20]))
+    assert "not valid JSON" in found.message
+    assert found.line
+    assert read_record(write(simcenter(numPoints=len(VALUES) + 1))).npts == len(VALUES)
+    assert "no channel '2'" in problem(write(simcenter()), channel="2").message
+
+
+@pytest.mark.parametrize(
+    ("content", "fragment"),
+    [
+        (esm(kind="VELOCITY", unit="cm/s"), "VELOCITY, not ACCELERATION"),
+        (esm(unit="cm/s"), "a velocity or displacement"),
+        (csmip(kinds=("VELOC", "DISPL")), "no acceleration"),
+        (smc(first="3 VELOCITY"), "not an acceleration: 3 VELOCITY"),
+        (smc(first="5 RESPONSE SPECTRA"), "not an acceleration"),
+        (cosmos(kind="velocity", unit="cm/sec(05)"), "no acceleration, but velocity"),
+        (cosmos(unit="cm/sec(05)"), "a velocity or displacement"),
+        (cosmos(kind="raw", unit="counts(50)"), "no acceleration, but raw"),
+        (geonet(unit="mm/s"), "a velocity or displacement"),
+        (knet(scale="2000(kine)/1000000"), "does not say what unit"),
+    ],
+)
+def test_what_is_no_acceleration_is_refused(content, fragment, write):
+    assert fragment in problem(write(content)).message
+
+
+@pytest.mark.parametrize("content", [esm(unit=""), csmip(unit=""), cosmos(unit="  "), usc(unit="-")])
+def test_a_missing_unit_is_not_guessed(content, write):
+    path = write(content)
+    hint = problem(path, channel="1").hint
+    assert "--units" in hint
+    assert read_record(path, channel="1", units="mm/s2").acceleration[1] == pytest.approx(0.0015)
+
+
+@pytest.mark.parametrize("make", [geonet, csmip, lambda: cosmos(names=("90 deg", "Up"))])
+def test_channels(make, write):
+    path = write(make())
+    found = problem(path)
+    assert "channels, and only one" in found.message
+    assert re.search(r"1: \S.*, 11 points, PGA \S+ g\n", found.hint)
+    one, two = read_record(path, channel="1"), read_record(path, channel=" 2")
+    np.testing.assert_allclose(two.acceleration, 2 * one.acceleration)
+    assert one.name.startswith("record.txt channel ")
+    up = read_record(path, channel="UP")
+    assert up.name.lower() == "record.txt channel up"
+    for unknown in ("0", "9", "N", ""):
+        found = problem(path, channel=unknown)
+        assert f"no channel '{unknown}'" in found.message
+        assert found.field == "--channel"
+        assert "11 points" in found.hint
+
+
+def test_an_azimuth_may_be_given_without_its_unit(write):
+    path = write(csmip(names=("90 DEG", "UP", "0 DEG")))
+    assert read_record(path, channel="90").name == read_record(path, channel="90 deg").name
+    assert read_record(path, channel="0").name.endswith("0 DEG")
+    assert "2 channels are called 'up'" in problem(write(csmip(names=("UP", "UP"))), channel="up").message
+
+
+@pytest.mark.parametrize("content", ["t,accel_g\n0,1\n0.01,2\n", "NPTS= 2, DT= .01 SEC\nACCELERATION IN G\n1 2\n"])
+def test_one_component_has_one_channel(content, write):
+    assert read_record(write(content), channel="1", units="g").npts == 2
+    assert "there is no channel 'up'" in problem(write(content), channel="up", units="g").message
+
+
+def test_columns_may_touch(write):
+    touching = np.array([-12345.12, -23456.25, 1.0])
+    assert read_record(write(csmip(touching, names=("UP",)))).acceleration[:2] == pytest.approx([-123.4512, -234.5625])
+
+
+def test_smc_comments_must_be_as_many_as_it_says(write):
+    assert "comment lines" in problem(write(smc(comments=3))).message
+    assert "comment lines" in problem(write(smc(comments=1))).message
+    assert "samples per second" in problem(write(smc(rate=0.0))).message
+    assert problem(write(smc(rate=1.7e38))).line == 18
+
+
+def test_cosmos_interval_must_make_its_length(write):
+    assert read_record(write(cosmos(dt_ms=-999.0, length=5))).dt == 0.5  # the raw one
+    assert "sample interval is unclear" in problem(write(cosmos(length=60))).message
+    assert "begin here" in problem(write(cosmos() + "left over\n")).message
+    assert "format such as" in problem(write(cosmos().replace("(10I8)", "none"))).message
+
+
+def test_cosmos_with_velocities_below_the_accelerations(write):
+    whole = cosmos()
+    velocities = "  2 velocity pts, approx 0 secs, units=cm/sec(05),Format=(8F10.5)\n" + columns([9, 9], "10.5f", 8)
+    path = write(whole.replace("/&", velocities + "/&"))
+    np.testing.assert_allclose(read_record(path).acceleration, VALUES / 100)
+
+
+def test_usc_times_that_are_uneven_are_kept(write):
+    motion = read_record(write(usc(np.array([0.0, 1.0, -1.0]), times=[0.0, 0.004, 0.01])))
+    assert motion.dt == 0.002
+    np.testing.assert_allclose(motion.acceleration, np.array([0, 0.5, 1, 1 / 3, -1 / 3, -1]) * G / 10, atol=1e-15)
+    assert "does not increase" in problem(write(usc(np.ones(3), times=[0.0, 0.01, 0.01]))).message
+    assert read_record(write(usc(unit="G"))).acceleration[1] == 1.5 * G
+
+
+def test_knet_header(write):
+    assert "sampling frequency" in problem(write(knet(rate="fast"))).message
+    assert "scale factor" in problem(write(knet(scale="0(gal)/0"))).message
+    assert "scale factor" in problem(write(knet(scale="none"))).message
+
+
+# --- the registry ---------------------------------------------------------------------------------------------------
+
+
+def reader(title: str, *, claims: bool) -> SimpleNamespace:
+    def read(text, file, **options):
+        return GroundMotion(title, 0.01, [0, 1])
+
+    return SimpleNamespace(TITLE=title, SIGN=f"sign of {title}", sniff=lambda text: claims, read=read)
+
+
+def test_the_readers_come_in_through_entry_points():
+    assert set(load_readers()) == {*MADE, "peer_at2", FALLBACK}
+    assert load_readers("rocking.nothing") == {}
+
+
+def test_two_claims_are_an_error_that_says_why():
+    readers = {name: reader(name.upper(), claims=name != "c") for name in "abc"}
+    with pytest.raises(InputError, match=r"a \(A: sign of A\); b \(B: sign of B\)") as caught:
+        reader_for("", "x", readers)
+    assert "C" not in caught.value.problems[0].message
+
+
+def test_the_fallback_is_asked_last():
+    readers = {"a": reader("A", claims=True), FALLBACK: reader("T", claims=True)}
+    assert reader_for("", "x", readers).TITLE == "A"
+    assert reader_for("", "x", {**readers, "a": reader("A", claims=False)}).TITLE == "T"
+
+
+def test_a_file_of_no_format_lists_what_was_tried(write):
+    found = problem(write("nothing of the kind\n"))
+    assert all(f"{name} (" in found.hint for name in [*MADE, "peer_at2", "text"])
+
+
+def test_a_broken_reader_is_named(monkeypatch):
+    point = SimpleNamespace(name="odd", value="elsewhere:odd", dist=None, load=lambda: SimpleNamespace(sniff=len))
+    monkeypatch.setattr("rocking_cli.plugins.entry_points", lambda group: [point] if group == GROUP else [])
+    with pytest.raises(MechanismError, match=r"elsewhere:odd.* is not a record reader: it has no read, TITLE, SIGN"):
+        load_readers()
+
+
+# --- the command ----------------------------------------------------------------------------------------------------
+
+
+def test_the_command_takes_a_channel(write):
+    path = str(write(csmip(VALUES * 20)))
+    asked = CliRunner().invoke(main, ["respond", "--record", path, "--model", "linear1"])
+    assert asked.exit_code != 0
+    done = CliRunner().invoke(main, ["respond", "--record", path, "--channel", "up", "--model", "linear1", "--json"])
+    assert json.loads(done.stdout)["record"]["name"] == "record.txt channel UP"
+    refused = CliRunner().invoke(main, ["respond", "--release", "0.1", "--channel", "1"])
+    assert refused.exit_code == 2
+
+
+def test_channel_choice_knows_files_without_names():
+    motion = layout.choose("x", "made up", [layout.Channel("", 0.01, VALUES, "g")] * 2, "2")
+    assert motion.name.startswith("x channel")
