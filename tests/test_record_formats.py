@@ -484,3 +484,19 @@ def test_the_command_takes_a_channel(write):
 def test_channel_choice_knows_files_without_names():
     motion = layout.choose("x", "made up", [layout.Channel("", 0.01, VALUES, "g")] * 2, "2")
     assert motion.name.startswith("x channel")
+
+
+@pytest.mark.parametrize(
+    ("content", "fragment"),
+    [
+        (smc(said=-1), "-1 comment lines"),
+        (smc(said=99), "ends before its values"),
+        (esm().replace("STREAM", "stream").replace("NDATA", "x\nNDATA"), "does not state NDATA"),
+        (csmip(names=("UP",)).replace("     1.500", "     1E300"), "not a finite number of sensible size"),
+        (geonet().replace("Component S74E", "x"), "does not state the component"),
+        (geonet().replace("Corrected accelerogram", "X", 2).replace("X", "Corrected accelerogram", 1), "begin with"),
+        (geonet().replace("      11      11       0", "      11"), "followed by two more counts"),
+    ],
+)
+def test_headers_that_are_spoilt(content, fragment, write):
+    assert fragment in problem(write(content)).message

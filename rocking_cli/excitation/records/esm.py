@@ -56,6 +56,11 @@ def read(
         message = f"the header says the data are of type {kind}, not ACCELERATION"
         hint = "give the file with the acceleration"
         raise InputError(Problem(message, file, kind_line, field="DATA_TYPE", hint=hint))
+    for key in ("SAMPLING_INTERVAL_S", "NDATA"):
+        if key not in header:
+            message = f"the header, which ends before this line, does not state {key}"
+            excerpt = lines[start].strip()[:100] if start < len(lines) else None
+            raise InputError(Problem(message, file, min(start + 1, len(lines)), field=key, excerpt=excerpt))
     unit_line, spelling = header.get("UNITS", (start, ""))
     unit = stated_unit(file, unit_line, spelling, units)
     dt_line, dt_text = header["SAMPLING_INTERVAL_S"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
@@ -60,21 +59,22 @@ def read(
     comments, count = int(integers[15]), int(integers[16])
     comment_line, count_line, rate_line = _TEXT_LINES + 2, _TEXT_LINES + 3, _REALS + 1
     start = _REALS + _REAL_LINES
+    if comments < 0:
+        message = f"the header says {comments} comment lines"
+        raise InputError(Problem(message, file, comment_line, hint="0 is the least there can be"))
     if start + comments >= len(lines):
         raise InputError(Problem("the file ends before its values", file, len(lines)))
     number(file, count_line, lines[count_line - 1], str(count), "number of points", least=1)
     rate = number(
         file, rate_line, lines[_REALS], lines[_REALS][_REAL_WIDTH : 2 * _REAL_WIDTH], "number of samples per second"
     )
-    if not all(line.startswith("|") for line in lines[start : start + comments]) or _more(lines, start + comments):
+    if not all(line.startswith("|") for line in lines[start : start + comments]) or lines[start + comments].startswith(
+        "|"
+    ):
         message = f"the header says {comments} comment lines, but another number begins with |"
         raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
-    block = Block(start + max(comments, 0), count, _DATA_WIDTH, count_line)
+    block = Block(start + comments, count, _DATA_WIDTH, count_line)
     values, _ = fixed_width(file, lines, block)
     component = re.search(r"component *= *(-?\w+)", "\n".join(lines[:_TEXT_LINES]))
     found = Channel(component[1] if component else "", 1 / rate, in_si(values, unit), unit, rate_line)
     return choose(file, TITLE, [found], channel, dt)
-
-
-def _more(lines: Sequence[str], index: int) -> bool:
-    return index < len(lines) and lines[index].startswith("|")
