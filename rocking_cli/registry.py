@@ -63,12 +63,7 @@ class Registry(Mapping[str, type[Mechanism]]):
 
     def package_of(self, name: str) -> str:
         """Distribution and version that a mechanism comes from."""
-        return ", ".join(self.package(point) for point in self._points[name])
-
-    @staticmethod
-    def package(point: EntryPoint) -> str:
-        """Distribution and version of an entry point."""
-        return plugins.package(point)
+        return ", ".join(plugins.package(point) for point in self._points[name])
 
 
 def load(point: EntryPoint) -> type[Mechanism]:

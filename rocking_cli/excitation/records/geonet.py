@@ -31,26 +31,7 @@ def sniff(text: str) -> bool:
 def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
-    """Read a GeoNet V2A file.
-
-    Parameters
-    ----------
-    text : str
-        Content of the file, lines ending in a plain newline.
-    file : str
-        Its path, for the messages and the name of the motion.
-    dt : float, optional
-        Interval between samples [s]; it must agree with the file.
-    units : str, optional
-        Unit of the accelerations; it must agree with the file.
-    channel : str, optional
-        Which one: its place, counted from 1, or its name.
-
-    Returns
-    -------
-    GroundMotion
-        Accelerations [m/s2] at a constant interval [s].
-    """
+    """Read a GeoNet V2A file; arguments, result and errors are those of `registry.Reader.read`."""
     lines = text.split("\n")
     channels = []
     start = 0

@@ -31,23 +31,7 @@ def read(
 ) -> GroundMotion:
     """Read a K-NET or KiK-net file; the mean, which is the digitiser's zero, is taken off.
 
-    Parameters
-    ----------
-    text : str
-        Content of the file, lines ending in a plain newline.
-    file : str
-        Its path, for the messages and the name of the motion.
-    dt : float, optional
-        Interval between samples [s]; it must agree with the file.
-    units : str, optional
-        Unit of the accelerations; it must agree with the file.
-    channel : str, optional
-        Its place, 1, or its name, should it be asked for: there is only one.
-
-    Returns
-    -------
-    GroundMotion
-        Accelerations [m/s2] at a constant interval [s].
+    Arguments, result and errors are those of `registry.Reader.read`.
     """
     lines = text.split("\n")
     rate_line, (rate_text,) = _find(file, lines, _RATE, "sampling frequency, such as 100Hz")

@@ -30,7 +30,31 @@ class Reader(Protocol):
     def read(
         self, text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
     ) -> GroundMotion:
-        """Read the content of a file, lines ending in a plain newline; `file` is for messages and the name."""
+        """Read a file of this format.
+
+        Parameters
+        ----------
+        text : str
+            Content of the file, lines ending in a plain newline.
+        file : str
+            Its path, for the messages and the name of the motion.
+        dt : float, optional
+            Interval between samples [s]; it must agree with the file, and is needed where the file gives none.
+        units : str, optional
+            Unit of the accelerations; it must not contradict the file, and is needed where the file gives none.
+        channel : str, optional
+            Which channel: its place, counted from 1, or its name; needed where there are several.
+
+        Returns
+        -------
+        GroundMotion
+            Accelerations [m/s2] at a constant interval [s].
+
+        Raises
+        ------
+        InputError
+            If anything is missing, contradictory, no number, or no acceleration.
+        """
         ...
 
 

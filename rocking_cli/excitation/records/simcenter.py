@@ -27,26 +27,7 @@ def sniff(text: str) -> bool:
 def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
-    """Read a SimCenter JSON file.
-
-    Parameters
-    ----------
-    text : str
-        Content of the file, lines ending in a plain newline.
-    file : str
-        Its path, for the messages and the name of the motion.
-    dt : float, optional
-        Interval between samples [s]; it must agree with the file.
-    units : str, optional
-        Unit of the accelerations; needed where the file does not say it.
-    channel : str, optional
-        There is only the first.
-
-    Returns
-    -------
-    GroundMotion
-        Accelerations [m/s2] at a constant interval [s].
-    """
+    """Read a SimCenter JSON file; arguments, result and errors are those of `registry.Reader.read`."""
     only_channel(file, channel)
     try:
         data: dict[str, Any] = json.loads(text)

@@ -28,26 +28,7 @@ def sniff(text: str) -> bool:
 def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
-    """Read a USGS SMC file.
-
-    Parameters
-    ----------
-    text : str
-        Content of the file, lines ending in a plain newline.
-    file : str
-        Its path, for the messages and the name of the motion.
-    dt : float, optional
-        Interval between samples [s]; it must agree with the file.
-    units : str, optional
-        Unit of the accelerations; it must agree with the file.
-    channel : str, optional
-        Its place, 1, or its name, should it be asked for: there is only one.
-
-    Returns
-    -------
-    GroundMotion
-        Accelerations [m/s2] at a constant interval [s].
-    """
+    """Read a USGS SMC file; arguments, result and errors are those of `registry.Reader.read`."""
     lines = text.split("\n")
     kind = _FIRST.match(lines[0])
     if kind is None or kind[1] not in _ACCELERATIONS:

@@ -35,26 +35,7 @@ def sniff(text: str) -> bool:
 def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
-    """Read delimited text.
-
-    Parameters
-    ----------
-    text : str
-        Content of the file, lines ending in a plain newline.
-    file : str
-        Its path, for the messages and the name of the motion.
-    dt : float, optional
-        Interval between samples [s]; needed for one column, checked against the times of two.
-    units : str, optional
-        Unit of the accelerations; needed where no header says it.
-    channel : str, optional
-        There is only the first.
-
-    Returns
-    -------
-    GroundMotion
-        Accelerations [m/s2] at a constant interval [s].
-    """
+    """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
     only_channel(file, channel)
     lines = text.split("\n")
     start = _first_row(lines)

@@ -32,29 +32,11 @@ def sniff(text: str) -> bool:
 def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
-    """Read a USC V1 file.
+    """Read a USC V1 file; arguments, result and errors are those of `registry.Reader.read`.
 
     Between its points the accelerogram is straight lines, at times that are whole milliseconds. The motion has the
     largest interval that meets all of these times, so it is the same lines, not an approximation: more samples
     than the file has points, though none of them made up.
-
-    Parameters
-    ----------
-    text : str
-        Content of the file, lines ending in a plain newline.
-    file : str
-        Its path, for the messages and the name of the motion.
-    dt : float, optional
-        Interval between samples [s]; it must agree with the file.
-    units : str, optional
-        Unit of the accelerations; it must agree with the file.
-    channel : str, optional
-        Its place, 1, or its name, should it be asked for: there is only one.
-
-    Returns
-    -------
-    GroundMotion
-        Accelerations [m/s2] at a constant interval [s].
     """
     lines = text.split("\n")
     count_line, count_text = _find(file, lines, _COUNT, "number of points (NO. OF POINTS)")
