@@ -20,8 +20,8 @@ from scipy.integrate import solve_ivp
 
 from rocking_cli import GroundMotion, equivalent_block, load_structure, read_record
 from rocking_cli.core import EquivalentBlock
-from rocking_cli.dynamics.history import RTOL, _follow
-from rocking_cli.dynamics.model import MODELS, build_model
+from rocking_cli.dynamics.history import follow
+from rocking_cli.dynamics.model import MODELS, build_models
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 SCALES = {"block": (0.5, 0.6), "frame": (0.5, 1.0)}
@@ -70,8 +70,8 @@ def main() -> None:
     for name, scale in ((name, scale) for name, scales in SCALES.items() for scale in scales):
         mechanism, shaken = load_structure(EXAMPLES / f"{name}.yaml"), motion.scaled(scale)
         equivalence = equivalent_block(mechanism)
-        for model in (build_model(mechanism, equivalence, model) for model in MODELS):
-            work = partial(_follow, model, equivalence, shaken, 0.0, 0.0, RTOL)
+        for model in build_models(mechanism, MODELS):
+            work = partial(follow, model, shaken, tail=0.0)
             fast, ratio = median_time(work), ""
             if name == "block" and model.name == "nonlinear":
                 run = work()

@@ -23,9 +23,14 @@ if TYPE_CHECKING:
     from rocking_cli.core import Mechanism as Mechanism
     from rocking_cli.core import RigidMotion as RigidMotion
     from rocking_cli.core import equivalent_block as equivalent_block
+    from rocking_cli.dynamics.batch import Responses as Responses
+    from rocking_cli.dynamics.batch import Runs as Runs
+    from rocking_cli.dynamics.batch import respond_many as respond_many
     from rocking_cli.dynamics.history import History as History
     from rocking_cli.dynamics.history import Outcome as Outcome
     from rocking_cli.dynamics.history import respond as respond
+    from rocking_cli.dynamics.model import Model as Model
+    from rocking_cli.dynamics.model import build_models as build_models
     from rocking_cli.dynamics.pulse_response import closed_form as closed_form
     from rocking_cli.dynamics.pulse_response import exact_pulse as exact_pulse
     from rocking_cli.errors import InputError as InputError
@@ -42,7 +47,9 @@ __version__ = "0.1.0"
 
 _HOME = {
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
+    "dynamics.batch": ["Responses", "Runs", "respond_many"],
     "dynamics.history": ["History", "Outcome", "respond"],
+    "dynamics.model": ["Model", "build_models"],
     "dynamics.pulse_response": ["closed_form", "exact_pulse"],
     "errors": ["InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
     "excitation.base": ["GroundMotion"],

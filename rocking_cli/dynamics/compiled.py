@@ -20,11 +20,20 @@ def cache_folder() -> Path:
     return Path(os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_path("rocking-cli") / "numba")
 
 
-def compile_kernel(function: Callable[..., Any]) -> Any:
-    """`function` compiled by numba at its first call, and kept on disk where that is possible.
+# A kernel releases the GIL and keeps IEEE arithmetic to the letter: a history that meets a NaN must show it, and a
+# record scaled before or inside the kernel must give the same bits.
+OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": False, "error_model": "numpy"}
 
-    It releases the GIL and keeps IEEE arithmetic: a history that meets a NaN must show it.
-    """
+
+def compile_inline(function: Callable[..., Any]) -> Any:
+    """`function`, set by the compiler into each place of a kernel that calls it: a call costs more than a few sums."""
+    from numba import njit
+
+    return njit(forceinline=True, **OPTIONS)(function)
+
+
+def compile_kernel(function: Callable[..., Any]) -> Any:
+    """`function` compiled by numba at its first call, and kept on disk where that is possible."""
     import numba
     from numba import njit
 
@@ -34,9 +43,9 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
     try:
         cache_folder().mkdir(parents=True, exist_ok=True)
         config.CACHE_DIR = str(cache_folder())
-        return njit(cache=True, nogil=True, fastmath=False, error_model="numpy")(function)
+        return njit(cache=True, **OPTIONS)(function)
     except (OSError, RuntimeError):  # nowhere to write: compile anew in each process
-        return njit(nogil=True, fastmath=False, error_model="numpy")(function)
+        return njit(**OPTIONS)(function)
     finally:
         config.CACHE_DIR = theirs
 
@@ -45,7 +54,7 @@ def needs_compiling() -> bool:
     """Whether the next history will first have to compile its kernel, some seconds once for this machine."""
     source = Path(__file__).with_name("kernels.py")
     tag = f"py{sys.version_info.major}{sys.version_info.minor}"
-    indexes = cache_folder().glob(f"*/kernels.follow-*.{tag}.nbi")
+    indexes = cache_folder().glob(f"*/kernels.run-*.{tag}.nbi")
     try:
         return not any(index.stat().st_mtime >= source.stat().st_mtime for index in indexes)
     except OSError:  # another process is at work on the cache

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Equivalence, Mechanism, equivalent_block
-from rocking_cli.dynamics.model import MODELS, Model, ModelName, build_model
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out
+from rocking_cli.dynamics.model import MODELS, Model, ModelName, build_models
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
 
 Reals = NDArray[np.float64]
-RTOL = 1e-10  # local error of a nonlinear step
+RTOL = 1e-10  # local error of a step, of the lower order of the pair: peaks are then right to 1e-12
 TAIL = 10.0  # s of motion kept after the record
-MOST_IMPACTS = 20_000  # after the record and its tail, to call it still rocking; eta = 0.999 rests in 14 000
 MOST_SAMPLES = 20_000_000
-RELEASE_DT = 0.005  # s between samples of a free motion without a record
 
 
 class Outcome(Enum):
@@ -61,6 +61,8 @@ class History:
         Time [s], sign of the direction that ends, and rate before [rad/s] of each impact.
     end_time : float
         When it came to rest for good, or was certain to overturn [s].
+    contact_lost : float or None
+        When v_g'' first came down to -g [s]: the structure may leave the ground then, which no model here follows.
     """
 
     model: ModelName
@@ -78,6 +80,7 @@ class History:
     impact_count: int
     impacts: Reals
     end_time: float
+    contact_lost: float | None = None
 
     @property
     def overturned(self) -> bool:
@@ -101,7 +104,8 @@ def respond(
     mechanism : Mechanism
         The structure.
     motion : GroundMotion, optional
-        Horizontal ground acceleration, straight between its samples and zero after the last.
+        Ground acceleration, straight between its samples and zero after the last. With its vertical component, g
+        becomes g + v_g''.
     models : tuple of {"nonlinear", "linear1", "linear2"}
         Which equations of motion to follow.
     release : float, optional
@@ -126,7 +130,8 @@ def respond(
 
     Notes
     -----
-    Nonlinear: Eq. 8 by an error-controlled Runge-Kutta pair. Linear: Eq. 16, exact on every ramp of the record.
+    Nonlinear: Eq. 8 by an error-controlled Runge-Kutta-Nystrom pair. Linear: Eq. 16, exact on every ramp of the
+    record; with a vertical component, whose g changes along the ramp, by the same pair.
     """
     if motion is None and release is None:
         raise InputError("nothing to respond to: give a ground motion, a release, or both")
@@ -137,58 +142,55 @@ def respond(
         raise InputError(f"release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {release:g}")
     if not (np.isfinite(tail) and tail >= 0):
         raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
+    check_rtol(rtol)
+    built = build_models(mechanism, models)
+    return {model.name: follow(model, motion, release=release or 0.0, tail=tail, rtol=rtol) for model in built}
+
+
+def check_rtol(rtol: float) -> None:
+    """Refuse a relative local error that is none."""
     if not 0 < rtol < 1:
         raise InputError(f"rtol must be between 0 and 1, got {rtol:g}")
-    equivalence = equivalent_block(mechanism)
-    built = [build_model(mechanism, equivalence, name) for name in models]
-    return {model.name: _follow(model, equivalence, motion, release or 0.0, tail, rtol) for model in built}
 
 
-def _follow(
-    model: Model, equivalence: Equivalence, motion: GroundMotion | None, release: float, tail: float, rtol: float
+def follow(
+    model: Model,
+    motion: GroundMotion | None,
+    *,
+    release: float = 0.0,
+    tail: float = TAIL,
+    rtol: float = RTOL,
+    most_kept: int = MOST_IMPACTS,
 ) -> History:
+    """The history of one model; `respond` says what the arguments are.
+
+    `most_kept` is how many impacts are kept.
+    """
     from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
 
-    accelerations = motion.acceleration if motion is not None else np.zeros(0)
     dt = motion.dt if motion is not None else RELEASE_DT
-    start = Direction.NEGATIVE if release < 0 else Direction.POSITIVE
-    samples = max(accelerations.size, 1) + round(tail / dt)
+    npts = _samples(motion) if motion is not None else 0
+    samples = max(npts, 1) + round(tail / dt)
     if samples > MOST_SAMPLES:
         raise InputError(f"dt = {dt:g} s makes {samples:,} samples with a tail of {tail:g} s: is dt in seconds?")
-    phi, rate = np.empty(samples), np.empty(samples)
-    impacts, marks = np.empty((MOST_IMPACTS, 3)), np.empty(kernels.MARKS)
-    strongest = np.maximum.accumulate(np.abs(accelerations[::-1]))[::-1].copy()
-    slow = 0.5 / max(equivalence.positive.p, equivalence.negative.p)
-    status = kernels.follow(
-        model.kind,
-        model.cells,
-        model.certain,
-        model.numbers,
-        accelerations,
-        strongest,
-        dt,
-        0 if start > 0 else 1,
-        abs(release) * equivalence[start].phi_cr,
-        rtol,
-        slow,
-        MOST_IMPACTS,
-        phi,
-        rate,
-        impacts,
-        marks,
-    )
+    phi, rate, impacts = np.empty(samples), np.empty(samples), np.empty((most_kept, 3))
+    runs, marks = np.zeros((1, kernels.RUN_COLUMNS)), np.empty((1, kernels.MARKS))
+    runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE]] = 1.0
+    runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = np.nan
+    runs[0, kernels.START] = model.q(release)
+    lay_out([model], [motion]).run(runs, marks, rtol=rtol, phi=phi, rate=rate, impacts=impacts)
+    (mark,) = marks
+    status, ended = int(mark[kernels.STATUS]), float(mark[kernels.ENDED])
     if status == kernels.STALLED:
-        raise SolverError(
-            f"the {model.name} history cannot be followed past t = {marks[kernels.ENDED]:.6g} s: too small steps"
-        )
+        raise SolverError(f"the {model.name} history cannot be followed past t = {ended:.6g} s: too small steps")
     outcome = (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.STILL_ROCKING)[status]
     fallen = outcome is Outcome.OVERTURNED
-    fell_to = None if not fallen else Direction.POSITIVE if marks[kernels.SIDE] == 0 else Direction.NEGATIVE
-    peaks = {Direction.POSITIVE: marks[kernels.PEAK], Direction.NEGATIVE: marks[kernels.PEAK + 1]}
-    count = int(marks[kernels.IMPACTS])
-    first = marks[kernels.FIRST_UPLIFT]
-    # The samples end with the record or with the motion, whichever is later.
-    kept = min(samples, max(accelerations.size, int(marks[kernels.ENDED] / dt) + 3))
+    fell_to = None if not fallen else Direction.POSITIVE if mark[kernels.SIDE] == 0 else Direction.NEGATIVE
+    positive, negative = (float(peak) for peak in mark[kernels.PEAK : kernels.PEAK + 2])
+    count = int(mark[kernels.IMPACTS])
+    first = float(mark[kernels.FIRST_UPLIFT])
+    # The samples end with the record or with the motion, whichever is later; after overturning they are NaN.
+    kept = min(samples, max(npts, int(ended / dt) + (1 if outcome is Outcome.STILL_ROCKING else 3)))
     return History(
         model=model.name,
         outcome=outcome,
@@ -196,13 +198,46 @@ def _follow(
         phi=phi[:kept],
         rate=rate[:kept],
         ratio=phi[:kept] / np.where(phi[:kept] < 0, model.phi_cr[1], model.phi_cr[0]),
-        peak_positive=None if fell_to is Direction.POSITIVE else float(peaks[Direction.POSITIVE]),
-        peak_negative=None if fell_to is Direction.NEGATIVE else float(peaks[Direction.NEGATIVE]),
-        peak_ratio=None if fallen else float(max(peaks[d] / equivalence[d].phi_cr for d in Direction)),
-        overturning_time=float(marks[kernels.CROSSED]) if fallen else None,
-        uplift_time=float(first) if np.isfinite(first) else None,
+        peak_positive=None if fell_to is Direction.POSITIVE else positive,
+        peak_negative=None if fell_to is Direction.NEGATIVE else negative,
+        peak_ratio=None if fallen else max(positive / model.phi_cr[0], negative / model.phi_cr[1]),
+        overturning_time=float(mark[kernels.CROSSED]) if fallen else None,
+        uplift_time=first if np.isfinite(first) else None,
         fell_to=fell_to,
         impact_count=count,
-        impacts=impacts[: min(count, MOST_IMPACTS)],
-        end_time=float(marks[kernels.ENDED]),
+        impacts=impacts[: min(count, len(impacts))],
+        end_time=ended,
+        contact_lost=contact_lost(motion, model.gravity),
     )
+
+
+def _samples(motion: GroundMotion) -> int:
+    """Samples of the horizontal component that cover both."""
+    longest = motion.vertical.duration if motion.vertical is not None else 0.0
+    return max(motion.npts, ceil(longest / motion.dt) + 1)
+
+
+def contact_lost(motion: GroundMotion | None, gravity: float) -> float | None:
+    """When the vertical ground acceleration first comes down to -g [s]: from then on nothing holds a structure down.
+
+    Parameters
+    ----------
+    motion : GroundMotion or None
+        The ground motion.
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    float or None
+        None if it never does, or there is no vertical component.
+    """
+    if motion is None or motion.vertical is None:
+        return None
+    weight = gravity + motion.vertical.acceleration
+    lost = np.flatnonzero(weight <= 0)
+    if not lost.size:
+        return None
+    k = int(lost[0])
+    before = weight[k - 1] if k else 0.0
+    return motion.vertical.dt * (k - weight[k] / (weight[k] - before) if before > 0 else k)

@@ -1,381 +1,487 @@
 """The history kernel: one compiled function for every structure, on floats and arrays alone.
 
-A direction of rocking is an index d (0 positive, 1 negative) with sign s. A motion is (phi, w): phi >= 0 inside its
-direction, and w = sqrt(I) phi., the root of twice the kinetic energy. In w Lagrange's equation has no velocity term,
+A direction of rocking is an index d (0 positive, 1 negative) with sign s. A motion is (q, w): q = 0 at rest, dq =
+sqrt(I) dphi along it, and w = q. the root of twice the kinetic energy. In this coordinate the inertia is one, and
+Lagrange's equation has no velocity term:
 
-    phi. = c(phi) w        w. = -(g q(phi) + s r(phi) u)        c = 1/sqrt(I), q = G c, r = B c     [Eq. 8]
+    q.. = -((g + v_g'') G(q) + s B(q) u_g'') / sqrt(I(q))        [Eq. 8]
 
-so three tables describe a mechanism. The linear model has I = 1, hence w = phi., and is advanced in closed form.
+so two tables describe a mechanism, and Nystrom's methods for q.. = f(t, q) apply. The linear model is q = phi; without
+vertical ground motion it is advanced in closed form.
 
 All of it stands in one file because the compiled code is kept by file: a function elsewhere could go stale.
 """
 
 from __future__ import annotations
 
-from math import cosh, inf, isfinite, log, nan, sinh, sqrt
+from math import cosh, inf, isfinite, nan, sinh, sqrt
+from typing import NamedTuple
 
-from rocking_cli.dynamics.compiled import compile_kernel
+import numpy as np
+
+from rocking_cli.dynamics.compiled import compile_inline, compile_kernel
 
 # Columns of `numbers`, one row a direction.
-UPLIFT, PHI_CR, ETA, RATE, REST, END, CELL, P, KAPPA_G, GRAVITY = range(10)
-# What `marks` gathers on the way.
-PEAK, CROSSED, FIRST_UPLIFT, IMPACTS, ENDED, SIDE = 0, 2, 3, 4, 5, 6
-MARKS = 7
+LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY = range(10)
+COLUMNS = 10
+# Columns of `records`, one row a ground motion: first sample and number of samples of either component, and of the
+# strongest that is still to come; intervals.
+U_FIRST, U_SIZE, V_FIRST, V_SIZE, AHEAD_FIRST, AHEAD_SIZE, DT, V_DT = range(8)
+# Columns of `runs`, one row a history; an eta that is NaN is the structure's own.
+STRUCTURE, RECORD, FACTOR, V_FACTOR, SIZE, ETA_POSITIVE, ETA_NEGATIVE, START = range(8)
+RUN_COLUMNS = 8
+# What `marks` gathers on the way, a row a history.
+PEAK, CROSSED, FIRST_UPLIFT, IMPACTS, ENDED, SIDE, STATUS = 0, 2, 3, 4, 5, 6, 7
+MARKS = 8
 # How a motion ends.
 AT_REST, OVERTURNED, STILL_ROCKING, STALLED = range(4)
 # How a flight over part of a sample interval ends.
 REACHED, IMPACT, LIMIT, STUCK = range(4)
+# What is looked for inside a step: q at a level, w = 0, or q.. = 0.
+HEIGHT, TURN, BALANCE = range(3)
 
-NONLINEAR, LINEAR = 0, 1
 MARGIN = 1e-12  # of the uplift acceleration: by how much it must be passed, so that rounding never lifts a structure
 FAINT = 1e-9  # of the rate of rest: what still counts as motion while the ground is pushing beyond uplift
 CHATTER = 1000  # impacts in one sample interval that count as rest, however elastic: with dt < 1 s below 1e-6 phi_cr
-IDLE = 10_000  # intervals of `slow_dt` without impact after the record: swinging in a hollow beyond phi_cr, for ever
+IDLE = 10_000  # of these intervals without impact: swinging in a hollow beyond phi_cr, for ever
 LOOPS = 10_000  # events in one sample interval before giving up
+SLOW = 0.5  # of 1/p: the interval to go on with after the record
+COINCIDE = 1e-9  # of an interval: samples of two components closer than this are at one moment
 
 
-@compile_kernel
-def slopes(cells, row, s, phi, w, u):
-    """(phi., w.) of the nonlinear mechanism; beyond its ends the outermost cubic goes on smoothly."""
-    place = phi / row[CELL]
-    k = min(max(int(place), 0), cells.shape[0] - 1)
+class Law(NamedTuple):
+    """What a motion in one direction obeys, besides its force table."""
+
+    exact: bool  # the closed form holds
+    d: int
+    per_cell: float
+    p: float
+    kappa_g: float
+    q_cr: float
+    q_end: float
+
+
+class Ground(NamedTuple):
+    """The shaking over a piece of time: s u_g'' and g + v_g'' at tau = 0, and what they grow by [m/s2, m/s3]."""
+
+    push: float
+    ramp: float
+    g: float
+    grade: float
+
+
+class State(NamedTuple):
+    """A motion at a moment: q, w = q. and f = q.. ."""
+
+    q: float
+    w: float
+    f: float
+
+
+@compile_inline
+def law_of(exact, numbers, d):
+    """The law of one direction."""
+    return Law(exact, d, numbers[d, PER_CELL], numbers[d, P], numbers[d, KAPPA_G], numbers[d, Q_CR], numbers[d, Q_END])
+
+
+@compile_inline
+def force(forces, law, q, push, g):
+    """q.. by the tables; beyond their ends the outermost cubic goes on smoothly."""
+    place = q * law.per_cell
+    k = min(max(int(place), 0), forces.shape[0] - 1)
+    d = law.d
     x = place - k
-    a = cells[k]
-    c = a[0] + x * (a[1] + x * (a[2] + x * a[3]))
-    q = a[4] + x * (a[5] + x * (a[6] + x * a[7]))
-    r = a[8] + x * (a[9] + x * (a[10] + x * a[11]))
-    return c * w, -(row[GRAVITY] * q + s * r * u)
+    # One cubic of both forces: they need not wait for x.
+    a0 = g * forces[k, d, 0] + push * forces[k, d, 4]
+    a1 = g * forces[k, d, 1] + push * forces[k, d, 5]
+    a2 = g * forces[k, d, 2] + push * forces[k, d, 6]
+    a3 = g * forces[k, d, 3] + push * forces[k, d, 7]
+    return -(a0 + x * a1 + x * x * (a2 + x * a3))
+
+
+@compile_inline
+def nystrom(forces, law, ground, tau, state, h):
+    """One step h of Dormand, El-Mikkawy and Prince's Nystrom pair 6(4)6FM [IMA J. Numer. Anal. 7, 1987].
+
+    Returns the state at its end, and the difference to order 4 in q and in w.
+    """
+    q, w, f = state
+    ramp, grade = ground.ramp, ground.grade
+    push, g = ground.push + ramp * tau, ground.g + grade * tau
+    hh = h * h
+    k2 = force(forces, law, q + h * (w / 10) + hh * (f / 200), push + h * (ramp / 10), g + h * (grade / 10))
+    k3 = force(
+        forces,
+        law,
+        q + h * (w * 0.3) + hh * (f * (-1 / 2200) + k2 * (1 / 22)),
+        push + h * (ramp * 0.3),
+        g + h * (grade * 0.3),
+    )
+    k4 = force(
+        forces,
+        law,
+        q + h * (w * 0.7) + hh * (f * (637 / 6600) + k2 * (-7 / 110) + k3 * (7 / 33)),
+        push + h * (ramp * 0.7),
+        g + h * (grade * 0.7),
+    )
+    k5 = force(
+        forces,
+        law,
+        q
+        + h * (w * 0.68)
+        + hh * (f * (225437 / 1968750) + k2 * (-30073 / 281250) + k3 * (65569 / 281250) + k4 * (-9367 / 984375)),
+        push + h * (ramp * 0.68),
+        g + h * (grade * 0.68),
+    )
+    q1 = (
+        q
+        + h * w
+        + hh * (f * (151 / 2142) + k2 * (5 / 116) + k3 * (385 / 1368) + k4 * (55 / 168) + k5 * (-6250 / 28101))
+    )
+    k6 = force(forces, law, q1, push + h * ramp, g + h * grade)
+    w1 = w + h * (
+        f * (151 / 2142)
+        + k2 * (25 / 522)
+        + k3 * (275 / 684)
+        + k4 * (275 / 252)
+        + k5 * (-78125 / 112404)
+        + k6 * (1 / 12)
+    )
+    e_q = hh * (
+        f * (151 / 2142 - 1349 / 157500)
+        + k2 * (5 / 116 - 7873 / 50000)
+        + k3 * (385 / 1368 - 192199 / 900000)
+        + k4 * (55 / 168 - 521683 / 2100000)
+        + k5 * (16 / 125 - 6250 / 28101)
+    )
+    e_w = h * (
+        f * (151 / 2142 - 1349 / 157500)
+        + k2 * (25 / 522 - 7873 / 45000)
+        + k3 * (275 / 684 - 27457 / 90000)
+        + k4 * (275 / 252 - 521683 / 630000)
+        + k5 * (2 / 5 - 78125 / 112404)
+    )
+    return State(q1, w1, k6), abs(e_q), abs(e_w)
+
+
+@compile_inline
+def balance(law, q, push):
+    """q.. of the linear model without vertical ground motion [Eqs. 12, 16]."""
+    return law.p**2 * (q - law.q_cr - law.kappa_g * push)
+
+
+@compile_inline
+def hyperbolic(y):
+    """cosh y - 1, sinh y and sinh y - y, none of which cancels for small y."""
+    if abs(y) < 0.1:
+        z = y * y
+        lag = y * z / 6 * (1 + z * (1 / 20) * (1 + z * (1 / 42) * (1 + z * (1 / 72) * (1 + z * (1 / 110)))))
+        return z / 2 * (1 + z * (1 / 12) * (1 + z * (1 / 30) * (1 + z * (1 / 56) * (1 + z * (1 / 90))))), y + lag, lag
+    half = sinh(y / 2)
+    sh = 2 * half * cosh(y / 2)
+    return 2 * half * half, sh, sh - y
+
+
+@compile_inline
+def closed_form(law, ground, state, h):
+    """A time h of the linear model on a straight ramp of the ground acceleration [Eqs. 12, 16].
+
+    q.. = p^2 (q - q_s), q_s = phi_cr + s kappa u_g''/g the rotation of balance, growing by slope:
+    q = q_0 + (q - q_s)_0 (cosh ph - 1) + w_0/p sinh ph - slope/p (sinh ph - ph)
+    """
+    q, w, f = state
+    p, per_p = law.p, 1 / law.p
+    slack = f * per_p * per_p
+    drift = (w - law.kappa_g * ground.ramp) * per_p  # the rate, over p, at which it moves away from balance
+    ch1, sh, lag = hyperbolic(p * h)
+    moved = slack * ch1 + drift * lag + w * h
+    return State(q + moved, w + p * (slack * sh + drift * ch1), p * p * (slack * (1 + ch1) + drift * sh))
+
+
+@compile_inline
+def advance(forces, law, ground, tau, state, h):
+    """The state a time h after tau, and the errors of its q and w."""
+    if law.exact:
+        return closed_form(law, ground, state, h), 0.0, 0.0
+    return nystrom(forces, law, ground, tau, state, h)
 
 
 @compile_kernel
-def step(cells, row, s, phi, w, u, ramp, h):
-    """One step h of Dormand and Prince's 5(4) pair: phi, w, both slopes of w, and the error of either.
+def locate(forces, law, ground, tau, state, low, high, guess, sought, level, falling):
+    """Where inside a step q reaches level, w vanishes or q.. vanishes: Newton on the step itself, kept in a bracket.
 
-    The ground acceleration is u at the start of the step and grows by ramp [m/s3].
+    The sought function is positive at low and not at high if it is falling, else the other way round. Stepping anew
+    to each trial point gives the event the full order of the pair, which no interpolant has. Returns the time, and
+    the state then.
     """
-    a1, b1 = slopes(cells, row, s, phi, w, u)
-    a2, b2 = slopes(cells, row, s, phi + h * (a1 / 5), w + h * (b1 / 5), u + ramp * h / 5)
-    a3, b3 = slopes(
-        cells, row, s, phi + h * (3 / 40 * a1 + 9 / 40 * a2), w + h * (3 / 40 * b1 + 9 / 40 * b2), u + ramp * h * 3 / 10
-    )
-    a4, b4 = slopes(
-        cells,
-        row,
-        s,
-        phi + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3),
-        w + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3),
-        u + ramp * h * 4 / 5,
-    )
-    a5, b5 = slopes(
-        cells,
-        row,
-        s,
-        phi + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4),
-        w + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4),
-        u + ramp * h * 8 / 9,
-    )
-    a6, b6 = slopes(
-        cells,
-        row,
-        s,
-        phi + h * (9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5),
-        w + h * (9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5),
-        u + ramp * h,
-    )
-    phi1 = phi + h * (35 / 384 * a1 + 500 / 1113 * a3 + 125 / 192 * a4 - 2187 / 6784 * a5 + 11 / 84 * a6)
-    w1 = w + h * (35 / 384 * b1 + 500 / 1113 * b3 + 125 / 192 * b4 - 2187 / 6784 * b5 + 11 / 84 * b6)
-    a7, b7 = slopes(cells, row, s, phi1, w1, u + ramp * h)
-    e_phi = h * (71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6 - a7 / 40)
-    e_w = h * (71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6 - b7 / 40)
-    return phi1, w1, b1, b7, abs(e_phi), abs(e_w)
-
-
-@compile_kernel
-def locate(cells, row, s, phi, w, u, ramp, low, high, turning, level):
-    """Where inside the step w vanishes (turning) or phi reaches level: Newton on the step itself, kept in a bracket.
-
-    The sought function is not zero at low, and zero or of the other sign at high. Stepping anew to each trial point
-    gives the event the full order of the pair, which no interpolant has.
-    """
-    phi1, w1, _, _, _, _ = step(cells, row, s, phi, w, u, ramp, low)
-    positive = (w1 if turning else phi1 - level) < 0  # at high; there it may be zero
-    h = (low + high) / 2
-    for _ in range(100):
-        phi1, w1, _, b1, _, _ = step(cells, row, s, phi, w, u, ramp, h)
-        value = w1 if turning else phi1 - level
-        a1, _ = slopes(cells, row, s, phi1, w1, u + ramp * h)
-        rate = b1 if turning else a1
-        if (value > 0) == positive:
+    q, w, f = state
+    h = guess if low < guess < high else (low + high) / 2
+    close = 1e-8 if sought == HEIGHT else 1e-5  # Newton's next error is then below rounding; near a turn q stands still
+    for _ in range(200):
+        (q, w, f), _, _ = advance(forces, law, ground, tau, state, h)
+        value = f if sought == BALANCE else w if sought == TURN else q - level
+        rate = 0.0 if sought == BALANCE else f if sought == TURN else w
+        if value == 0:
+            break
+        if (value < 0) == falling:
             high = h
         else:
             low = h
-        trial = h - value / rate if rate != 0 else low
+        trial = h - value / rate if rate != 0 else high
         if not low < trial < high:
             trial = (low + high) / 2
-        if abs(trial - h) <= 4e-16 * high or value == 0:
-            break
-        h = trial
-    return h, phi1, w1
-
-
-@compile_kernel
-def fly(cells, row, s, d, t, tau, end, phi, w, u0, ramp, h, rtol, marks):
-    """Advance the nonlinear motion from tau towards end, to the first impact or the kinematic limit.
-
-    Returns what ended it, the new tau, phi and w, and the step to try next. u0 is the ground acceleration at tau = 0.
-    """
-    scale_phi, scale_w = 1e-2 * row[PHI_CR], 1e-2 * row[PHI_CR] * row[P] / row[RATE]
-    for _ in range(1_000_000):
-        left = end - tau
-        if left <= 0:
-            return REACHED, end, phi, w, h
-        whole = h >= left
-        size = left if whole else h
-        u = u0 + ramp * tau
-        phi1, w1, b0, b1, e_phi, e_w = step(cells, row, s, phi, w, u, ramp, size)
-        error = max(e_phi / (rtol * max(abs(phi), abs(phi1), scale_phi)), e_w / (rtol * max(abs(w), abs(w1), scale_w)))
-        if not error <= 1:
-            h = size * (max(0.2, 0.9 * error**-0.2) if isfinite(error) else 0.1)
-            if tau + h == tau:
-                return STUCK, tau, phi, w, h
-            continue
-        grown = size * (5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2))
-        h = max(h, grown) if whole else grown
-
-        # w may change sign twice inside the step: end the step at its turning point, where it shows.
-        if w * w1 > 0 and w * b0 < 0 and b0 * b1 < 0:
-            turn = size * hermite_turn(w, w1, size * b0, size * b1)
-            phi2, w2, _, b2, _, _ = step(cells, row, s, phi, w, u, ramp, turn)
-            if w * w2 < 0:
-                size, phi1, w1, b1, whole = turn, phi2, w2, b2, False
-
-        rising = w > 0 or (w == 0 and (phi == 0 or b0 > 0))  # from rest it lifts, whatever rounding says of b0
-        turn, extreme = size, phi1
-        if rising == (w1 <= 0):
-            turn, extreme = turning_point(cells, row, s, phi, w, u, ramp, size, b0, b1, w1, rising)
-        xa, va = 0.0, phi
-        for part in range(2):  # up to where phi turns, then from there
-            if part == 1 and turn == size:
+            if high - low <= (1e-6 if sought == BALANCE else 4e-16) * high:
                 break
-            xb, vb = (turn, extreme) if part == 0 else (size, phi1)
-            if rising == (part == 0):
-                marks[PEAK + d] = max(marks[PEAK + d], vb)
-                if va < row[PHI_CR] <= vb:
-                    x, _, _ = locate(cells, row, s, phi, w, u, ramp, xa, xb, False, row[PHI_CR])
-                    marks[CROSSED] = t + tau + x
-            elif vb <= 0:
-                x, w1 = xa, 0.0
-                if va > 0:
-                    x, _, w1 = locate(cells, row, s, phi, w, u, ramp, xa, xb, False, 0.0)
-                return IMPACT, min(tau + x, end), 0.0, min(w1, 0.0), h
-            xa, va = xb, vb
-        phi, w = phi1, w1
-        tau = end if whole else tau + size
-        if phi >= row[END]:
-            return LIMIT, tau, phi, w, h
-    return STUCK, tau, phi, w, h
+        elif abs(trial - h) <= close * high:
+            x = trial - h
+            return trial, State(q + x * (w + x / 2 * f), w + x * f, f)
+        h = trial
+    return h, State(q, w, f)
 
 
 @compile_kernel
-def hermite_turn(v0, v1, d0, d1):
-    """Where in (0, 1) the cubic with end values v and end slopes d of opposite sign turns."""
-    a = 6 * (v0 - v1) + 3 * (d0 + d1)
-    b = 6 * (v1 - v0) - 2 * (2 * d0 + d1)
-    # a x^2 + b x + d0 = 0 has one root in (0, 1), as its ends differ in sign; this form does not cancel.
-    root = sqrt(max(b * b - 4 * a * d0, 0.0))
-    k = -(b + (root if b >= 0 else -root)) / 2
-    x = k / a if a != 0 else inf
-    if not 0 < x < 1:
-        x = d0 / k if k != 0 else inf
-    return x if 0 < x < 1 else 0.5
+def first_root(a, b, c):
+    """The least x > 0 with a x^2 + b x + c = 0, without cancellation; NaN if there is none."""
+    discriminant = b * b - 4 * a * c
+    if not discriminant >= 0:
+        return nan
+    k = -(b + (sqrt(discriminant) if b >= 0 else -sqrt(discriminant))) / 2
+    one = k / a if a != 0 else nan
+    other = c / k if k != 0 else nan
+    if not one > 0:
+        return other
+    return min(one, other) if other > 0 else one
 
 
 @compile_kernel
-def turning_point(cells, row, s, phi, w, u, ramp, size, b0, b1, w1, rising):
-    """Where in a step phi turns, from rising to falling or back, and the phi it reaches."""
+def turning_point(forces, law, ground, tau, state, size, f1, rising):
+    """Where in a step q turns, from rising to falling or back, and the q it reaches."""
+    q, w, f = state
     start = 0.0
     if w == 0:  # a start at rest: look behind the moment of greatest speed
-        start = size * hermite_turn(w, w1, size * b0, size * b1)
-        _, w2, _, _, _, _ = step(cells, row, s, phi, w, u, ramp, start)
+        start, (_, w2, _) = locate(forces, law, ground, tau, state, 0.0, size, size / 2, BALANCE, 0.0, f > 0)
         if w2 == 0 or (w2 > 0) != rising:
-            return 0.0, phi
-    x, extreme, _ = locate(cells, row, s, phi, w, u, ramp, start, size, True, 0.0)
+            return 0.0, q
+    guess = first_root((f1 - f) / (2 * size), f, w)
+    x, (extreme, _, _) = locate(forces, law, ground, tau, state, start, size, guess, TURN, 0.0, rising)
     return x, extreme
 
 
 @compile_kernel
-def linear_at(p, slack, slope, phi, w, x):
-    """(phi, phi.) of the linear model a time x later, in closed form [Eqs. 12, 16].
+def inspect(forces, law, ground, t, tau, state, size, ended, marks):
+    """Look inside a step of the given size and end for impact, turning points, peak and the crossing of phi_cr.
 
-    phi = phi_0 + slack (cosh px - 1) + w/p sinh px + slope (x - sinh(px)/p), with slack = phi - phi_s at the start,
-    phi_s = phi_cr + s kappa u/g the rotation of balance under the ground acceleration u, and slope = phi_s' [1/s].
+    Returns whether there is an impact, and the step that is left with the state at its end: up to the impact, or up
+    to a turning point that the ends of the step do not show.
     """
-    y = p * x
-    half = sinh(y / 2)
-    ch1 = 2 * half * half
-    sh = 2 * half * cosh(y / 2)
-    y2 = y * y
-    # x - sinh(px)/p cancels for small px
-    lag = x - sh / p if y >= 0.1 else -y * y2 / 6 * (1 + y2 / 20 * (1 + y2 / 42 * (1 + y2 / 72))) / p
-    return phi + slack * ch1 + w / p * sh + slope * lag, p * slack * sh + w * (1 + ch1) - slope * ch1
+    q, w, f = state
+    q1, w1, f1 = ended
+    d = law.d
+    # w may change sign twice inside: end the step at its extreme, where it shows.
+    if w * w1 > 0 and w * f < 0 and f * f1 < 0:
+        x, (q2, w2, f2) = locate(forces, law, ground, tau, state, 0.0, size, size / 2, BALANCE, 0.0, f > 0)
+        if w * w2 < 0:
+            size, q1, w1, f1 = x, q2, w2, f2
+    rising = w > 0 or (w == 0 and (q == 0 or f > 0))  # from rest it lifts, whatever rounding says of f
+    turn, extreme = size, q1
+    if q == 0 and q1 <= 0 and w > 0 and f < 0 and f1 < 0 and w * size <= marks[PEAK + d]:
+        turn = 0.0  # a hop too low for a new peak: only its landing matters
+    elif rising == (w1 <= 0):
+        turn, extreme = turning_point(forces, law, ground, tau, state, size, f1, rising)
+    xa, qa = 0.0, q
+    for part in range(2):  # up to where q turns, then from there
+        if (turn == 0.0 and part == 0) or (turn == size and part == 1):
+            continue
+        xb, qb = (turn, extreme) if part == 0 else (size, q1)
+        if rising == (part == 0):
+            marks[PEAK + d] = max(marks[PEAK + d], qb)
+            if qa < law.q_cr <= qb:
+                x, _ = locate(forces, law, ground, tau, state, xa, xb, nan, HEIGHT, law.q_cr, False)
+                marks[CROSSED] = t + tau + x
+        elif qb <= 0:
+            if not (qa > 0 or w > 0):
+                return True, xa, State(0.0, 0.0, 0.0)
+            guess = nan
+            if xb == size:  # back from the end of the step: a parabola, then the cubic
+                x = first_root(f1 / 2, -w1, q1)
+                jerk = (f1 - f) / size
+                x -= (q1 - x * (w1 - x / 2 * (f1 - x / 3 * jerk))) / (x * (f1 - x / 2 * jerk) - w1)
+                guess = size - x
+            x, (_, w2, f2) = locate(forces, law, ground, tau, state, xa, xb, guess, HEIGHT, 0.0, True)
+            return True, x, State(0.0, min(w2, 0.0), f2)
+        xa, qa = xb, qb
+    return False, size, State(q1, w1, f1)
 
 
-@compile_kernel
-def linear_root(p, slack, slope, phi, w, low, high, turning, level):
-    """Where in [low, high] phi. vanishes (turning) or phi reaches level: Newton kept in a bracket."""
-    v1, w1 = linear_at(p, slack, slope, phi, w, low)
-    positive = (w1 if turning else v1 - level) < 0  # at high; there it may be zero
-    x = (low + high) / 2
-    for _ in range(200):
-        v, rate = linear_at(p, slack, slope, phi, w, x)
-        value = rate if turning else v - level
-        if turning:  # phi.. = p^2 (phi - phi_s)
-            rate = p * p * (slack + (v - phi) - slope * x)
-        if (value > 0) == positive:
-            high = x
-        else:
-            low = x
-        trial = x - value / rate if rate != 0 else low
-        if not low < trial < high:
-            trial = (low + high) / 2
-        if abs(trial - x) <= 4e-16 * high or value == 0:
-            break
-        x = trial
-    return x
+@compile_inline
+def misses(law, rtol, state, ended, e_q, e_w):
+    """The error of a step over what is allowed: rtol of q and w, and of a hundredth of phi_cr where they are small."""
+    if law.exact:
+        return 0.0
+    least = 1e-2 * law.q_cr
+    most_q = max(least, max(abs(state.q), abs(ended.q)))
+    most_w = max(least * law.p, max(abs(state.w), abs(ended.w)))
+    return max(e_q * most_w, e_w * most_q) / (rtol * most_q * most_w)
 
 
-@compile_kernel
-def fly_linear(row, s, d, t, tau, end, phi, w, u0, ramp, marks):
-    """Advance the linear motion from tau towards end, to the first impact; exact on the ramp.
+@compile_inline
+def rises(law, state, ended):
+    """Whether q grows all through a step, and does not pass phi_cr in it."""
+    outward = state.w > 0 and ended.w > 0 and (state.f >= 0 or ended.f <= 0)
+    return outward and (ended.q < law.q_cr or state.q >= law.q_cr)
 
-    phi.. changes sign at most once on a ramp, so phi. vanishes at most once on either side of that moment, and
-    between those turning points phi is monotonic: every impact, peak and crossing is bracketed.
+
+@compile_inline
+def falls(state, ended):
+    """Whether q falls all through a step, and does not reach 0 in it."""
+    return state.w < 0 and ended.w < 0 and (state.f <= 0 or ended.f >= 0) and ended.q > 0
+
+
+@compile_inline
+def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
+    """Advance a motion from tau towards end, to the first impact or the kinematic limit.
+
+    Parameters
+    ----------
+    forces, law, ground : ndarray, Law, Ground
+        What the motion obeys.
+    t, tau, end : float
+        Time of the sample, and from there the start and the end of the flight [s].
+    state : State
+        The motion at tau.
+    h, rtol : float
+        Step to try, and relative local error.
+    marks : ndarray
+        Takes the peak and the crossing of phi_cr.
+
+    Returns
+    -------
+    tuple
+        What ended it, the new tau and state, and the step to try next.
     """
-    p = row[P]
-    slack = phi - (row[PHI_CR] + s * row[KAPPA_G] * (u0 + ramp * tau))
-    if phi == 0 and w == 0:  # from rest it lifts, whatever rounding says of the balance
-        slack = max(slack, 0.0)
-    slope = s * row[KAPPA_G] * ramp
-    span = end - tau
-    x0, v0, r0 = 0.0, phi, w
-    x2, v2, r2 = span, 0.0, 0.0
-    # Where phi.. = p^2 (slack cosh + (w - slope)/p sinh) changes sign: tanh(px) = -slack p/(w - slope).
-    inflection = inf
-    drive = w - slope
-    if drive != 0:
-        ratio = -slack * p / drive
-        if 0 < ratio < 1:
-            inflection = 0.5 / p * log((1 + ratio) / (1 - ratio))
-    for part in range(2):
-        if part == 0:
-            x2 = min(inflection, span)
-        elif inflection < span:
-            x2 = span
-        else:
-            break
-        v2, r2 = linear_at(p, slack, slope, phi, w, x2)
-        turn, top = x2, v2
-        if r0 * r2 < 0:
-            turn = linear_root(p, slack, slope, phi, w, x0, x2, True, 0.0)
-            top, _ = linear_at(p, slack, slope, phi, w, turn)
-        for half in range(2):  # up to the turning point, then from it
-            xa, va, xb, vb = (x0, v0, turn, top) if half == 0 else (turn, top, x2, v2)
-            if half == 1 and turn == x2:
-                break
-            if vb > va:
-                marks[PEAK + d] = max(marks[PEAK + d], vb)
-                if va < row[PHI_CR] <= vb:
-                    marks[CROSSED] = t + tau + linear_root(p, slack, slope, phi, w, xa, xb, False, row[PHI_CR])
-            elif vb <= 0 and va >= 0 and vb < va:
-                x = linear_root(p, slack, slope, phi, w, xa, xb, False, 0.0)
-                _, rate = linear_at(p, slack, slope, phi, w, x)
-                return IMPACT, min(tau + x, end), 0.0, min(rate, 0.0)
-        x0, v0, r0 = x2, v2, r2
-    return REACHED, end, v2, r2
+    d = law.d
+    for _ in range(1_000_000):
+        left = end - tau
+        if left <= 0:
+            return REACHED, end, state, h
+        q, w, f = state
+        size = left if law.exact else min(left, h)
+        if q == 0 and f < 0 and w > 0:  # a hop: it lands after 2 w/-f or so
+            size = min(size, -2.5 * w / f)
+        whole = size == left
+        ended, e_q, e_w = advance(forces, law, ground, tau, state, size)
+        error = misses(law, rtol, state, ended, e_q, e_w)
+        if not error <= 1:
+            h = size * (max(0.2, 0.9 * error**-0.2) if isfinite(error) else 0.1)
+            if tau + h == tau:
+                return STUCK, tau, state, h
+            continue
+        if size == h and not law.exact:
+            h = size * (5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2))
+        if rises(law, state, ended):
+            marks[PEAK + d] = max(marks[PEAK + d], ended.q)
+        elif not falls(state, ended):
+            hit, inside, ended = inspect(forces, law, ground, t, tau, state, size, ended, marks)
+            whole = whole and inside == size
+            size = inside
+            if hit:
+                return IMPACT, end if whole else min(tau + size, end), ended, h
+        state = ended
+        tau = end if whole else tau + size
+        if state.q >= law.q_end:
+            return LIMIT, tau, state, h
+    return STUCK, tau, state, h
 
 
 @compile_kernel
-def is_certain(kind, row, certain, phi, w, strongest):
-    """Whether the motion overturns whatever comes: moving out, where no later acceleration can turn it back."""
-    if w < 0 or phi <= row[PHI_CR]:
-        return False
-    if kind == LINEAR:
-        return phi >= row[PHI_CR] + row[KAPPA_G] * strongest
-    return certain[min(int(phi / row[CELL]), certain.size - 1)] >= strongest
+def is_certain(linear, numbers, certain, d, q, strongest):
+    """Whether an outward motion from q beyond phi_cr overturns whatever comes: nothing later can turn it back."""
+    if linear:
+        return q >= numbers[d, Q_CR] + numbers[d, KAPPA_G] * strongest
+    cell = min(int(q * numbers[d, PER_CELL]), certain.shape[0] - 1)
+    return numbers[d, GRAVITY] * certain[cell, d] >= strongest
 
 
 @compile_kernel
-def lifts_at(numbers, tau, end, u0, ramp):
+def lifts_at(numbers, tau, end, u, ramp, g, grade):
     """When a structure at rest lifts between tau and end, and in which direction (-1: it does not).
 
-    It lifts where the ramp crosses the uplift acceleration, not at the sample.
+    It lifts where the ramp crosses the uplift acceleration lambda (g + v_g''), not at the sample.
     """
     for d in range(2):
-        threshold = numbers[d, UPLIFT]
-        if (2.0 * d - 1.0) * (u0 + ramp * tau) - threshold > MARGIN * threshold:
+        threshold = numbers[d, LAMBDA] * (g + grade * tau)
+        if (2.0 * d - 1.0) * (u + ramp * tau) - threshold > MARGIN * abs(threshold):
             return tau, d
     for d in range(2):
-        threshold = numbers[d, UPLIFT]
-        now = (2.0 * d - 1.0) * (u0 + ramp * tau) - threshold
-        then = (2.0 * d - 1.0) * (u0 + ramp * end) - threshold
-        if then > MARGIN * threshold:
+        threshold = numbers[d, LAMBDA] * (g + grade * end)
+        then = (2.0 * d - 1.0) * (u + ramp * end) - threshold
+        if then > MARGIN * abs(threshold):
+            now = (2.0 * d - 1.0) * (u + ramp * tau) - numbers[d, LAMBDA] * (g + grade * tau)
             return min(max(tau - (end - tau) * now / (then - now), tau), end), d
     return end, -1
 
 
+@compile_inline
+def angle(angles, numbers, d, q):
+    """phi and dphi/dq at q."""
+    place = q * numbers[d, PER_CELL]
+    k = min(max(int(place), 0), angles.shape[0] - 1)
+    x = place - k
+    phi = angles[k, d, 0] + x * (angles[k, d, 1] + x * (angles[k, d, 2] + x * angles[k, d, 3]))
+    slope = angles[k, d, 4] + x * (angles[k, d, 5] + x * (angles[k, d, 6] + x * angles[k, d, 7]))
+    return phi, slope
+
+
+@compile_inline
+def stays(numbers, u):
+    """Whether a ground acceleration lifts a structure at rest in neither direction."""
+    g = numbers[0, GRAVITY] * (1 + MARGIN)
+    return -numbers[1, LAMBDA] * g <= -u and -u <= numbers[0, LAMBDA] * g
+
+
+@compile_kernel
+def draw(linear, numbers, forces, angles, law, ground, t, tau, end, state, h, rtol, dt, drawn, phi_out, rate_out):
+    """Fill in the samples of a flight from tau to end, on a course of its own: what is drawn changes no motion.
+
+    Returns how many samples are done.
+    """
+    nothing = np.zeros(MARKS)
+    s = 1.0 - 2.0 * law.d
+    while drawn < phi_out.size and drawn * dt <= t + end:
+        _, tau, state, h = fly(forces, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing)
+        phi, speed = (state.q, 1.0) if linear else angle(angles, numbers, law.d, state.q)
+        phi_out[drawn], rate_out[drawn] = s * phi, s * state.w * speed
+        drawn += 1
+    return drawn
+
+
 @compile_kernel
 def follow(
-    kind,
-    cells,
-    certain,
+    linear,
     numbers,
+    forces,
+    angles,
+    certain,
     u,
-    strongest,
+    factor,
+    v,
+    v_factor,
     dt,
-    direction,
-    phi,
+    v_dt,
+    ahead,
+    v_ahead,
+    start,
     rtol,
-    slow_dt,
     most_impacts,
     phi_out,
     rate_out,
     impacts,
     marks,
 ):
-    """Follow a motion to its end: at rest, overturned, or still rocking after `most_impacts` impacts.
+    """Follow one motion to its end: at rest, overturned, or still rocking after `most_impacts` impacts.
 
-    Parameters
-    ----------
-    kind : int
-        NONLINEAR or LINEAR.
-    cells, certain : ndarray
-        Tables of both directions (nonlinear), shapes (2, n, 12) and (2, n + 1).
-    numbers : ndarray, shape (2, 10)
-        See the columns above.
-    u : ndarray, shape (npts,)
-        Ground acceleration [m/s2], straight between samples, zero after the last; may be empty.
-    strongest : ndarray, shape (npts,)
-        Largest |u| from each sample on [m/s2].
-    dt, slow_dt : float
-        Sample interval, and the interval to go on with once nothing is drawn any more [s].
-    direction, phi : int, float
-        Index of the direction and rotation [rad] to start from, at rest.
-    rtol : float
-        Relative local error of a nonlinear step.
-    most_impacts : int
-        When to give up after the end of the record.
-    phi_out, rate_out : ndarray, shape (m,)
-        Signed rotation [rad] and rate [rad/s] at the samples, to be filled; NaN after overturning.
-    impacts : ndarray, shape (k, 3)
-        Time [s], sign of the direction that ends and rate before [rad/s] of the first k impacts, to be filled.
-    marks : ndarray, shape (MARKS,)
-        Peaks of both directions, last upward crossing of phi_cr, first uplift, number of impacts, end time, and the
-        index of the direction it ended in, to be filled.
-
-    Returns
-    -------
-    int
-        AT_REST, OVERTURNED, STILL_ROCKING or STALLED.
+    `numbers` is this run's own; the other arguments are those of `run`, cut to one structure, record and history.
+    Returns how it ended.
     """
     marks[:] = nan
     marks[PEAK : PEAK + 2] = 0.0
@@ -383,80 +489,262 @@ def follow(
     marks[ENDED] = 0.0
     phi_out[:] = nan
     rate_out[:] = nan
-    d = direction
+    gravity = numbers[0, GRAVITY]
+    exact = linear and v.size == 0
+    slow_dt = SLOW / max(numbers[0, P], numbers[1, P])
+    last, v_last = u.size - 1, v.size - 1
+
+    d = 1 if start < 0 else 0
     s = 1.0 - 2.0 * d
-    w = 0.0
-    marks[PEAK + d] = phi
-    resting = phi == 0.0
+    law = law_of(exact, numbers, d)
+    q, w, f = abs(start), 0.0, 0.0
+    known = False  # whether f is q.. at (q, w) now
+    resting = q == 0.0
+    marks[PEAK + d] = q
     h = dt
     t = 0.0
-    before = 0.0  # impacts up to the end of what is drawn
+    k, j = 0, 0
+    shaken = True  # whether the record goes on
+    drawn = 0  # samples of the output that are done
+    before = 0.0  # impacts up to the end of the record
     idle = 0
-    k = 0
-    last = u.size - 1
     while True:
-        if k < phi_out.size:
-            phi_out[k] = s * phi
-            speed = 1.0 if kind == LINEAR else slopes(cells[d], numbers[d], s, phi, 1.0, 0.0)[0]
-            rate_out[k] = s * w * speed
-        if resting and k >= last and k >= phi_out.size - 1:
+        if resting and v.size == 0:  # quiet: on to the last sample before the ground lifts it
+            while k < last and stays(numbers, u[k] * factor) and stays(numbers, u[k + 1] * factor):
+                if k < phi_out.size:
+                    phi_out[k] = rate_out[k] = 0.0
+                k += 1
+            t = k * dt
+        if shaken and k < phi_out.size:  # t is the time of sample k
+            phi, speed = (q, 1.0) if linear else angle(angles, numbers, d, q)
+            phi_out[k], rate_out[k] = s * phi, s * w * speed
+            drawn = k + 1
+        shaken = k < last or j < v_last
+        if resting and not shaken:
+            phi_out[drawn:] = rate_out[drawn:] = 0.0
             marks[SIDE] = d
             return AT_REST
-        drawn = k < phi_out.size - 1 or k < last
-        end = dt if drawn else slow_dt
-        u0, u1 = (u[k], u[k + 1]) if k < last else (0.0, 0.0)
-        ramp = (u1 - u0) / end
+        span = dt if shaken else slow_dt
+        u0, u1 = (u[k] * factor, u[k + 1] * factor) if k < last else (0.0, 0.0)
+        ramp = (u1 - u0) / span
+        if k >= last:
+            known = False
+        elif exact and known:
+            f = balance(law, q, s * u0)
         tau = 0.0
+        if known and not resting and v.size == 0 and h >= span:
+            # The most common interval by far: one step, and nothing happens in it.
+            state = State(q, w, f)
+            ended, e_q, e_w = advance(forces, law, Ground(s * u0, s * ramp, gravity, 0.0), 0.0, state, span)
+            uneventful = ended.q < law.q_end and (rises(law, state, ended) or falls(state, ended))
+            if uneventful and misses(law, rtol, state, ended, e_q, e_w) <= 1:
+                marks[PEAK + d] = max(marks[PEAK + d], ended.q)
+                q, w, f = ended
+                tau = span
+        g, grade, end = gravity, 0.0, span
         loops = 0
-        while tau < end:
-            loops += 1
-            if loops > LOOPS:
-                marks[ENDED], marks[SIDE] = t + tau, d
-                return STALLED
-            if resting:
-                tau, lifted = lifts_at(numbers, tau, end, u0, ramp)
-                if lifted < 0 or tau >= end:  # on the sample: the next interval begins with it
-                    break
-                resting = False
-                d = lifted
-                s = 1.0 - 2.0 * d
-                phi, w = 0.0, 0.0
-                if not isfinite(marks[FIRST_UPLIFT]):
-                    marks[FIRST_UPLIFT] = t + tau
-            row = numbers[d]
-            if kind == LINEAR:
-                event, tau, phi, w = fly_linear(row, s, d, t, tau, end, phi, w, u0, ramp, marks)
-            else:
-                event, tau, phi, w, h = fly(cells[d], row, s, d, t, tau, end, phi, w, u0, ramp, h, rtol, marks)
-            if event == STUCK:
-                loops = LOOPS
-                continue
-            if event == LIMIT:
-                marks[ENDED], marks[SIDE] = t + tau, d
-                return OVERTURNED
-            if event == IMPACT:
-                idle = 0
-                n = int(marks[IMPACTS])
-                if n < impacts.shape[0]:
-                    impacts[n, 0], impacts[n, 1], impacts[n, 2] = t + tau, s, abs(w) * row[RATE]
-                marks[IMPACTS] += 1
-                w = row[ETA] * -w * row[RATE] / numbers[1 - d, RATE]  # Eq. 6, on phi.
-                d = 1 - d
-                s = -s
-                phi = 0.0
-                _, lifted = lifts_at(numbers, tau, tau, u0, ramp)
-                if w <= numbers[d, REST] * (FAINT if lifted >= 0 else 1.0) or (lifted < 0 and loops > CHATTER):
-                    resting, w = True, 0.0
-                    marks[ENDED] = t + tau
-        t += end
+        while tau < span:
+            if v.size > 0:  # a piece of the interval, up to the next sample of the vertical component
+                while j < v_last and (j + 1) * v_dt - t <= tau + COINCIDE * v_dt:
+                    j += 1
+                g, grade, end = gravity, 0.0, span
+                if j < v_last:
+                    grade = (v[j + 1] - v[j]) * v_factor / v_dt
+                    g += v[j] * v_factor + grade * (t - j * v_dt)
+                    if (j + 1) * v_dt - t < span - COINCIDE * v_dt:
+                        end = (j + 1) * v_dt - t
+                else:
+                    known = False
+            while tau < end:
+                loops += 1
+                if loops > LOOPS:
+                    marks[ENDED], marks[SIDE] = t + tau, d
+                    return STALLED
+                if resting:
+                    tau, lifted = lifts_at(numbers, tau, end, u0, ramp, g, grade)
+                    if lifted < 0 or tau >= end:  # on the sample: the next piece begins with it
+                        tau = end
+                        break
+                    resting = False
+                    d = lifted
+                    s = 1.0 - 2.0 * d
+                    law = law_of(exact, numbers, d)
+                    q, w, known = 0.0, 0.0, False
+                    if not isfinite(marks[FIRST_UPLIFT]):
+                        marks[FIRST_UPLIFT] = t + tau
+                if not known:
+                    push = s * (u0 + ramp * tau)
+                    f = balance(law, q, push) if exact else force(forces, law, q, push, g + grade * tau)
+                    if q == 0 and w == 0:  # from rest it lifts, whatever rounding says of the balance
+                        f = max(f, 0.0)
+                    known = True
+                ground = Ground(s * u0, s * ramp, g, grade)
+                began, state, step = tau, State(q, w, f), h
+                event, tau, (q, w, f), h = fly(forces, law, ground, t, tau, end, state, h, rtol, marks)
+                if not shaken and drawn * dt <= t + tau and drawn < phi_out.size:
+                    drawn = draw(
+                        linear,
+                        numbers,
+                        forces,
+                        angles,
+                        law,
+                        ground,
+                        t,
+                        began,
+                        tau,
+                        state,
+                        step,
+                        rtol,
+                        dt,
+                        drawn,
+                        phi_out,
+                        rate_out,
+                    )
+                if event == STUCK:
+                    marks[ENDED], marks[SIDE] = t + tau, d
+                    return STALLED
+                if event == LIMIT:
+                    marks[ENDED], marks[SIDE] = t + tau, d
+                    return OVERTURNED
+                if event == IMPACT:
+                    idle = 0
+                    n = int(marks[IMPACTS])
+                    if n < impacts.shape[0]:
+                        impacts[n, 0], impacts[n, 1], impacts[n, 2] = t + tau, s, -w * numbers[d, RATE]
+                    marks[IMPACTS] += 1
+                    w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[1 - d, RATE]  # Eq. 6, on phi.
+                    d = 1 - d
+                    s = -s
+                    law = law_of(exact, numbers, d)
+                    q, known = 0.0, False
+                    _, lifted = lifts_at(numbers, tau, tau, u0, ramp, g, grade)
+                    if w <= numbers[d, REST] * (FAINT if lifted >= 0 else 1.0) or (lifted < 0 and loops > CHATTER):
+                        resting, w = True, 0.0
+                        marks[ENDED] = t + tau
+        t += span
         k += 1
-        if drawn:
+        if shaken:
             t = k * dt
             before = marks[IMPACTS]
-        if not resting and is_certain(kind, numbers[d], certain[d], phi, w, strongest[k] if k < last else 0.0):
-            marks[ENDED], marks[SIDE] = t, d
-            return OVERTURNED
-        idle += 0 if drawn else 1
+        else:
+            idle += 1
+        if not resting and w >= 0 and q > law.q_cr:
+            strongest = ahead[k] * abs(factor) if k < ahead.size else 0.0
+            if k < v_ahead.size and v_ahead[k] > 0:  # less weight to pull it over
+                weight = 1 - v_ahead[k] * v_factor / gravity
+                strongest = strongest / weight if weight > 0 else inf
+            if is_certain(linear, numbers, certain, d, q, strongest):
+                marks[ENDED], marks[SIDE] = t, d
+                return OVERTURNED
         if marks[IMPACTS] - before > most_impacts or idle > IDLE:
             marks[ENDED], marks[SIDE] = t, d
             return STILL_ROCKING
+
+
+@compile_kernel
+def run(
+    first,
+    stop,
+    runs,
+    structures,
+    all_numbers,
+    all_forces,
+    all_angles,
+    all_certain,
+    records,
+    u,
+    v,
+    ahead,
+    v_ahead,
+    rtol,
+    most_impacts,
+    phi_out,
+    rate_out,
+    impacts,
+    all_marks,
+):
+    """Follow the histories first to stop of `runs`, one after the other.
+
+    Parameters
+    ----------
+    first, stop : int
+        Which rows of `runs`.
+    runs : ndarray, shape (n, RUN_COLUMNS)
+        What each history is of, see the columns above: structure and record by number, factors on the two components
+        (s of the horizontal one is the polarity), size of the structure as a factor, restitution of either direction,
+        and q to start from at rest, negative in the negative direction.
+    structures : ndarray of int, shape (m, 3)
+        For each structure first row and number of rows of its tables, and whether it is linear.
+    all_numbers : ndarray, shape (m, 2, COLUMNS)
+        See the columns above.
+    all_forces, all_angles : ndarray, shape (cells, 2, 8)
+        In each cell, for either direction, the cubics of G/sqrt(I) and B/sqrt(I), and of phi and dphi/dq, powers 0 to
+        3 of the place in the cell.
+    all_certain : ndarray, shape (cells, 2)
+        Largest ground acceleration that cannot stop an outward motion from there on, over g.
+    records : ndarray, shape (k, 8)
+        See the columns above.
+    u, v : ndarray
+        Horizontal and vertical ground acceleration of all records [m/s2], straight between samples, zero after the
+        last.
+    ahead, v_ahead : ndarray
+        At each sample of the horizontal component, the largest |u| and -v from there on [m/s2].
+    rtol : float
+        Relative local error of a step.
+    most_impacts : int
+        When to give up after the end of the record.
+    phi_out, rate_out : ndarray, shape (samples,)
+        Signed rotation [rad] and rate [rad/s] of the last history at its samples, to be filled; NaN after
+        overturning.
+    impacts : ndarray, shape (most, 3)
+        Time [s], sign of the direction that ends and rate before [rad/s] of its first impacts, to be filled.
+    all_marks : ndarray, shape (n, MARKS)
+        For each history peaks of both directions [rad], last upward crossing of phi_cr, first uplift, number of
+        impacts, end time, index of the direction it ended in, and how it ended; to be filled.
+    """
+    numbers = np.empty((2, COLUMNS))
+    for i in range(first, stop):
+        what = runs[i]
+        m, r = int(what[STRUCTURE]), int(what[RECORD])
+        size = what[SIZE]
+        # A structure of another size has the same motion as this one under accelerations divided by its size.
+        for d in range(2):
+            numbers[d] = all_numbers[m, d]
+            numbers[d, P] /= sqrt(size)
+            numbers[d, REST] /= sqrt(size)
+            numbers[d, GRAVITY] /= size
+            numbers[d, KAPPA_G] *= size
+            eta = what[ETA_POSITIVE + d]
+            if isfinite(eta):
+                numbers[d, ETA] = eta
+        cells = slice(structures[m, 0], structures[m, 0] + structures[m, 1])
+        of = records[r]
+        horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
+        vertical = slice(int(of[V_FIRST]), int(of[V_FIRST]) + int(of[V_SIZE]))
+        later = slice(int(of[AHEAD_FIRST]), int(of[AHEAD_FIRST]) + int(of[AHEAD_SIZE]))
+        v_later = later if of[V_SIZE] > 0 else slice(0, 0)
+        marks = all_marks[i]
+        marks[STATUS] = follow(
+            structures[m, 2] == 1,
+            numbers,
+            all_forces[cells],
+            all_angles[cells],
+            all_certain[cells],
+            u[horizontal],
+            what[FACTOR] / size,
+            v[vertical],
+            what[V_FACTOR] / size,
+            of[DT],
+            of[V_DT],
+            ahead[later],
+            v_ahead[v_later],
+            what[START],
+            rtol,
+            most_impacts,
+            phi_out,
+            rate_out,
+            impacts,
+            marks,
+        )
+        for d in range(2):
+            marks[PEAK + d], _ = angle(all_angles[cells], numbers, d, marks[PEAK + d])

@@ -1,4 +1,4 @@
-"""What the history kernel needs to know of a structure: numbers for each direction, and tables if nonlinear."""
+"""What the history kernel needs to know of a structure: numbers and tables for each direction."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Equivalence, Mechanism
-from rocking_cli.dynamics.tables import tabulate
+from rocking_cli.core import Direction, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.dynamics.tables import Table, tabulate
 from rocking_cli.errors import InputError, Problem
 
 Reals = NDArray[np.float64]
@@ -19,41 +19,57 @@ MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Model:
-    """One equation of motion of a structure, ready for the kernel.
+    """One equation of motion of a structure, ready for the kernel, which takes any number of them at once.
 
     Parameters
     ----------
     name : str
         `"nonlinear"`, or `"linear1"` and `"linear2"` for the equivalent block with kappa1 and kappa2.
+    structure : str
+        What to call the structure.
     phi_cr : tuple of float
         Critical rotation in the positive and the negative direction [rad].
-    numbers, cells, certain : ndarray
-        See `rocking_cli.dynamics.kernels.follow`.
+    numbers, forces, angles, certain : ndarray
+        See `rocking_cli.dynamics.kernels.run`.
+    tables : tuple of Table, optional
+        What the arrays are made of, if nonlinear.
     """
 
     name: ModelName
+    structure: str
     phi_cr: tuple[float, float]
     numbers: Reals
-    cells: Reals
+    forces: Reals
+    angles: Reals
     certain: Reals
+    tables: tuple[Table, Table] | None = None
 
     @property
-    def kind(self) -> int:
-        """0 for the nonlinear equation, 1 for a linear one."""
-        return 0 if self.name == "nonlinear" else 1  # NONLINEAR and LINEAR of the kernels, without importing numba
+    def gravity(self) -> float:
+        """Acceleration of gravity [m/s2]."""
+        return float(self.numbers[0, -1])
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether this is an equivalent block."""
+        return self.tables is None
+
+    def q(self, ratio: float) -> float:
+        """The kernel's coordinate at a signed rotation given as a fraction of its direction's phi_cr."""
+        side = 1 if ratio < 0 else 0
+        phi = abs(ratio) * self.phi_cr[side]
+        return float(np.copysign(phi if self.tables is None else self.tables[side].q(phi), ratio))
 
 
-def build_model(mechanism: Mechanism, equivalence: Equivalence, name: ModelName) -> Model:
+def build_model(mechanism: Mechanism, name: ModelName) -> Model:
     """Prepare one model of a structure.
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure.
-    equivalence : Equivalence
-        Its equivalent blocks.
     name : {"nonlinear", "linear1", "linear2"}
         Which equation of motion.
 
@@ -62,79 +78,75 @@ def build_model(mechanism: Mechanism, equivalence: Equivalence, name: ModelName)
     InputError
         If the restitution from kinematics is not positive, so that the motion after an impact is unknown.
     """
-    for direction in Direction:
-        eta = equivalence[direction].eta
-        if eta <= 0:
+    return build_models(mechanism, (name,))[0]
+
+
+def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) -> list[Model]:
+    """Prepare several models of a structure; see `build_model`."""
+    equivalence = equivalent_block(mechanism)
+    label = mechanism.name or mechanism.mechanism
+    blocks = (equivalence.positive, equivalence.negative)
+    for direction, block in zip(Direction, blocks, strict=True):
+        if block.eta <= 0:
             raise InputError(
                 Problem(
-                    f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends motion in "
-                    f"the {direction.label} direction: it is too stocky to start rocking the other way",
+                    f"{mechanism.name or 'structure'}: the kinematics give {block.eta:.4g} for an impact that ends "
+                    f"motion in the {direction.label} direction: it is too stocky to start rocking the other way",
                     field="restitution",
                     hint="give a measured value as restitution, a number in (0, 1]",
                 )
             )
-    if name == "nonlinear":
-        return _nonlinear(mechanism, equivalence)
-    return _linear(equivalence, name, mechanism.gravity)
+    return [
+        _nonlinear(label, mechanism, blocks) if name == "nonlinear" else _linear(label, name, blocks, mechanism.gravity)
+        for name in names
+    ]
 
 
-def _nonlinear(mechanism: Mechanism, equivalence: Equivalence) -> Model:
+def _nonlinear(label: str, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:
     tables = tabulate(mechanism)
-    numbers = np.array(
+    numbers = [
         [
-            _row(
-                equivalence,
-                direction,
-                uplift=equivalence[direction].lambda_ * mechanism.gravity,
-                rate=table.rest_rate,
-                end=table.end,
-                cell=table.cell,
-                kappa_g=0.0,
-                gravity=mechanism.gravity,
-            )
-            for direction, table in zip(Direction, tables, strict=True)
+            block.lambda_,
+            table.q(block.phi_cr),
+            block.eta,
+            table.rest_rate,
+            REST_RATE * block.p * block.phi_cr / table.rest_rate,
+            table.end,
+            1 / table.cell,
+            block.p,
+            0.0,  # linear models only
+            mechanism.gravity,
         ]
+        for block, table in zip(blocks, tables, strict=True)
+    ]
+    forces, angles, certain = (
+        np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
     )
-    cells, certain = np.stack([table.cells for table in tables]), np.stack([table.certain for table in tables])
-    return Model("nonlinear", _phi_cr(equivalence), numbers, cells, certain)
+    phi_cr = blocks[0].phi_cr, blocks[1].phi_cr
+    return Model("nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables)
 
 
-def _linear(equivalence: Equivalence, name: ModelName, gravity: float) -> Model:
-    rows = []
-    for direction in Direction:
-        block = equivalence[direction]
+def _linear(label: str, name: ModelName, blocks: tuple[EquivalentBlock, EquivalentBlock], gravity: float) -> Model:
+    """q = phi here; one cell holds the straight line and the constant that are all of its forces."""
+    numbers, forces = [], np.zeros((1, 2, 8))
+    for d, block in enumerate(blocks):
         kappa = block.kappa1 if name == "linear1" else block.kappa2
-        rows.append(
-            _row(
-                equivalence,
-                direction,
-                uplift=block.phi_cr / kappa * gravity,
-                rate=1.0,
-                end=np.inf,
-                cell=1.0,
-                kappa_g=kappa / gravity,
-                gravity=gravity,
-            )
+        numbers.append(
+            [
+                block.phi_cr / kappa,
+                block.phi_cr,
+                block.eta,
+                1.0,
+                REST_RATE * block.p * block.phi_cr,
+                np.inf,
+                1.0,
+                block.p,
+                kappa / gravity,
+                gravity,
+            ]
         )
-    return Model(name, _phi_cr(equivalence), np.array(rows), np.zeros((2, 1, 12)), np.zeros((2, 1)))
-
-
-def _phi_cr(equivalence: Equivalence) -> tuple[float, float]:
-    return equivalence.positive.phi_cr, equivalence.negative.phi_cr
-
-
-def _row(
-    equivalence: Equivalence,
-    direction: Direction,
-    *,
-    uplift: float,
-    rate: float,
-    end: float,
-    cell: float,
-    kappa_g: float,
-    gravity: float,
-) -> list[float]:
-    """One row of the kernel's `numbers`, in the order of its columns."""
-    block = equivalence[direction]
-    at_rest = REST_RATE * block.p * block.phi_cr / rate
-    return [uplift, block.phi_cr, block.eta, rate, at_rest, end, cell, block.p, kappa_g, gravity]
+        stiffness = block.p**2 / gravity
+        forces[0, d, [0, 1, 4]] = stiffness * block.phi_cr, -stiffness, stiffness * kappa  # Eq. 12
+    angles = np.tile([0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (1, 2, 1))
+    phi_cr = blocks[0].phi_cr, blocks[1].phi_cr
+    return Model(name, label, phi_cr, np.array(numbers), forces, angles, np.zeros((1, 2)))

@@ -1,4 +1,7 @@
-"""A mechanism's coefficients as tables over the rotation: cubics with exact slopes at both ends of every cell."""
+"""A mechanism's coefficients as tables over q, the coordinate in which its inertia is one: dq = sqrt(I) dphi.
+
+Cubics with exact slopes at both ends of every cell. Near a lock, where the inertia grows without bound, q stays finite.
+"""
 
 from __future__ import annotations
 
@@ -21,23 +24,42 @@ class Table:
 
     Parameters
     ----------
-    cells : ndarray, shape (n, 12)
-        In each cell the cubics of c = 1/sqrt(I), q = G c and r = B c, powers 0 to 3 of the place in the cell.
+    forces : ndarray, shape (n, 8)
+        In each cell the cubics of G/sqrt(I) and B/sqrt(I), powers 0 to 3 of the place in the cell.
+    angles : ndarray, shape (n, 8)
+        Likewise phi [rad] and dphi/dq = 1/sqrt(I).
+    certain : ndarray, shape (n,)
+        From the start of each cell on, the ground acceleration over g that no more stops an outward motion.
+    nodes : ndarray, shape (n + 1,)
+        phi at the ends of the cells [rad].
     cell : float
-        Width of a cell [rad].
-    end : float
-        Rotation at which the motion counts as having reached the kinematic limit [rad].
-    rest_rate : float
-        c at rest.
-    certain : ndarray, shape (n + 1,)
-        At each node, the ground acceleration [m/s2] that no more stops an outward motion from there on.
+        Width of a cell, in q [kg^(1/2) m].
     """
 
-    cells: Reals
-    cell: float
-    end: float
-    rest_rate: float
+    forces: Reals
+    angles: Reals
     certain: Reals
+    nodes: Reals
+    cell: float
+
+    @property
+    def end(self) -> float:
+        """q at which the motion counts as having reached the kinematic limit."""
+        return self.cell * len(self.forces)
+
+    @property
+    def rest_rate(self) -> float:
+        """dphi/dq at rest."""
+        return float(self.angles[0, 4])
+
+    def q(self, phi: float) -> float:
+        """q at a rotation [rad] within the table."""
+        k = min(max(int(np.searchsorted(self.nodes, phi, side="right")) - 1, 0), len(self.angles) - 1)
+        cubic = np.polynomial.Polynomial(self.angles[k, :4])
+        x = (phi - self.nodes[k]) / (self.nodes[k + 1] - self.nodes[k])
+        for _ in range(4):  # Newton, on a cubic that is all but straight
+            x -= (cubic(x) - phi) / cubic.deriv()(x)
+        return self.cell * (k + float(x))
 
 
 def tabulate(mechanism: Mechanism) -> tuple[Table, Table]:
@@ -49,27 +71,43 @@ def tabulate(mechanism: Mechanism) -> tuple[Table, Table]:
 
 
 def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Table:
-    end = END * mechanism.limit(direction)
-    phi = np.linspace(0.0, end, cells + 1)
+    phi, width = _even_steps(mechanism, direction, cells)
     at = mechanism.coefficients(phi, direction)
     c = 1 / np.sqrt(at.I)
-    dc = -at.J * c**3  # I' = 2 J
-    width = end / cells
-    cubics = np.hstack(
-        [
-            _cubics(width, c, dc),
-            _cubics(width, at.G * c, at.dG * c + at.G * dc),
-            _cubics(width, at.B * c, at.dB * c + at.B * dc),
-        ]
-    )
+    dc = -at.J * c**4  # over q, as all slopes here; I' = 2 J
+    forces = [_cubics(width, y * c, dy * c**2 + y * dc) for y, dy in ((at.G, at.dG), (at.B, at.dB))]
     # An outward motion gains energy as long as -g G - s B u >= 0, and does so for good where that holds up to the end.
     with np.errstate(divide="ignore"):
-        enough = np.where(at.G < 0, -mechanism.gravity * at.G / np.abs(at.B), -1.0)
+        enough = np.where(at.G < 0, -at.G / np.abs(at.B), -1.0)
     certain = np.minimum.accumulate(enough[::-1])[::-1]
-    return Table(np.ascontiguousarray(cubics), width, end, float(c[0]), certain)
+    return Table(
+        np.hstack(forces), np.hstack([_cubics(width, phi, c), _cubics(width, c, dc)]), certain[:-1], phi, width
+    )
 
 
-def _cubics(width: float, value: Reals, slope: Reals) -> Reals:
-    """Cubic Hermite polynomials of all cells, shape (n, 4), in the place 0..1 inside the cell."""
+def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple[Reals, float]:
+    """Rotations [rad] at even steps of q from rest to the kinematic limit, and the width of a step."""
+    # First over x with phi = end x (2 - x): where I grows like 1/(limit - phi), dq/dx stays smooth.
+    end = END * mechanism.limit(direction)
+    h = 0.5 / cells  # finer, as the steps near rest are twice as wide as the even ones
+    x = np.linspace(0.0, 1.0, 2 * cells + 1)
+    phi = end * x * (2 - x)
+    dphi = 2 * end * (1 - x)
+    at = mechanism.coefficients(phi, direction)
+    root = np.sqrt(at.I)
+    dq, ddq = root * dphi, at.J / root * dphi**2 - 2 * end * root
+    # Euler and Maclaurin's rule with the first correction: right to 1e-12.
+    q = np.concatenate([[0.0], np.cumsum(h / 2 * (dq[:-1] + dq[1:]) + h**2 / 12 * (ddq[:-1] - ddq[1:]))])
+    width = float(q[-1] / cells)
+    even = np.arange(1, cells) * width
+    k = np.searchsorted(q, even, side="right") - 1
+    a = _cubics(np.diff(q), phi, 1 / root)[k]
+    y = (even - q[k]) / (q[k + 1] - q[k])
+    inner = a[:, 0] + y * (a[:, 1] + y * (a[:, 2] + y * a[:, 3]))
+    return np.concatenate([[0.0], inner, [end]]), width
+
+
+def _cubics(width: float | Reals, value: Reals, slope: Reals) -> Reals:
+    """Cubic Hermite polynomials of all cells, shape (n, 4), powers of the place 0..1 inside the cell."""
     v0, v1, d0, d1 = value[:-1], value[1:], width * slope[:-1], width * slope[1:]
     return np.stack([v0, d0, 3 * (v1 - v0) - 2 * d0 - d1, 2 * (v0 - v1) + d0 + d1], axis=1)

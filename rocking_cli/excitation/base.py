@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ STANDARD_GRAVITY = 9.80665  # m/s2
 
 @dataclass(frozen=True, eq=False)
 class GroundMotion:
-    """A horizontal ground acceleration history, positive to the right.
+    """A ground acceleration history, positive to the right.
 
     Parameters
     ----------
@@ -28,6 +28,8 @@ class GroundMotion:
         Unit the acceleration was recorded in, for the reader's eyes only.
     format : str
         Where it came from: a record format, or `"array"`.
+    vertical : GroundMotion, optional
+        The vertical component that goes with it, positive upwards and from the same moment on, at its own interval.
 
     Raises
     ------
@@ -40,6 +42,7 @@ class GroundMotion:
     acceleration: NDArray[np.float64]
     unit: str = "m/s2"
     format: str = "array"
+    vertical: GroundMotion | None = None
 
     def __post_init__(self) -> None:
         samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)
@@ -67,8 +70,12 @@ class GroundMotion:
         return float(np.abs(self.acceleration).max() / STANDARD_GRAVITY)
 
     def scaled(self, factor: float) -> GroundMotion:
-        """The same motion with every acceleration multiplied by `factor` (a negative one reverses it), named so."""
+        """The same motion with every acceleration multiplied by `factor`, named so.
+
+        A negative factor reverses the horizontal component; the vertical one is multiplied by its size.
+        """
         name = self.name if factor == 1 else f"{self.name} x {factor:g}"
         if not np.isfinite(factor * float(np.abs(self.acceleration).max())):
             raise InputError(f"{self.name}: a factor of {factor:g} makes accelerations beyond the range of numbers")
-        return GroundMotion(name, self.dt, factor * self.acceleration, self.unit, self.format)
+        vertical = self.vertical.scaled(abs(factor)) if self.vertical is not None else None
+        return replace(self, name=name, acceleration=factor * self.acceleration, vertical=vertical)

@@ -1,0 +1,252 @@
+"""Many histories in one call: any selection of structures, records, scales, polarities, restitutions and sizes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking_cli.dynamics.deck import lay_out
+from rocking_cli.dynamics.history import RTOL, check_rtol
+from rocking_cli.dynamics.model import Model
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import GroundMotion
+
+Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
+UNIT = 256  # histories a thread takes at a time: some 50 ms of work, against 20 us for handing them out
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Which histories to run, one a place; `of` and `every` make them.
+
+    Parameters
+    ----------
+    model, record : ndarray of int, shape (n,)
+        Places in the lists of models and ground motions.
+    scale : ndarray, shape (n,)
+        Factor on both components of the ground acceleration.
+    polarity : ndarray of int, shape (n,)
+        1, or -1 to reverse the horizontal component.
+    eta : ndarray, shape (n,)
+        Ratio of the rotation rates after and before an impact, in both directions; NaN for the structure's own.
+    size : ndarray, shape (n,)
+        Factor on every length of the structure.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range.
+    """
+
+    model: Integers
+    record: Integers
+    scale: Reals
+    polarity: Integers
+    eta: Reals
+    size: Reals
+
+    def __post_init__(self) -> None:
+        with np.errstate(invalid="ignore"):
+            rules = {
+                "model": (self.model >= 0, "a place in the list of models, counted from 0"),
+                "record": (self.record >= 0, "a place in the list of ground motions, counted from 0"),
+                "scale": (np.isfinite(self.scale), "finite"),
+                "polarity": (np.abs(self.polarity) == 1, "1 or -1"),
+                "eta": (np.isnan(self.eta) | ((self.eta > 0) & (self.eta <= 1)), "in (0, 1]"),
+                "size": (np.isfinite(self.size) & (self.size > 0), "positive"),
+            }
+        for name, (right, must) in rules.items():
+            if not right.all():
+                k = int(np.argmin(right))
+                raise InputError(f"run {k}: {name} must be {must}, got {getattr(self, name)[k]:g}")
+
+    def __len__(self) -> int:
+        return len(self.model)
+
+    @classmethod
+    def of(
+        cls,
+        model: ArrayLike,
+        record: ArrayLike,
+        *,
+        scale: ArrayLike = 1.0,
+        polarity: ArrayLike = 1,
+        eta: ArrayLike = np.nan,
+        size: ArrayLike = 1.0,
+    ) -> Runs:
+        """Runs from arrays of one length, or numbers that hold for all.
+
+        Raises
+        ------
+        InputError
+            If lengths differ, or a number is out of range.
+        """
+        try:
+            columns = np.broadcast_arrays(*np.atleast_1d(model, record, scale, polarity, eta, size))
+        except ValueError:
+            raise InputError("the runs' models, records, scales, polarities, etas and sizes differ in length") from None
+        m, r, a, s, e, k = (column.astype(np.float64) for column in columns)
+        return cls(_whole("model", m), _whole("record", r), a, _whole("polarity", s), e, k)
+
+    @classmethod
+    def every(
+        cls,
+        models: int,
+        records: int,
+        *,
+        scales: Sequence[float] = (1.0,),
+        polarities: Sequence[int] = (1,),
+        etas: Sequence[float] = (np.nan,),
+        sizes: Sequence[float] = (1.0,),
+    ) -> Runs:
+        """Every combination, in the order of the arguments, the last one changing fastest."""
+        grid = np.meshgrid(range(models), range(records), scales, polarities, etas, sizes, indexing="ij")
+        model, record, scale, polarity, eta, size = (axis.ravel() for axis in grid)
+        return cls.of(model, record, scale=scale, polarity=polarity, eta=eta, size=size)
+
+
+def _whole(name: str, values: Reals) -> Integers:
+    if not (values == np.floor(values)).all():
+        raise InputError(f"every {name} of a run must be a whole number")
+    return values.astype(np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class Responses:
+    """What became of many histories, one a place, each an ndarray of shape (n,).
+
+    Parameters
+    ----------
+    overturned, still_rocking, failed : ndarray of bool
+        How each ended, if not at rest; a failed one could not be followed, and its other values mean nothing.
+    fell_to : ndarray of int
+        Sign of the direction in which it overturned, 0 if it did not.
+    peak_positive, peak_negative : ndarray
+        Largest rotation in either direction [rad]; NaN in a direction in which it overturned.
+    peak_ratio : ndarray
+        Largest rotation over the critical rotation; NaN if overturned.
+    overturning_time, uplift_time : ndarray
+        When the rotation passed the critical one for good, and the first uplift [s]; NaN if there is none.
+    impact_count : ndarray of int
+        Number of impacts, those of the chatter to rest included.
+    end_time : ndarray
+        When it came to rest for good, or was certain to overturn [s].
+    """
+
+    overturned: NDArray[np.bool_]
+    still_rocking: NDArray[np.bool_]
+    failed: NDArray[np.bool_]
+    fell_to: NDArray[np.int8]
+    peak_positive: Reals
+    peak_negative: Reals
+    peak_ratio: Reals
+    overturning_time: Reals
+    uplift_time: Reals
+    impact_count: Integers
+    end_time: Reals
+
+    def __len__(self) -> int:
+        return len(self.overturned)
+
+
+def respond_many(
+    models: Sequence[Model],
+    motions: Sequence[GroundMotion],
+    runs: Runs,
+    *,
+    threads: int | None = None,
+    rtol: float = RTOL,
+    progress: Callable[[int], None] | None = None,
+) -> Responses:
+    """Run many histories, each the same to the last bit as `respond` would run it alone.
+
+    Parameters
+    ----------
+    models : sequence of Model
+        See `build_models`.
+    motions : sequence of GroundMotion
+        The ground motions, before scaling.
+    runs : Runs
+        Which histories.
+    threads : int, optional
+        How many at a time; without it, one for each processor.
+    rtol : float
+        Relative local error of a step of the nonlinear motions.
+    progress : callable, optional
+        Called with the number of histories finished since the last call.
+
+    Returns
+    -------
+    Responses
+        In the order of `runs`, whatever the number of threads. Samples are not kept: memory grows by some 100 bytes
+        a history.
+
+    Raises
+    ------
+    InputError
+        If a run names a model or a ground motion that is not there, or a value is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rocking_cli import GroundMotion, Registry, Runs, build_models, respond_many
+    >>> wave = GroundMotion("sine", 0.01, 6 * np.sin(2 * np.pi * np.arange(101) / 100))
+    >>> models = build_models(Registry()["block"](width=0.7, height=2.8), ("nonlinear",))
+    >>> [float(x) for x in respond_many(models, [wave], Runs.every(1, 1, scales=(0.3, 0.5))).peak_ratio.round(4)]
+    [0.0, 0.0]
+    """
+    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+
+    check_rtol(rtol)
+    if threads is not None and threads < 1:
+        raise InputError(f"threads must be 1 or more, got {threads}")
+    for name, places, there in (("model", runs.model, len(models)), ("record", runs.record, len(motions))):
+        if len(runs) and places.max() >= there:
+            raise InputError(f"run {int(places.argmax())}: there is no {name} {places.max()}, only {there}")
+    rows = np.zeros((len(runs), kernels.RUN_COLUMNS))
+    rows[:, kernels.STRUCTURE] = runs.model
+    rows[:, kernels.RECORD] = runs.record
+    rows[:, kernels.FACTOR] = runs.scale * runs.polarity
+    rows[:, kernels.V_FACTOR] = abs(runs.scale)
+    rows[:, kernels.SIZE] = runs.size
+    rows[:, kernels.ETA_POSITIVE] = rows[:, kernels.ETA_NEGATIVE] = runs.eta
+    marks = np.empty((len(runs), kernels.MARKS))
+    if len(runs):
+        deck = lay_out(models, motions)
+        with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+            units = {
+                pool.submit(deck.run, rows, marks, first=first, stop=min(first + UNIT, len(runs)), rtol=rtol): first
+                for first in range(0, len(runs), UNIT)
+            }
+            try:
+                for unit in as_completed(units):
+                    unit.result()
+                    if progress is not None:
+                        progress(min(UNIT, len(runs) - units[unit]))
+            except BaseException:  # an interrupt: what has not begun is not begun
+                pool.shutdown(cancel_futures=True)
+                raise
+    phi_cr = np.array([model.phi_cr for model in models])[runs.model]
+    status = marks[:, kernels.STATUS]
+    overturned = status == kernels.OVERTURNED
+    fell_to = np.where(overturned, 1 - 2 * marks[:, kernels.SIDE], 0)
+    peaks = marks[:, kernels.PEAK : kernels.PEAK + 2]
+    return Responses(
+        overturned=overturned,
+        still_rocking=status == kernels.STILL_ROCKING,
+        failed=status == kernels.STALLED,
+        fell_to=fell_to.astype(np.int8),
+        peak_positive=np.where(fell_to == 1, np.nan, peaks[:, 0]),
+        peak_negative=np.where(fell_to == -1, np.nan, peaks[:, 1]),
+        peak_ratio=np.where(overturned, np.nan, (peaks / phi_cr).max(axis=1)),
+        overturning_time=np.where(overturned, marks[:, kernels.CROSSED], np.nan),
+        uplift_time=marks[:, kernels.FIRST_UPLIFT].copy(),
+        impact_count=marks[:, kernels.IMPACTS].astype(np.int64),
+        end_time=marks[:, kernels.ENDED].copy(),
+    )
