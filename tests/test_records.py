@@ -381,6 +381,10 @@ def test_uneven_times_are_refused(write, printed, line, fragment):
     assert found.excerpt.startswith(printed[line - 4])
 
 
+def test_comments_and_blank_lines_between_rows_are_counted_as_lines(write):
+    assert problem(write("t,accel_g\n0,1\n# c\n\n0.01,1\n,\n0.02,1\n% c\n0.04,1\n0.05,1\n")).line == 9
+
+
 def test_times_too_close_to_be_times_are_refused(write):
     assert "sample interval of" in problem(write("t,accel_g\n0,1\n5e-324,2\n")).message
 
@@ -608,6 +612,19 @@ def test_peer_headers(write, header):
     motion = read_record(write(header + "  .1000000E+00  -.2000000E+00   .3000000E+00\n"))
     np.testing.assert_allclose(motion.acceleration, [0.1 * G, -0.2 * G, 0.3 * G], rtol=1e-15)
     assert (motion.dt, motion.unit, motion.format) == (0.005, "g", "PEER AT2")
+
+
+@pytest.mark.parametrize("header", ["{npts:6d}  {dt}    NPTS, DT\n", "NPTS= {npts:6d}, DT= {dt} SEC,\n"])
+@pytest.mark.parametrize("per_line", [5, 8])
+@pytest.mark.parametrize(
+    ("printed", "dt"),
+    [(".00390625", 1 / 256), ("0.0024", 0.0024), (".009756", 0.009756), ("9.765625E-03", 0.009765625)],
+)
+def test_odd_intervals_of_peer(write, header, per_line, printed, dt):
+    body = at2(VALUES, per_line=per_line).split("\n", 4)[4]
+    motion = read_record(write(TITLE + UNITS_OF_G + header.format(npts=len(VALUES), dt=printed) + body))
+    np.testing.assert_allclose(motion.acceleration, np.array(VALUES) * G, rtol=1e-12)
+    assert (motion.dt, motion.format) == (dt, "PEER AT2")
 
 
 @pytest.mark.parametrize(

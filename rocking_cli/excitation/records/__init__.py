@@ -71,6 +71,6 @@ def _load(file: str) -> str:
     except UnicodeDecodeError:
         content = data.decode("latin-1")  # older processing programs write accents and m/s² that way
     content = content.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a")
-    if not content.strip():
+    if not content or content.isspace():
         raise InputError(Problem("the file is empty", file=file))
     return content

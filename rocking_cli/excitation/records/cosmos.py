@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import numbers_in
 
 TITLE = "COSMOS"
@@ -49,7 +49,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a COSMOS V1 or V2c file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = text.split("\n")
+    lines = Lines(text)
     channels: list[Channel] = []
     others: list[str] = []
     index = 0
@@ -71,7 +71,7 @@ def read(
     return choose(file, TITLE, channels, channel, dt)
 
 
-def _headers(file: str, lines: Sequence[str], start: int) -> _Headers:
+def _headers(file: str, lines: Lines, start: int) -> _Headers:
     """Go through the headers of a channel, from line index `start` on."""
     first = _FIRST.match(lines[start])
     if first is None:
@@ -95,9 +95,7 @@ def _headers(file: str, lines: Sequence[str], start: int) -> _Headers:
     return _Headers(azimuth, reals, reals_line, index)
 
 
-def _history(
-    file: str, lines: Sequence[str], headers: _Headers, index: int, units: str | None
-) -> tuple[Channel | str, int]:
+def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str | None) -> tuple[Channel | str, int]:
     """Read the values announced at line index `index`, or say what they are if not accelerations; the index after."""
     line_number = index + 1
     line = lines[index] if index < len(lines) else ""

@@ -7,6 +7,7 @@ import re
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.records.lines import Lines
 
 TITLE = "CSMIP V2"
 SIGN = "a line such as 3251 POINTS OF ACCEL DATA EQUALLY SPACED AT .020 SEC"
@@ -28,7 +29,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a CSMIP V2 file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = text.split("\n")
+    lines = Lines(text)
     channels = []
     name = ""
     index = 0

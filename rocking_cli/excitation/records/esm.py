@@ -7,6 +7,7 @@ import re
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.records.lines import Lines
 
 TITLE = "ESM ASCII"
 SIGN = "header lines SAMPLING_INTERVAL_S: and NDATA:"
@@ -25,7 +26,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read an ESM ASCII file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = text.split("\n")
+    lines = Lines(text)
     header: dict[str, tuple[int, str]] = {}
     start = 0
     while start < len(lines) and (match := _KEY.match(lines[start])):

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.records.lines import Lines
 
 TITLE = "GeoNet V2A"
 SIGN = "a first line Corrected accelerogram, and Number of points below it"
@@ -32,7 +33,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a GeoNet V2A file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = text.split("\n")
+    lines = Lines(text)
     channels = []
     start = 0
     while start < len(lines) and lines[start].strip():
@@ -41,7 +42,7 @@ def read(
     return choose(file, TITLE, channels, channel, dt)
 
 
-def _component(file: str, lines: Sequence[str], start: int, units: str | None) -> tuple[Channel, int]:
+def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[Channel, int]:
     """Read one component from line index `start` on; the index after it."""
     if not _FIRST.match(lines[start]):
         message = "a component must begin with the line Corrected accelerogram here"

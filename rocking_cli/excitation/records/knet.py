@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.records.lines import Lines
 
 TITLE = "K-NET/KiK-net"
 SIGN = "header lines Sampling Freq(Hz) and Scale Factor"
@@ -33,7 +34,7 @@ def read(
 
     Arguments, result and errors are those of `registry.Reader.read`.
     """
-    lines = text.split("\n")
+    lines = Lines(text)
     rate_line, (rate_text,) = _find(file, lines, _RATE, "sampling frequency, such as 100Hz")
     scale_line, scale = _find(file, lines, _SCALE, "scale factor, such as 3920(gal)/6182761")
     length_line, (length_text,) = _find(file, lines, _DURATION, "duration")

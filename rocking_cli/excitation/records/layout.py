@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,8 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.records.text import check_interval, numbers_in, usable
+from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
 
 # A row of numbers has no letters but those of exponents; asterisks are an overflow, for `numbers_in` to refuse.
@@ -70,14 +72,14 @@ class Channel:
     dt_line: int | None = None
 
 
-def fixed_width(file: str, lines: Sequence[str], block: Block, *, last: bool = True) -> tuple[NDArray[np.float64], int]:
+def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> tuple[NDArray[np.float64], int]:
     """Read numbers that stand in columns of a constant width, with or without blanks between them.
 
     Parameters
     ----------
     file : str
         The file, for the messages.
-    lines : sequence of str
+    lines : Lines
         All its lines.
     block : Block
         Where the numbers are, and how many.
@@ -96,17 +98,20 @@ def fixed_width(file: str, lines: Sequence[str], block: Block, *, last: bool = T
     InputError
         If one is no finite number, or there are more or fewer than there must be.
     """
-    values: list[float] = []
+    values = array("d")  # a list would hold an object for each
     index = block.start
-    while index < len(lines) and _is_row(lines[index]) and (last or len(values) < block.count):
-        row = lines[index].rstrip()
+    for line in lines.since(block.start):
+        if not _is_row(line) or (len(values) >= block.count and not last):
+            break
+        row = line.rstrip()
         cells = [row[place : place + block.width].strip() for place in range(block.margin, len(row), block.width)]
         try:
-            values.extend([float(cell.upper().replace("D", "E")) for cell in cells])
+            found = [float(cell.upper().replace("D", "E")) for cell in cells]
         except ValueError:
-            values.extend(numbers_in(file, index + 1, row, cells))
-        if not usable(np.array(values[-len(cells) :] if cells else [])):
-            numbers_in(file, index + 1, row, cells)
+            found = []
+        if not found or not all(map(sensible, found)):
+            found = numbers_in(file, index + 1, row, cells)
+        values.extend(found)
         index += 1
     if len(values) != block.count:
         excerpt = lines[index].strip()[:100] if index < len(lines) else None
@@ -186,7 +191,7 @@ def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
 
 
 def _is_row(line: str) -> bool:
-    return bool(line.strip()) and not _NO_ROW.search(_NOT_FINITE.sub("0", line))
+    return bool(line.strip()) and not (_NO_ROW.search(line) and _NO_ROW.search(_NOT_FINITE.sub("0", line)))
 
 
 def _find(file: str, channels: Sequence[Channel], asked: str) -> Channel:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
 
@@ -53,7 +54,7 @@ def read(
 ) -> GroundMotion:
     """Read a PEER AT2 file; arguments, result and errors are those of `registry.Reader.read`."""
     only_channel(file, channel)
-    lines = text.split("\n")
+    lines = Lines(text)
     header = _header(file, lines)
     unit = resolve_unit(file, list(enumerate(lines[: header.data], start=1)), units)
     check_interval(file, header.dt_line, header.dt, dt)
@@ -98,9 +99,14 @@ def _header(file: str, lines: Sequence[str]) -> _Header:
     return _Header(int(npts[0]), interval, npts[1], dt[1], data)
 
 
-def _values(file: str, lines: Sequence[str], data: int) -> NDArray[np.float64]:
-    """All values from line index `data` on; line by line only if something is wrong there."""
-    body = "\n".join(filter(_plain, lines[data:]))
+def _values(file: str, lines: Lines, data: int) -> NDArray[np.float64]:
+    """All values from line index `data` on."""
+    return np.concatenate([_page_values(file, first, page) for first, page in lines.pages(data)])
+
+
+def _page_values(file: str, first: int, page: Sequence[str]) -> NDArray[np.float64]:
+    """Values of the lines from index `first` on; line by line only if something is wrong there."""
+    body = "\n".join(filter(_plain, page))
     if "_" not in body:  # float() would take 1_000
         try:
             values = np.array([float(token) for token in _split(body.upper().replace("D", "E"))])
@@ -110,7 +116,7 @@ def _values(file: str, lines: Sequence[str], data: int) -> NDArray[np.float64]:
             if usable(values):
                 return values
     found: list[float] = []
-    for number, line in enumerate(lines[data:], start=data + 1):
+    for number, line in enumerate(page, start=first + 1):
         if _plain(line):
             found.extend(numbers_in(file, number, line, _split(line)))
     return np.array(found)

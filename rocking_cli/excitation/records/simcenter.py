@@ -12,7 +12,7 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import in_si
-from rocking_cli.excitation.records.text import check_interval, only_channel, usable
+from rocking_cli.excitation.records.text import check_interval, only_channel, sensible
 from rocking_cli.excitation.records.units import resolve_unit
 
 TITLE = "SimCenter JSON"
@@ -49,7 +49,7 @@ def read(
     if not isinstance(values, list):
         raise InputError(Problem("the accelerations must be a list of numbers", file, line, field="accel_data"))
     for place, value in enumerate(values, start=1):
-        if not _is_number(value) or not usable(np.array([value], dtype=np.float64)):
+        if not _is_number(value) or not sensible(value):
             message = f"value {place} is not a finite number: {str(value)[:40]}"
             raise InputError(Problem(message, file, line, field="accel_data"))
     stated = data.get("numPoints", len(values))

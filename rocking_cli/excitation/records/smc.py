@@ -7,6 +7,7 @@ import re
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.records.lines import Lines
 
 TITLE = "USGS SMC"
 SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"
@@ -29,7 +30,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a USGS SMC file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = text.split("\n")
+    lines = Lines(text)
     kind = _FIRST.match(lines[0])
     if kind is None or kind[1] not in _ACCELERATIONS:
         message = f"the header says this is not an acceleration: {lines[0].strip()}"

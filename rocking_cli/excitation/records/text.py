@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
 
 TITLE = "delimited text"
@@ -37,7 +39,7 @@ def read(
 ) -> GroundMotion:
     """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
     only_channel(file, channel)
-    lines = text.split("\n")
+    lines = Lines(text)
     start = _first_row(lines)
     if start is None:
         raise InputError(Problem("no numbers found", file=file))
@@ -62,19 +64,24 @@ def read(
         raise InputError(*problems)
 
     table = _table(file, lines, start, delimiter, columns)
-    if len(table) < 2:
+    if table.shape[1] < 2:
         raise InputError(Problem("a record needs at least two samples, this has one", file=file, line=start + 1))
     if columns == 2:
-        own = _interval(file, lines, start, table[:, 0])
+        own = _interval(file, lines, start, table[0])
         check_interval(file, None, own, dt)
         dt = own
     assert dt is not None  # one column without it was refused above
-    return GroundMotion(Path(file).name, dt, table[:, -1] * UNITS[unit], unit, "text")
+    return GroundMotion(Path(file).name, dt, table[-1] * UNITS[unit], unit, "text")
 
 
 def usable(values: NDArray[np.float64]) -> bool:
     """Whether all values are finite, and not so large that no arithmetic can be done with them."""
     return bool((np.abs(values) < _HUGE).all())
+
+
+def sensible(value: float) -> bool:
+    """Whether one value is `usable`."""
+    return abs(value) < _HUGE
 
 
 def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) -> list[float]:
@@ -100,7 +107,7 @@ def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) ->
     values = []
     for token in tokens:
         value = _value(token.strip())
-        if value is None or not abs(value) < _HUGE:
+        if value is None or not sensible(value):
             raise InputError(_not_a_number(file, line_number, line, token.strip(), known=value is not None))
         values.append(value)
     return values
@@ -133,7 +140,7 @@ def _clean(line: str) -> str:
     return "" if line.startswith(("#", "%")) else line.rstrip(",; \t")
 
 
-def _first_row(lines: Sequence[str]) -> int | None:
+def _first_row(lines: Iterable[str]) -> int | None:
     """Index of the first line of data: the first that begins with a number and is not a comment."""
     for index, line in enumerate(lines):
         if _value(re.split(r"[\s,;]", _clean(line), maxsplit=1)[0]) is not None:
@@ -172,30 +179,38 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
     return found
 
 
-def _table(file: str, lines: Sequence[str], start: int, delimiter: str | None, columns: int) -> NDArray[np.float64]:
-    """All rows as an array; numpy's own parser first, as it is fast, the careful one where it gives up."""
-    table = _quick_table(lines[start:], delimiter)
-    if table is None:  # perhaps only because of comments or empty cells
-        table = _quick_table([row for line in lines[start:] if (row := _clean(line))], delimiter)
-    if table is None or table.shape[1] != columns or not usable(table):
-        return _careful_table(file, lines, start, delimiter, columns)
-    return table
+def _table(file: str, lines: Lines, start: int, delimiter: str | None, columns: int) -> NDArray[np.float64]:
+    """All columns as the rows of an array; by numpy's own, fast parser, by the careful one on a page it gives up."""
+    table = np.empty((columns, len(lines) - start))  # rather too wide: blank lines and comments hold nothing
+    filled = 0
+    for first, page in lines.pages(start):
+        part = _quick_table(page, delimiter, columns)
+        if part is None:  # perhaps only because of comments or empty cells
+            part = _quick_table([row for line in page if (row := _clean(line))], delimiter, columns)
+        if part is None:
+            part = _careful_table(file, first, page, delimiter, columns)
+        table[:, filled : filled + len(part)] = part.T
+        filled += len(part)
+    return table[:, :filled]
 
 
-def _quick_table(rows: Sequence[str], delimiter: str | None) -> NDArray[np.float64] | None:
-    """Parse the rows with numpy; None if it does not understand one of them."""
+def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> NDArray[np.float64] | None:
+    """Parse the lines with numpy; None if it does not understand one of them, or a value is not usable."""
+    if not any(line.strip() for line in lines):  # numpy warns of that
+        return np.empty((0, columns))
     try:
-        return np.loadtxt(rows, dtype=np.float64, delimiter=delimiter, comments=None, ndmin=2)
+        table = np.loadtxt(lines, dtype=np.float64, delimiter=delimiter, comments=None, ndmin=2)
     except ValueError:
         return None
+    return table if table.shape[1] == columns and usable(table) else None
 
 
 def _careful_table(
-    file: str, lines: Sequence[str], start: int, delimiter: str | None, columns: int
+    file: str, first: int, lines: Sequence[str], delimiter: str | None, columns: int
 ) -> NDArray[np.float64]:
-    """All rows, one by one: to say which one is wrong, or to take what numpy does not (1.5D-03)."""
+    """Parse the lines from index `first` on one by one: to say which is wrong, or take what numpy does not, 1D-3."""
     values: list[float] = []
-    for number, line in enumerate(lines[start:], start=start + 1):
+    for number, line in enumerate(lines, start=first + 1):
         row = _clean(line)
         if not row:
             continue
@@ -208,7 +223,7 @@ def _careful_table(
     return np.array(values).reshape(-1, columns)
 
 
-def _interval(file: str, lines: Sequence[str], start: int, time: NDArray[np.float64]) -> float:
+def _interval(file: str, lines: Lines, start: int, time: NDArray[np.float64]) -> float:
     """Interval of evenly spaced times [s]; an error at the first time that is out of step."""
     steps = np.diff(time)
     if (steps <= 0).any():
@@ -247,10 +262,10 @@ def _rounding(time: NDArray[np.float64], dt: float) -> float:
     return resolution if (np.abs(time - np.round(time, decimals)) < 1e-6 * resolution).all() else 0.0
 
 
-def _at_row(file: str, lines: Sequence[str], start: int, row: int, message: str, hint: str) -> Problem:
+def _at_row(file: str, lines: Lines, start: int, row: int, message: str, hint: str) -> Problem:
     """Place a problem at a row of the table, counted from 0; blank lines and comments are no rows."""
-    numbers = (number for number, line in enumerate(lines[start:], start=start + 1) if _clean(line))
-    number = next(number for index, number in enumerate(numbers) if index == row)
+    numbers = (number for number, line in enumerate(lines, start=1) if number > start and _clean(line))
+    number = next(islice(numbers, row, None))
     return Problem(message, file=file, line=number, excerpt=lines[number - 1].strip()[:100], hint=hint)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, stated_unit
+from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.units import CHOICES, canonical
 
 TITLE = "USC V1"
@@ -38,7 +39,7 @@ def read(
     largest interval that meets all of these times, so it is the same lines, not an approximation: more samples
     than the file has points, though none of them made up.
     """
-    lines = text.split("\n")
+    lines = Lines(text)
     count_line, count_text = _find(file, lines, _COUNT, "number of points (NO. OF POINTS)")
     unit_line, spelling = _find(file, lines, _UNITS, "unit (UNITS ARE SEC AND ...)")
     count = int(count_text)

@@ -1,0 +1,64 @@
+"""The lines of a text, cut out a page at a time: a long record has more lines than should be objects all at once."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from typing import overload
+
+PAGE = 1 << 16
+"""Characters of a page, at least: a page ends where a line does."""
+
+
+class Lines(Sequence[str]):
+    r"""What `text.split("\n")` gives, but never more than a page of it in memory.
+
+    Parameters
+    ----------
+    text : str
+        Content of a file, lines ending in a plain newline.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._starts = [0]  # of each page, in the text
+        self._firsts = [0]  # index of its first line
+        while (end := text.find("\n", self._starts[-1] + PAGE)) >= 0:
+            self._firsts.append(self._firsts[-1] + text.count("\n", self._starts[-1], end + 1))
+            self._starts.append(end + 1)
+        self._length = self._firsts[-1] + text.count("\n", self._starts[-1]) + 1
+        self._starts.append(len(text) + 1)
+        self._number, self._page = 0, self._cut(0)  # the page that was looked at last
+
+    def __len__(self) -> int:
+        return self._length
+
+    @overload
+    def __getitem__(self, index: int) -> str: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[str]: ...
+    def __getitem__(self, index: int | slice) -> str | list[str]:
+        if isinstance(index, slice):
+            return [self[place] for place in range(*index.indices(self._length))]
+        index = range(self._length)[index]  # counts from the end, and refuses, as a list does
+        number = bisect_right(self._firsts, index) - 1
+        if number != self._number:
+            self._number, self._page = number, self._cut(number)
+        return self._page[index - self._firsts[number]]
+
+    def __iter__(self) -> Iterator[str]:
+        return self.since(0)
+
+    def since(self, start: int) -> Iterator[str]:
+        """Yield all lines from index `start` on: quicker than one index after the other."""
+        for _, page in self.pages(start):
+            yield from page
+
+    def pages(self, start: int) -> Iterator[tuple[int, list[str]]]:
+        """Yield all lines from index `start` on, a page at a time, each with the index of its first line."""
+        for number in range(bisect_right(self._firsts, start) - 1, len(self._firsts)):
+            skipped = max(start - self._firsts[number], 0)
+            yield self._firsts[number] + skipped, self._cut(number)[skipped:]
+
+    def _cut(self, number: int) -> list[str]:
+        return self._text[self._starts[number] : self._starts[number + 1] - 1].split("\n")
