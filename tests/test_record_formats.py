@@ -15,7 +15,7 @@ from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records import layout, read_record
-from rocking_cli.excitation.records.registry import FALLBACK, GROUP, load_readers, reader_for
+from rocking_cli.excitation.records.registry import FALLBACK, GROUP, load_readers, reader_for, takes_bytes
 from tests.conftest import RECORDS
 
 G = STANDARD_GRAVITY
@@ -29,6 +29,16 @@ def problem(path: Path, **options) -> Problem:
         read_record(path, **options)
     (found,) = caught.value.problems
     return found
+
+
+def claims(text: str) -> list[str]:
+    """Names of the readers that take a text for theirs, the last resort aside."""
+    contents = {False: text, True: text.encode()}
+    return [
+        name
+        for name, reader in load_readers().items()
+        if name != FALLBACK and reader.sniff(contents[takes_bytes(reader)])
+    ]
 
 
 def columns(values, form: str, per_line: int, margin: str = "") -> str:
@@ -119,12 +129,10 @@ def test_the_real_records_of_simcenter_and_peer_agree():
 
 @pytest.mark.skipif(not FORMATS.is_dir(), reason="the real records are not here (shared/records/formats)")
 def test_each_real_record_is_claimed_by_one_reader():
-    readers = {name: reader for name, reader in load_readers().items() if name != FALLBACK}
     files = [path for path in [*FORMATS.iterdir(), *RECORDS.iterdir()] if path.suffix not in ("", ".md", ".dat")]
     assert len(files) > 10
     for path in files:
-        content = path.read_text("latin-1")
-        assert sum(reader.sniff(content) for reader in readers.values()) == 1, path.name
+        assert len(claims(path.read_text("latin-1"))) == 1, path.name
 
 
 # --- made files -----------------------------------------------------------------------------------------------------
@@ -255,8 +263,7 @@ def test_made_files_are_read(name, newline, tmp_path):
 
 @BY_FORMAT
 def test_a_made_file_is_claimed_by_its_reader_alone(name):
-    content = MADE[name][0]()
-    assert [other for other, reader in load_readers().items() if other != FALLBACK and reader.sniff(content)] == [name]
+    assert claims(MADE[name][0]()) == [name]
 
 
 @BY_FORMAT
@@ -454,6 +461,38 @@ def test_the_fallback_is_asked_last():
     readers = {"a": reader("A", claims=True), FALLBACK: reader("T", claims=True)}
     assert reader_for("", "x", readers).TITLE == "A"
     assert reader_for("", "x", {**readers, "a": reader("A", claims=False)}).TITLE == "T"
+
+
+def taking_bytes(title: str, mark: bytes) -> SimpleNamespace:
+    def read(data, file, **options):
+        assert isinstance(data, bytes)
+        return GroundMotion(title, 0.01, np.frombuffer(data.removeprefix(mark), "<f8"))
+
+    return SimpleNamespace(
+        TITLE=title, SIGN=mark.hex(), BINARY=True, sniff=lambda data: data.startswith(mark), read=read
+    )
+
+
+def test_a_reader_of_bytes_gets_bytes_and_the_others_text(tmp_path, monkeypatch):
+    readers = {"a": reader("A", claims=True), "b": taking_bytes("B", b"MADE\0")}
+    monkeypatch.setattr("rocking_cli.excitation.records.load_readers", lambda: readers)
+    path = tmp_path / "record"
+    path.write_bytes(b"MADE\0" + VALUES.tobytes())
+    assert read_record(path).acceleration.tolist() == VALUES.tolist()
+    path.write_text("plain")
+    assert read_record(path).name == "A"
+    path.write_bytes(b"PK\0\0")
+    found = problem(path)
+    assert "binary file, and none of a record format" in found.message
+    assert "b (B" in found.hint
+    assert "a (A" not in found.hint  # it was not asked
+
+
+def test_a_reader_of_bytes_and_one_of_text_may_not_claim_the_same_file():
+    readers = {"a": reader("A", claims=True), "b": taking_bytes("B", b"x")}
+    with pytest.raises(InputError, match=r"more than one format.*a \(A: sign of A\); b \(B: 78\)"):
+        reader_for("x", "x", readers, b"x")
+    assert reader_for(None, "x", readers, b"x").TITLE == "B"
 
 
 def test_a_file_of_no_format_lists_what_was_tried(write):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.registry import load_readers, reader_for
+from rocking_cli.excitation.records.registry import load_readers, reader_for, takes_bytes
 
 __all__ = ["read_record"]
 
@@ -46,26 +46,32 @@ def read_record(
     if dt is not None and not (math.isfinite(dt) and dt > 0):
         raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="--dt"))
     file = str(path)
-    content = _load(file)
-    reader = reader_for(content, file, load_readers())
+    data = _load(file)
+    text = _decoded(data, file)
+    reader = reader_for(text, file, load_readers(), data)
+    content = data if takes_bytes(reader) else text
+    del data, text  # one of them is enough: a long record is large
     return reader.read(content, file, dt=dt, units=units, channel=channel)
 
 
-def _load(file: str) -> str:
-    """Content of a text file, with plain newlines."""
+def _load(file: str) -> bytes:
+    """Content of a file."""
     path = Path(file)
     try:
         if path.is_dir():
             raise InputError(Problem("this is a directory", file=file, hint="give the path of a record file"))
-        data = path.read_bytes()
+        return path.read_bytes()
     except FileNotFoundError:
         raise InputError(Problem("no such file", file=file, hint="check the path")) from None
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
         reason = getattr(error, "strerror", None) or error
         raise InputError(Problem(f"the file cannot be read: {reason}", file=file)) from None
+
+
+def _decoded(data: bytes, file: str) -> str | None:
+    """Text of a file, with plain newlines; None if it holds bytes that no text does."""
     if len(data.translate(None, _BINARY)) != len(data):
-        hint = "a spreadsheet, an archive or UTF-16 text must be saved as plain text (CSV, UTF-8) first"
-        raise InputError(Problem("this is a binary file, not a text record", file=file, hint=hint))
+        return None
     try:
         content = data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -1,12 +1,13 @@
 """The record readers that are installed, found through the entry points `rocking.records`, and which one a file is for.
 
 A reader is a module, or any object, with a `TITLE` (the name of its format), a `SIGN` (what it recognises a file
-by, for the messages) and the functions `sniff` and `read` of `Reader`.
+by, for the messages) and the functions `sniff` and `read` of `Reader`. One that has `BINARY = True` too is given the
+bytes of a file in place of its text.
 """
 
 from __future__ import annotations
 
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 from rocking_cli import plugins
 from rocking_cli.errors import InputError, MechanismError, Problem
@@ -23,19 +24,20 @@ class Reader(Protocol):
     TITLE: str
     SIGN: str
 
-    def sniff(self, text: str) -> bool:
+    # The content is a str, or the bytes of a reader with BINARY = True: Any lets either name its own.
+    def sniff(self, content: Any, /) -> bool:
         """Whether a file with this content is of this format; quick, and never by raising."""
         ...
 
     def read(
-        self, text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+        self, content: Any, file: str, /, *, dt: float | None, units: str | None, channel: str | None
     ) -> GroundMotion:
         """Read a file of this format.
 
         Parameters
         ----------
-        text : str
-            Content of the file, lines ending in a plain newline.
+        content : str or bytes
+            Content of the file: its text, lines ending in a plain newline, or its bytes with `BINARY = True`.
         file : str
             Its path, for the messages and the name of the motion.
         dt : float, optional
@@ -78,17 +80,24 @@ def load_readers(group: str = GROUP) -> dict[str, Reader]:
     return readers
 
 
-def reader_for(text: str, file: str, readers: dict[str, Reader]) -> Reader:
+def takes_bytes(reader: Reader) -> bool:
+    """Whether a reader is given the bytes of a file, not its text."""
+    return bool(getattr(reader, "BINARY", False))
+
+
+def reader_for(text: str | None, file: str, readers: dict[str, Reader], data: bytes = b"") -> Reader:
     """Choose the one reader that claims a file, or the fallback if none of the others does.
 
     Parameters
     ----------
-    text : str
-        Content of the file.
+    text : str or None
+        Content of the file; None if it is no text, and then only the readers of bytes are asked.
     file : str
         Its path, for the messages.
     readers : dict of str to Reader
         The readers to ask.
+    data : bytes, optional
+        The same content, for the readers of bytes.
 
     Returns
     -------
@@ -100,8 +109,13 @@ def reader_for(text: str, file: str, readers: dict[str, Reader]) -> Reader:
     InputError
         If several claim the file, or none does.
     """
-    claims = [name for name, reader in readers.items() if name != FALLBACK and reader.sniff(text)]
-    if not claims and FALLBACK in readers and readers[FALLBACK].sniff(text):
+
+    def claimed(name: str) -> bool:
+        content = data if takes_bytes(readers[name]) else text
+        return content is not None and readers[name].sniff(content)
+
+    claims = [name for name in readers if name != FALLBACK and claimed(name)]
+    if not claims and FALLBACK in readers and claimed(FALLBACK):
         claims = [FALLBACK]
     if len(claims) == 1:
         return readers[claims[0]]
@@ -109,9 +123,14 @@ def reader_for(text: str, file: str, readers: dict[str, Reader]) -> Reader:
         why = "; ".join(_described(name, readers[name]) for name in claims)
         hint = "the file holds the marks of both: take out what is not its own, such as another file in its comments"
         raise InputError(Problem(f"more than one format claims this file: {why}", file=file, hint=hint))
-    tried = "".join(f"\n    {_described(name, reader)}" for name, reader in readers.items())
+    asked = {name: reader for name, reader in readers.items() if text is not None or takes_bytes(reader)}
+    tried = "".join(f"\n    {_described(name, reader)}" for name, reader in asked.items())
+    hint = f"tried, and what each looks for:{tried or ' nothing'}"
     message = "not a record format that can be read: no acceleration values found"
-    raise InputError(Problem(message, file=file, hint=f"tried, and what each looks for:{tried or ' nothing'}"))
+    if text is None:
+        message = "this is a binary file, and none of a record format that can be read"
+        hint = f"a spreadsheet, an archive or UTF-16 text must be saved as plain text (CSV, UTF-8) first; {hint}"
+    raise InputError(Problem(message, file=file, hint=hint))
 
 
 def _described(name: str, reader: Reader) -> str:
