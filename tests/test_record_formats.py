@@ -216,6 +216,24 @@ def usc(values=VALUES, times=None, count=None, unit="G/10") -> str:
     return head + columns([0] * 100, "5d", 16) + columns([0.0] * 50, "10.3f", 8) + columns(pairs, "7.3f", 10, " ")
 
 
+def csmip_v1(values=VALUES, count=None, unit="G/10", names=("90 DEG",), evenly=None, times=None) -> str:
+    """`evenly` is the line that announces samples at a constant interval, in place of a film's points."""
+    out = ""
+    times = 0.01 * np.arange(len(values)) if times is None else times
+    for place, name in enumerate(names, start=1):
+        out += "UNCORRECTED ACCELEROGRAM DATA              PROCESSED: 01/01/00, MADE UP\n9400101\n" + "x\n" * 4
+        out += f"CHAN  {place}: {name:20}(STA CHN:  1)\n" + "x\n" * 3
+        out += f"NO. OF POINTS =  {count or len(values)}  RECORD LENGTH = 59.998 SEC\n"
+        out += f"UNITS OF UNCOR ACCEL ARE SEC AND {unit}.     MAX  =  -.200 G, AT  11.576 SEC.\nRMS OF RECORD\n"
+        out += columns([-999] * 100, "5d", 16) + columns([-999.0] * 50, "10.5f", 8)
+        if evenly:
+            out += evenly.format(count=count or len(values)) + "\n" + columns(place * values, "9.6f", 8)
+        else:
+            out += columns(np.column_stack([times, place * values]).ravel(), "7.3f", 10)
+        out += f"/&  ----------  END OF DATA FOR CHANNEL  {place}  ----------\n"
+    return out
+
+
 def knet(values=VALUES, duration=11, rate="1Hz", scale="2000(gal)/1000000") -> str:
     header = {"Origin Time": "2018/01/24 19:51:00", "Lat.": 41.0, "Long.": 142.5, "Depth. (km)": 30, "Mag.": 6.2}
     header |= {"Station Code": "MADE", "Station Lat.": 1, "Station Long.": 1, "Station Height(m)": 39, "Record Time": 0}
@@ -233,6 +251,7 @@ MADE = {
     "smc": (smc, "cm/s2", 0.01, 0.01),
     "cosmos": (cosmos, "cm/s2", 0.01, 0.01),
     "usc_v1": (usc, "g/10", G / 10, 0.01),
+    "csmip_v1": (csmip_v1, "g/10", G / 10, 0.01),
     "knet": (knet, "gal", 0.01, 1.0),
 }
 BY_FORMAT = pytest.mark.parametrize("name", MADE)
@@ -312,6 +331,7 @@ def test_a_spoilt_value_is_pointed_at(name, write):
     lines = MADE[name][0]().split("\n")
     spoilt = {"simcenter": ("-4.5", "oops"), "knet": ("  -11625", "    oops"), "esm": ("1.500000", "oops")}
     spoilt |= {"smc": ("1.5000E+0", "     oops"), "cosmos": ("   1.50000", "   *******"), "usc_v1": ("1.500", " oops")}
+    spoilt |= {"csmip_v1": ("1.500", " oops")}
     old, new = spoilt.get(name, ("1.500", "*****") if name == "csmip_v2" else (" 1.50", " oops"))
     place = next(index for index, line in enumerate(lines) if old in line)
     lines[place] = lines[place].replace(old, new)
@@ -341,22 +361,30 @@ def test_simcenter_errors(write):
     ("content", "fragment"),
     [
         (esm(kind="VELOCITY", unit="cm/s"), "VELOCITY, not ACCELERATION"),
+        (esm(kind="DISPLACEMENT", unit="cm"), "DISPLACEMENT, not ACCELERATION"),
         (esm(unit="cm/s"), "a velocity or displacement"),
         (csmip(kinds=("VELOC", "DISPL")), "no acceleration"),
         (smc(first="3 VELOCITY"), "not an acceleration: 3 VELOCITY"),
+        (smc(first="4 DISPLACEMENT"), "not an acceleration: 4 DISPLACEMENT"),
         (smc(first="5 RESPONSE SPECTRA"), "not an acceleration"),
         (cosmos(kind="velocity", unit="cm/sec(05)"), "no acceleration, but velocity"),
+        (cosmos(kind="displacement", unit="cm(06)"), "no acceleration, but displacement"),
         (cosmos(unit="cm/sec(05)"), "a velocity or displacement"),
         (cosmos(kind="raw", unit="counts(50)"), "no acceleration, but raw"),
+        (cosmos(kind="raw accel.", unit="counts(50)"), "no acceleration, but raw accel."),
         (geonet(unit="mm/s"), "a velocity or displacement"),
         (knet(scale="2000(kine)/1000000"), "does not say what unit"),
+        (csmip_v1(evenly="{count} POINTS OF VELOC DATA EQUALLY SPACED AT .005 SEC.  (UNITS: CM/SEC)"), "VELOC data"),
+        (csmip_v1(evenly="{count} Accelerogram points at 200 pts/sec in units of cm/s. Format: (8f9.6)"), "a velocity"),
     ],
 )
 def test_what_is_no_acceleration_is_refused(content, fragment, write):
     assert fragment in problem(write(content)).message
 
 
-@pytest.mark.parametrize("content", [esm(unit=""), csmip(unit=""), cosmos(unit="  "), usc(unit="-")])
+@pytest.mark.parametrize(
+    "content", [esm(unit=""), csmip(unit=""), cosmos(unit="  "), usc(unit="-"), csmip_v1(unit="-")]
+)
 def test_a_missing_unit_is_not_guessed(content, write):
     path = write(content)
     hint = problem(path, channel="1").hint
@@ -364,7 +392,9 @@ def test_a_missing_unit_is_not_guessed(content, write):
     assert read_record(path, channel="1", units="mm/s2").acceleration[1] == pytest.approx(0.0015)
 
 
-@pytest.mark.parametrize("make", [geonet, csmip, lambda: cosmos(names=("90 deg", "Up"))])
+@pytest.mark.parametrize(
+    "make", [geonet, csmip, lambda: cosmos(names=("90 deg", "Up")), lambda: csmip_v1(names=("90 DEG", "UP"))]
+)
 def test_channels(make, write):
     path = write(make())
     found = problem(path)
@@ -427,6 +457,37 @@ def test_usc_times_that_are_uneven_are_kept(write):
     np.testing.assert_allclose(motion.acceleration, np.array([0, 0.5, 1, 1 / 3, -1 / 3, -1]) * G / 10, atol=1e-15)
     assert "does not increase" in problem(write(usc(np.ones(3), times=[0.0, 0.01, 0.01]))).message
     assert read_record(write(usc(unit="G"))).acceleration[1] == 1.5 * G
+
+
+EVENLY = [
+    "{count} POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC.  (UNITS: G)",
+    " {count} Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)  ",
+]
+
+
+@pytest.mark.parametrize("evenly", EVENLY)
+def test_csmip_v1_at_a_constant_interval(evenly, write):
+    content = csmip_v1(VALUES / 10, evenly=evenly, names=("90 DEG", "UP"))
+    assert claims(content) == ["csmip_v1"]  # though a corrected record may have such a line, too
+    motion = read_record(write(content), channel="up")
+    np.testing.assert_allclose(motion.acceleration, 0.2 * VALUES * G, rtol=1e-12)
+    assert (motion.dt, motion.unit, motion.format) == (pytest.approx(0.005), "g", "CSMIP V1")
+
+
+def test_csmip_v1_says_the_width_of_its_values(write):
+    wide = csmip_v1(evenly="{count} Accelerogram points at 200 pts/sec in units of g.  Format: (8f11.6)")
+    wide = wide.replace(columns(VALUES, "9.6f", 8), columns(VALUES, "11.6f", 8))
+    np.testing.assert_allclose(read_record(write(wide)).acceleration, VALUES * G, rtol=1e-12)
+
+
+def test_csmip_v1_films_keep_their_uneven_times(write):
+    path = write(csmip_v1(np.array([0.0, 1.0, -1.0]), times=[0.0, 0.004, 0.01]).lower())
+    motion = read_record(path)
+    assert (motion.dt, motion.npts) == (0.002, 6)
+    np.testing.assert_allclose(motion.acceleration, np.array([0, 0.5, 1, 1 / 3, -1 / 3, -1]) * G / 10, atol=1e-15)
+    found = problem(write(csmip_v1(np.ones(3), times=[0.0, 0.01, 0.01])))
+    assert "does not increase" in found.message
+    assert "lines 28 to 28" in found.hint
 
 
 def test_knet_header(write):
@@ -531,6 +592,10 @@ def test_channel_choice_knows_files_without_names():
         (smc(said=-1), "-1 comment lines"),
         (smc(said=99), "ends before its values"),
         (esm().replace("STREAM", "stream").replace("NDATA", "x\nNDATA"), "does not state NDATA"),
+        (csmip_v1().replace("NO. OF", "NUMBER OF"), "does not state the number of points"),
+        (csmip_v1().replace("UNITS OF UNCOR", "UNIT"), "does not state the unit"),
+        (csmip_v1(evenly="{count} POINTS OF ACCEL DATA EQUALLY SPACED AT 0 SEC. (UNITS: G)"), "must be more than 0"),
+        (csmip_v1() + "left over\n", "must begin with the line UNCORRECTED"),
         (csmip(names=("UP",)).replace("     1.500", "     1E300"), "not a finite number of sensible size"),
         (geonet().replace("Component S74E", "x"), "does not state the component"),
         (geonet().replace("Corrected accelerogram", "X", 2).replace("X", "Corrected accelerogram", 1), "begin with"),

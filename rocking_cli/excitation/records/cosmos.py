@@ -21,7 +21,7 @@ _FIRST = re.compile(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
 _NUMBERS = re.compile(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?, *Format *= *(\S+)", re.I)
 _COMMENTS = re.compile(r"\s*(\d+) Comment line", re.I)
 _DATA = re.compile(
-    r"\s*(\d+)\s+(\w+)\s+pts, approx\s+(\S+)\s+secs, *units *= *([^(,]+)(?:\(\d+\))?, *Format *= *(\S+)", re.I
+    r"\s*(\d+)\s+(\S.*?)\s*pts, approx\s+(\S+)\s+secs, *units *= *([^(,]+)(?:\(\d+\))?, *Format *= *(\S+)", re.I
 )
 _WIDTH = re.compile(r"\(\d*[A-Z](\d+)(?:\.\d+)?\)", re.I)
 _AZIMUTH = re.compile(r"Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)

@@ -6,6 +6,7 @@ import re
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records import csmip_v1
 from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
 from rocking_cli.excitation.records.lines import Lines
 
@@ -21,8 +22,8 @@ _HEAD = 100_000  # characters looked at to recognise the format
 
 
 def sniff(text: str) -> bool:
-    """Whether the line that announces a history is there."""
-    return any(_DATA.match(line) for line in text[:_HEAD].split("\n"))
+    """Whether the line that announces a history is there, and not of an uncorrected record, which may have it too."""
+    return not csmip_v1.sniff(text) and any(_DATA.match(line) for line in text[:_HEAD].split("\n"))
 
 
 def read(

@@ -15,11 +15,13 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
-from rocking_cli.excitation.records.units import UNITS, resolve_unit
+from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, resolve_unit
 
 # A row of numbers has no letters but those of exponents; asterisks are an overflow, for `numbers_in` to refuse.
 _NO_ROW = re.compile(r"[^\s\d.+\-*EeDd]")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
+TENTH_OF_G = "g/10"
+_GRID = 1e-3  # s; times of digitised films are printed with three decimals
 
 
 @dataclass(frozen=True)
@@ -142,6 +144,51 @@ def stated_unit(file: str, line_number: int, unit: str, units: str | None) -> st
     return resolve_unit(file, [(line_number, f"units: {unit}")], units)
 
 
+def old_unit(file: str, line_number: int, spelling: str, units: str | None) -> str:
+    """Canonical unit as `stated_unit` finds it, or a tenth of g, which only digitised films are in."""
+    if spelling.replace(" ", "").lower() != TENTH_OF_G:
+        return stated_unit(file, line_number, spelling, units)
+    if units is not None:
+        if canonical(units) is None:
+            raise InputError(Problem(f"unknown unit '{units}'", field="--units", hint=f"choose one of: {CHOICES}"))
+        message = f"the header says the unit is {TENTH_OF_G}, but --units says {units}"
+        raise InputError(Problem(message, file, line_number, hint="leave --units out"))
+    return TENTH_OF_G
+
+
+def straight_lines(file: str, pairs: NDArray[np.float64], where: str) -> tuple[float, NDArray[np.float64]]:
+    """Put a digitised film, straight lines between points at uneven times, on an interval that meets all the times.
+
+    Times are whole milliseconds, so there is one, and the lines stay the same: more samples than the file has points,
+    though none of them made up.
+
+    Parameters
+    ----------
+    file : str
+        The file, for the messages.
+    pairs : ndarray, shape (2 * points,)
+        Time [s] and value of each point.
+    where : str
+        The lines they are on.
+
+    Returns
+    -------
+    dt : float
+        The largest such interval [s].
+    values : ndarray, shape (npts,)
+        Values at this interval.
+    """
+    time, values = pairs.reshape(-1, 2).T
+    ticks = np.rint(time / _GRID).astype(np.int64)
+    steps = np.diff(ticks)
+    if (steps <= 0).any():
+        point = int(np.argmax(steps <= 0)) + 1
+        message = f"time does not increase: point {point + 1} is at {time[point]:g} s, after {time[point - 1]:g} s"
+        raise InputError(Problem(message, file, hint=f"it is among {where}"))
+    step = int(np.gcd.reduce(steps))
+    return step * _GRID, np.interp(np.arange(ticks[0], ticks[-1] + 1, step), ticks, values)
+
+
 def number(file: str, line_number: int, line: str, token: str, what: str, *, least: float = 0.0) -> float:
     """A number of the header, which must be more than `least`; `what` says which it is."""
     (value,) = numbers_in(file, line_number, line, [token])
@@ -186,8 +233,8 @@ def choose(
 
 
 def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
-    """Accelerations [m/s2] from values in one of `UNITS`."""
-    return values * UNITS[unit]
+    """Accelerations [m/s2] from values in one of `UNITS`, or in tenths of g."""
+    return values * (UNITS["g"] / 10 if unit == TENTH_OF_G else UNITS[unit])
 
 
 def _is_row(line: str) -> bool:

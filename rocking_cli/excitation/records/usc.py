@@ -5,13 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-import numpy as np
-
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, stated_unit
+from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, old_unit, straight_lines
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.units import CHOICES, canonical
 
 TITLE = "USC V1"
 SIGN = "a first line with UNCORRECTED ACCELEROGRAM DATA OF VOLUME I"
@@ -21,8 +18,6 @@ _COUNT = re.compile(r"NO\. OF POINTS *= *(\d+)")
 _UNITS = re.compile(r"UNITS ARE SEC AND (.*?)(?: {2,}.*)?$")
 _COMPONENT = re.compile(r"COMP\s+(\S+)")
 _INTEGERS, _REALS = 100, 50
-_TENTH_OF_G = "g/10"
-_GRID = 1e-3  # s; times are printed with three decimals
 
 
 def sniff(text: str) -> bool:
@@ -45,36 +40,16 @@ def read(
     count = int(count_text)
     if count < 2:
         raise InputError(Problem(f"a record needs at least two points, this has {count}", file, count_line))
-    unit, tenths = _unit(file, unit_line, spelling, units)
+    unit = old_unit(file, unit_line, spelling, units)
 
     start = next((index for index, line in enumerate(lines) if not re.search(r"[A-Za-z]", line)), len(lines))
     for size, width in ((_INTEGERS, 5), (_REALS, 10)):
         _, start = fixed_width(file, lines, Block(start, size, width, 1), last=False)
     pairs, end = fixed_width(file, lines, Block(start, 2 * count, 7, count_line, margin=1))
-    time, values = pairs.reshape(-1, 2).T
-    ticks = np.rint(time / _GRID).astype(np.int64)
-    steps = np.diff(ticks)
-    if (steps <= 0).any():
-        point = int(np.argmax(steps <= 0)) + 1
-        message = f"time does not increase: point {point + 1} is at {time[point]:g} s, after {time[point - 1]:g} s"
-        raise InputError(Problem(message, file, hint=f"it is among lines {start + 1} to {end}"))
-    step = int(np.gcd.reduce(steps))
-    even = np.arange(ticks[0], ticks[-1] + 1, step)
-    acceleration = in_si(np.interp(even, ticks, values), "g" if tenths else unit) / (10 if tenths else 1)
+    step, values = straight_lines(file, pairs, f"lines {start + 1} to {end}")
+    acceleration = in_si(values, unit)
     name = next((match[1] for line in lines[:15] if (match := _COMPONENT.match(line))), "")
-    return choose(file, TITLE, [Channel(name, step * _GRID, acceleration, unit)], channel, dt)
-
-
-def _unit(file: str, line: int, spelling: str, units: str | None) -> tuple[str, bool]:
-    """Name of the unit, and whether it is a tenth of g, which only these old files are in."""
-    if spelling.replace(" ", "").lower() != _TENTH_OF_G:
-        return stated_unit(file, line, spelling, units), False
-    if units is not None:
-        if canonical(units) is None:
-            raise InputError(Problem(f"unknown unit '{units}'", field="--units", hint=f"choose one of: {CHOICES}"))
-        message = f"the header says the unit is {_TENTH_OF_G}, but --units says {units}"
-        raise InputError(Problem(message, file, line, hint="leave --units out"))
-    return _TENTH_OF_G, True
+    return choose(file, TITLE, [Channel(name, step, acceleration, unit)], channel, dt)
 
 
 def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, str]:

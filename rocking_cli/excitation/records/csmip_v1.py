@@ -1,0 +1,120 @@
+"""CSMIP V1 (CDMG, California): uncorrected channels one after another, of digitised films or evenly sampled."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.layout import (
+    Block,
+    Channel,
+    choose,
+    fixed_width,
+    in_si,
+    number,
+    old_unit,
+    straight_lines,
+)
+from rocking_cli.excitation.records.lines import Lines
+
+TITLE = "CSMIP V1"
+SIGN = "a first line that begins with UNCORRECTED ACCELEROGRAM DATA"
+
+FIRST = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
+_CHANNEL = re.compile(r"CHAN(?:NEL)? +\d+: *(.*?) *(?:\(STA CHN.*)?$", re.I)
+_COUNT = re.compile(r"NO\. OF POINTS *= *(\d+)", re.I)
+_UNITS = re.compile(r"UNITS OF UNCOR \w+ (?:ARE|IS) (?:SEC AND )?(.*?) *\.? *(?: {2,}.*)?$", re.I)
+# What announces samples at a constant interval: its number of points, kind, interval or rate, unit and format.
+_EVENLY = (
+    re.compile(r" *(\d+) +POINTS OF (\w+) +DATA EQUALLY SPACED AT +(?P<dt>\S+) *SEC\b\.?(.*)", re.I),
+    re.compile(r" *(\d+) +(\w+) +POINTS AT +(?P<rate>\S+) +PTS/SEC\b(.*)", re.I),
+)
+_STATED = re.compile(r"\bunits(?: of|:) *(.*?) *\.? *(?:\)|format|$)", re.I)
+_FORMAT = re.compile(r"\b\d+F(\d+)\.\d+", re.I)
+_TEXT_LINES = 13
+_INTEGERS, _REALS = (100, 5), (50, 10)  # how many, and characters to each
+_PAIRS, _VALUES = 7, 9  # characters: 10F7.3, five points a line, and 8F9.6 unless the line says otherwise
+
+
+def sniff(text: str) -> bool:
+    """Whether the first line is that of an uncorrected channel."""
+    return FIRST.match(text[:200]) is not None
+
+
+def read(
+    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
+    """Read a CSMIP V1 file; arguments, result and errors are those of `registry.Reader.read`.
+
+    The points of a digitised film are put on a constant interval as `layout.straight_lines` says.
+    """
+    lines = Lines(text)
+    channels: list[Channel] = []
+    start = 0
+    while start < len(lines):
+        if lines[start].strip() and not lines[start].startswith("/&"):
+            found, start = _channel(file, lines, start, units)
+            channels.append(found)
+        else:
+            start += 1
+    return choose(file, TITLE, channels, channel, dt)
+
+
+def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Channel, int]:
+    """Read the channel that begins at line index `start`; the index after it."""
+    if not FIRST.match(lines[start]):
+        message = "a channel must begin with the line UNCORRECTED ACCELEROGRAM DATA here"
+        hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
+        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
+    head = lines[start : start + _TEXT_LINES]
+    name = next((match[1] for line in head if (match := _CHANNEL.match(line.strip()))), "")
+    index = start + _TEXT_LINES
+    for size, width in (_INTEGERS, _REALS):
+        _, index = fixed_width(file, lines, Block(index, size, width, start + 1), last=False)
+    line = lines[index] if index < len(lines) else ""
+    for pattern in _EVENLY:
+        if match := pattern.match(line):
+            return _evenly(file, lines, index, match, name, units)
+    return _film(file, lines, start, index, name, units)
+
+
+def _evenly(
+    file: str, lines: Lines, index: int, match: re.Match[str], name: str, units: str | None
+) -> tuple[Channel, int]:
+    """Read samples at a constant interval, announced at line index `index`."""
+    line_number, line = index + 1, lines[index]
+    if not match[2].lower().startswith("accel"):
+        message = f"the values are {match[2]} data, not accelerations"
+        raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100]))
+    count = int(number(file, line_number, line, match[1], "number of points", least=1))
+    if "dt" in match.re.groupindex:
+        own = number(file, line_number, line, match["dt"], "sample interval")
+    else:
+        own = 1 / number(file, line_number, line, match["rate"], "number of points per second")
+    stated, form = _STATED.search(match[4]), _FORMAT.search(match[4])
+    unit = old_unit(file, line_number, stated[1] if stated else "", units)
+    block = Block(line_number, count, int(form[1]) if form else _VALUES, line_number)
+    values, end = fixed_width(file, lines, block)
+    return Channel(name, own, in_si(values, unit), unit, line_number), end
+
+
+def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str | None) -> tuple[Channel, int]:
+    """Read pairs of time and acceleration, from line index `index` on."""
+    head = lines[start : start + _TEXT_LINES]
+    count_line, count_text = _find(file, head, start, _COUNT, "number of points (NO. OF POINTS)")
+    unit_line, spelling = _find(file, head, start, _UNITS, "unit (UNITS OF UNCOR ACCEL ARE SEC AND ...)")
+    unit = old_unit(file, unit_line, spelling, units)
+    count = int(number(file, count_line, lines[count_line - 1], count_text, "number of points", least=1))
+    pairs, end = fixed_width(file, lines, Block(index, 2 * count, _PAIRS, count_line))
+    own, values = straight_lines(file, pairs, f"lines {index + 1} to {end}")
+    return Channel(name, own, in_si(values, unit), unit), end
+
+
+def _find(file: str, head: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:
+    """Line number and value of something in the text header of a channel, which begins at line index `start`."""
+    for line_number, line in enumerate(head, start=start + 1):
+        if match := pattern.search(line.rstrip()):
+            return line_number, match[1]
+    raise InputError(Problem(f"the header does not state the {what}", file, start + 1))
