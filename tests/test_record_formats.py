@@ -507,7 +507,7 @@ def reader(title: str, *, claims: bool) -> SimpleNamespace:
 
 
 def test_the_readers_come_in_through_entry_points():
-    assert set(load_readers()) == {*MADE, "peer_at2", FALLBACK}
+    assert set(load_readers()) == {*MADE, "peer_at2", "sac", "miniseed", FALLBACK}
     assert load_readers("rocking.nothing") == {}
 
 
@@ -558,7 +558,7 @@ def test_a_reader_of_bytes_and_one_of_text_may_not_claim_the_same_file():
 
 def test_a_file_of_no_format_lists_what_was_tried(write):
     found = problem(write("nothing of the kind\n"))
-    assert all(f"{name} (" in found.hint for name in [*MADE, "peer_at2", "text"])
+    assert all(f"{name} (" in found.hint for name in [*MADE, "peer_at2", "sac", "miniseed", "text"])
 
 
 def test_a_broken_reader_is_named(monkeypatch):

@@ -65,6 +65,8 @@ class Channel:
         Unit in the file.
     dt_line : int, optional
         Line number of the interval.
+    flaw : Problem, optional
+        Why it cannot be used: it is listed with that, and refused if it is chosen.
     """
 
     name: str
@@ -72,6 +74,7 @@ class Channel:
     acceleration: NDArray[np.float64]
     unit: str
     dt_line: int | None = None
+    flaw: Problem | None = None
 
 
 def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> tuple[NDArray[np.float64], int]:
@@ -225,6 +228,8 @@ def choose(
         message = f"the file has {len(channels)} channels, and only one can shake a structure"
         raise InputError(Problem(message, file=file, hint=f"choose one with --channel:{_listed(channels)}"))
     chosen = channels[0] if asked is None else _find(file, channels, asked)
+    if chosen.flaw is not None:
+        raise InputError(chosen.flaw)
     check_interval(file, chosen.dt_line, chosen.dt, dt)
     name = Path(file).name
     if len(channels) > 1:
@@ -260,9 +265,13 @@ def _plain(name: str) -> str:
 
 
 def _listed(channels: Sequence[Channel]) -> str:
-    """Number, name, points and peak of every channel."""
+    """Number, name, points and peak of every channel; of one that cannot be used, why."""
     return "".join(
         f"\n    {place}: {channel.name + ', ' if channel.name else ''}{channel.acceleration.size} points, "
-        f"PGA {float(np.abs(channel.acceleration).max()) / STANDARD_GRAVITY:.4g} g"
+        f"{channel.flaw.message if channel.flaw else _peak(channel)}"
         for place, channel in enumerate(channels, start=1)
     )
+
+
+def _peak(channel: Channel) -> str:
+    return f"PGA {float(np.abs(channel.acceleration).max()) / STANDARD_GRAVITY:.4g} g"

@@ -1,0 +1,80 @@
+"""SAC, versions 6 and 7, binary: a header of 158 words that names no unit, then the samples of one component."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.layout import choose
+from rocking_cli.excitation.records.seismo import channel_of, given_unit, traces, velocity_code
+
+TITLE = "SAC"
+SIGN = "a binary header with version 6 or 7 in its 77th word"
+BINARY = True
+
+_HEADER, _FOOTER = 632, 176  # bytes; version 7 ends with some of the header once more, in double precision
+_VERSIONS = (6, 7)
+_TIME_SERIES, _XY = 1, 4  # of IFTYPE
+_ACCELERATION = 8  # of IDEP
+_OTHERS = {6: "displacement", 7: "velocity", 50: "voltage"}
+
+
+@dataclass(frozen=True)
+class _Header:
+    """Words of the header: interval [s], version, number of points, kind of file, kind of values, whether even."""
+
+    delta: float
+    version: int
+    npts: int
+    kind: int
+    quantity: int
+    even: int
+
+
+def sniff(data: bytes) -> bool:
+    """Whether the version of the header is one there is, and the words beside it make sense."""
+    header = _header(data)
+    return header is not None and header.delta > 0 and header.even in (0, 1) and 0 < header.kind < 200
+
+
+def read(
+    data: bytes, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+) -> GroundMotion:
+    """Read a SAC file; arguments, result and errors are those of `registry.Reader.read`."""
+    header = _header(data)
+    if header is None:
+        raise InputError(Problem("this is not the header of a SAC file", file))
+    if not header.even:
+        hint = "interpolate it at a constant interval first"
+        raise InputError(Problem("the header says the samples are unevenly spaced (LEVEN)", file, hint=hint))
+    if header.kind not in (_TIME_SERIES, _XY):
+        message = f"the header says this is no time series (IFTYPE = {header.kind})"
+        raise InputError(Problem(message, file, hint="give the file with the acceleration"))
+    if header.quantity in _OTHERS:
+        message = f"the header says the values are a {_OTHERS[header.quantity]}, not an acceleration (IDEP)"
+        raise InputError(Problem(message, file, hint="give the file with the acceleration"))
+    size = _HEADER + 4 * header.npts
+    if len(data) != size + (_FOOTER if header.version == 7 else 0):
+        message = f"the header says {header.npts} points, which do not make the {len(data)} bytes of the file"
+        raise InputError(Problem(message, file, hint="the file may have been cut short: download it again"))
+    unit = given_unit(file, units)
+    (trace,) = traces(data[:size], file, "SAC")
+    name = trace.stats.channel
+    flaw = None if header.quantity == _ACCELERATION else velocity_code(file, name)
+    # 0.005 is stored as the nearest float of 32 bits, 0.004999999888: the shortest decimal of that was meant.
+    own = float(str(np.float32(header.delta)))
+    return choose(file, TITLE, [channel_of(file, name, own, trace.data, unit, flaw)], channel, dt)
+
+
+def _header(data: bytes) -> _Header | None:
+    """Read the words that matter, in whichever byte order gives a version there is; None if neither does."""
+    if len(data) >= _HEADER:
+        for order in "<>":
+            delta, version, npts, kind, quantity, even = struct.unpack_from(f"{order}f300xi8xi20xii72xi", data)
+            if version in _VERSIONS:
+                return _Header(delta, version, npts, kind, quantity, even)
+    return None

@@ -1,0 +1,108 @@
+"""What the seismologists' formats share: obspy reads them, and what they hold may be no acceleration in any unit."""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.records.layout import Channel, in_si
+from rocking_cli.excitation.records.text import sensible, usable
+from rocking_cli.excitation.records.units import resolve_unit
+
+# SEED names a channel by band, instrument and direction; H, L and P are seismometers and geophones: velocity.
+_VELOCITY_CODE = re.compile(r"[A-Z][HLP][A-Z0-9]")
+_MOST = 10 * STANDARD_GRAVITY  # m/s2; whole numbers beyond this are counts: no earthquake has reached half of it
+
+
+def traces(data: bytes, file: str, form: str) -> list[Any]:
+    """Read the traces of a file with obspy, which is imported here because few have it, and fewer need it.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    file : str
+        Its path, for the messages.
+    form : str
+        What obspy calls the format.
+
+    Returns
+    -------
+    list of obspy.Trace
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        If obspy is not installed, or does not understand the file or a part of it.
+    """
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("ignore")  # obspy's deprecations are no business of who reads a record
+        try:
+            import obspy
+            from obspy.io.mseed import InternalMSEEDWarning
+        except ImportError as error:
+            message = f"obspy, which reads such files, cannot be imported: {error}"
+            hint = "install it: pip install 'rocking-cli[seismo]'"
+            raise InputError(Problem(message, file, hint=hint)) from None
+        warnings.simplefilter("always", InternalMSEEDWarning)  # it passes over what it cannot read
+        try:
+            found = list(obspy.read(io.BytesIO(data), format=form))
+        except Exception as error:  # of many kinds, without a base of their own
+            message = f"obspy cannot read this file: {_in_a_line(error)}"
+            hint = "the file may have been cut short or damaged: download it again"
+            raise InputError(Problem(message, file, hint=hint)) from None
+    if told:
+        message = f"obspy has doubts about this file: {_in_a_line(told[0].message)}"
+        hint = "it may be damaged: download it again; if you know it is whole, write it anew with obspy"
+        raise InputError(Problem(message, file, hint=hint))
+    return found
+
+
+def given_unit(file: str, units: str | None) -> str:
+    """Canonical unit the user gave, which must be given: the formats have no place for it."""
+    return resolve_unit(file, [], units)
+
+
+def channel_of(file: str, name: str, dt: float, samples: NDArray[Any], unit: str, flaw: Problem | None) -> Channel:
+    """Make a channel of samples, with the flaw found in the header or the first one found in the samples."""
+    values = samples.astype(np.float64) if samples.dtype.kind in "iuf" else np.full(samples.size, np.nan)
+    flaw = flaw or _flaw(file, name, values, unit, whole=samples.dtype.kind in "iu")
+    return Channel(name, dt, values if flaw else in_si(values, unit), unit, flaw=flaw)
+
+
+def velocity_code(file: str, code: str) -> Problem | None:
+    """Find a channel code of an instrument that records velocity."""
+    if not _VELOCITY_CODE.fullmatch(code):
+        return None
+    message = f"channel {code} is of a seismometer, which records velocity, not of an accelerometer"
+    hint = "give the accelerometer's channel, such as HNE; name one so that was converted to acceleration"
+    return Problem(message, file, hint=hint)
+
+
+def _flaw(file: str, name: str, values: NDArray[np.float64], unit: str, *, whole: bool) -> Problem | None:
+    """Find samples that are no numbers, or counts of a digitiser."""
+    who = f"channel {name}" if name else "the file"
+    if not values.size:
+        return Problem(f"{who} has no samples", file)
+    if not usable(values):
+        place = next(index for index, value in enumerate(values.tolist()) if not sensible(value))
+        message = f"sample {place + 1} of {who} is not a finite number of sensible size: {values[place]:g}"
+        return Problem(message, file, hint="repair the record first: every sample must have a value")
+    peak = float(np.abs(in_si(values, unit)).max())
+    if whole and peak > _MOST:
+        message = f"{who} has whole numbers with a peak of {peak / STANDARD_GRAVITY:.4g} g, if in {unit}: raw counts"
+        hint = "convert them first: remove_response(output='ACC') in obspy gives m/s2"
+        return Problem(message, file, hint=hint)
+    return None
+
+
+def _in_a_line(reason: object) -> str:
+    return " ".join(str(reason).split())
