@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from rocking_cli.errors import RockingError as RockingError
     from rocking_cli.errors import SolverError as SolverError
     from rocking_cli.excitation.base import GroundMotion as GroundMotion
+    from rocking_cli.excitation.measures import Measures as Measures
+    from rocking_cli.excitation.measures import measure as measure
     from rocking_cli.excitation.records import read_record as read_record
     from rocking_cli.registry import Registry as Registry
     from rocking_cli.structure import load_structure as load_structure
@@ -53,6 +55,7 @@ _HOME = {
     "dynamics.pulse_response": ["closed_form", "exact_pulse"],
     "errors": ["InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
     "excitation.base": ["GroundMotion"],
+    "excitation.measures": ["Measures", "measure"],
     "excitation.records": ["read_record"],
     "registry": ["Registry"],
     "structure": ["load_structure"],

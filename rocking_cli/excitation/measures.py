@@ -1,0 +1,169 @@
+"""How strong a ground motion is: exact for the straight lines between its samples, also for what peaks between them.
+
+Velocity and displacement start from zero; they are the parabolas and cubics that the straight lines integrate to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+
+Reals = NDArray[np.float64]
+SIGNIFICANT = (0.05, 0.95)  # of the Arias intensity: where the significant duration begins and ends
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Intensity measures of a ground motion.
+
+    Parameters
+    ----------
+    pga, mean, rms : float
+        Peak, mean and root-mean-square acceleration, in units of standard gravity.
+    pgv, final_velocity : float
+        Peak velocity and that at the last sample [m/s].
+    pgd, final_displacement : float
+        Peak displacement and that at the last sample [m].
+    arias : float
+        Arias intensity, pi/(2 g) times the integral of the squared acceleration [m/s].
+    t_5, t_95 : float or None
+        When 5 and 95 % of it have built up [s]; None without any.
+    mean_period : float or None
+        2 pi times the rms acceleration over the rms of its rate [s]; None where the acceleration never changes.
+    """
+
+    pga: float
+    pgv: float
+    pgd: float
+    arias: float
+    t_5: float | None
+    t_95: float | None
+    mean: float
+    rms: float
+    final_velocity: float
+    final_displacement: float
+    mean_period: float | None
+
+    @property
+    def significant_duration(self) -> float | None:
+        """Time from 5 to 95 % of the Arias intensity [s]."""
+        return None if self.t_5 is None or self.t_95 is None else self.t_95 - self.t_5
+
+
+def velocity(motion: GroundMotion) -> Reals:
+    """Ground velocity at the samples [m/s], from zero."""
+    a = motion.acceleration
+    return _from_zero(motion.dt * (a[:-1] + a[1:]) / 2)
+
+
+def displacement(motion: GroundMotion) -> Reals:
+    """Ground displacement at the samples [m], from zero."""
+    a, v, dt = motion.acceleration, velocity(motion), motion.dt
+    return _from_zero(dt * (v[:-1] + dt * (2 * a[:-1] + a[1:]) / 6))
+
+
+def arias_build_up(motion: GroundMotion) -> Reals:
+    """Arias intensity of the motion up to each sample [m/s]; over its last value, a Husid plot."""
+    return _from_zero(_squared(motion)) * (pi / (2 * STANDARD_GRAVITY))
+
+
+def measure(motion: GroundMotion) -> Measures:
+    """All measures of a ground motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        Straight between its samples.
+
+    Returns
+    -------
+    Measures
+
+    Raises
+    ------
+    InputError
+        If the accelerations are so large that their measures are beyond the range of numbers.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        v, u, built = velocity(motion), displacement(motion), arias_build_up(motion)
+        steepness = float(np.sum(np.diff(motion.acceleration) ** 2)) / motion.dt
+        total = float(built[-1])
+        squared = total * (2 * STANDARD_GRAVITY) / pi
+        times = [_time_of(motion, built, share * total) if total > 0 else None for share in SIGNIFICANT]
+        found = Measures(
+            pga=motion.pga,
+            pgv=_peak_velocity(motion, v),
+            pgd=_peak_displacement(motion, v, u),
+            arias=total,
+            t_5=times[0],
+            t_95=times[1],
+            mean=float(v[-1]) / motion.duration / STANDARD_GRAVITY,
+            rms=(squared / motion.duration) ** 0.5 / STANDARD_GRAVITY,
+            final_velocity=float(v[-1]),
+            final_displacement=float(u[-1]),
+            mean_period=2 * pi * (squared / steepness) ** 0.5 if steepness > 0 else None,
+        )
+    if not all(isfinite(value) for value in (found.pgv, found.pgd, found.arias)):
+        raise InputError(f"{motion.name}: accelerations of {motion.pga:.3g} g are beyond the range of numbers")
+    return found
+
+
+def _from_zero(steps: Reals) -> Reals:
+    """Running sums of the steps, zero before the first."""
+    total = np.zeros(steps.size + 1)
+    np.cumsum(steps, out=total[1:])
+    return total
+
+
+def _squared(motion: GroundMotion) -> Reals:
+    """Integral of the squared acceleration over each interval [m2/s3]."""
+    a, b = motion.acceleration[:-1], motion.acceleration[1:]
+    return motion.dt / 3 * (a * a + a * b + b * b)
+
+
+def _peak_velocity(motion: GroundMotion, v: Reals) -> float:
+    """Largest velocity in size [m/s]: at a sample, or where the acceleration passes zero between two."""
+    k = np.flatnonzero(_changes_sign(motion.acceleration))
+    a, b = motion.acceleration[k], motion.acceleration[k + 1]
+    between = v[k] + motion.dt * a * (a / (a - b)) / 2
+    return float(max(np.abs(v).max(), np.abs(between).max(initial=0.0)))
+
+
+def _peak_displacement(motion: GroundMotion, v: Reals, u: Reals) -> float:
+    """Largest displacement in size [m]: at a sample, or where the velocity passes zero between two."""
+    dt = motion.dt
+    # A parabola has a root between two samples only if its sign, or that of its slope, changes there.
+    k = np.flatnonzero(_changes_sign(v) | _changes_sign(motion.acceleration))
+    a, jump = motion.acceleration[k], motion.acceleration[k + 1] - motion.acceleration[k]
+    c, b, d = v[k], dt * a, dt * jump / 2  # v = c + b s + d s^2, s from 0 to 1
+    with np.errstate(divide="ignore", invalid="ignore"):
+        w = -(b + np.copysign(np.sqrt(b * b - 4 * d * c), b)) / 2  # no two close numbers are subtracted
+        roots = np.stack([w / d, c / w])
+    inside = (roots > 0) & (roots < 1)  # false for NaN: no root
+    s = np.where(inside, roots, 0.0)
+    between = u[k] + dt * s * (c + s * (b / 2 + s * d / 3))
+    return float(max(np.abs(u).max(), np.abs(between).max(initial=0.0)))
+
+
+def _changes_sign(values: Reals) -> NDArray[np.bool_]:
+    """Of each interval: whether the values at its ends are of opposite signs."""
+    signs = np.sign(values)
+    return signs[:-1] * signs[1:] < 0
+
+
+def _time_of(motion: GroundMotion, built: Reals, level: float) -> float:
+    """When the Arias intensity has built up to a level [s]."""
+    k = int(np.searchsorted(built, level)) - 1
+    ends = motion.acceleration[k : k + 2]
+    most = float(np.abs(ends).max())
+    a, b = (float(end) / most for end in ends)
+    missing = (level - float(built[k])) * (2 * STANDARD_GRAVITY / pi) / motion.dt / most / most
+    # The integral of (a + (b - a) s)^2 is a cubic in s: it is `missing` where the acceleration is `there`.
+    there = float(np.cbrt(a**3 + 3 * (b - a) * missing))
+    return (k + min(3 * missing / (a * a + a * there + there * there), 1.0)) * motion.dt
