@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
@@ -22,6 +22,36 @@ def check_writable(path: Path) -> None:
         raise InputError(Problem(f"the folder {path.parent} cannot be written to", str(path)))
     if path.exists() and not os.access(path, os.W_OK):
         raise InputError(Problem("the file is there already and is protected from writing", str(path)))
+
+
+def keep_apart(outputs: Sequence[tuple[str, Path | None]], inputs: Sequence[str | None]) -> None:
+    """Refuse to write over an input, or two outputs to one file.
+
+    Parameters
+    ----------
+    outputs : sequence of (str, Path or None)
+        The option that asks for it, and where it goes; None where it is not asked for.
+    inputs : sequence of str or None
+        Files that are read.
+
+    Raises
+    ------
+    InputError
+        Naming the option.
+    """
+    read = [Path(name) for name in inputs if name is not None and Path(name).exists()]
+    taken: dict[Path, str] = {}
+    for option, path in outputs:
+        if path is None:
+            continue
+        if path.exists() and any(path.samefile(each) for each in read):
+            raise InputError(
+                Problem(f"{option} would overwrite what is read", str(path), hint="take another name or folder")
+            )
+        place = path.resolve()
+        if place in taken:
+            raise InputError(Problem(f"{taken[place]} and {option} cannot be the same file", str(path)))
+        taken[place] = option
 
 
 def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:

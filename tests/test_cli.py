@@ -214,6 +214,26 @@ class TestRespond:
             assert phi.max() <= response["peak_positive"]
             assert -phi.min() == pytest.approx(response["peak_negative"], rel=1e-3)
 
+    def test_a_parquet_file_has_the_same_columns_and_numbers(self, tmp_path):
+        parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow, of the extra parquet, is not installed")
+        options = ("respond", "--record", ACCEL, "--scale", "4", "--model", "nonlinear,linear2")
+        run(*options, "--out", "history.csv")
+        run(*options, "--out", "history.PARQUET")
+        table = parquet.read_table("history.PARQUET")
+        with (tmp_path / "history.csv").open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        assert table.column_names == list(rows[0]) and table.num_rows == len(rows)
+        for name in table.column_names:
+            texts = ["" if value is None else f"{value:.9g}" for value in table[name].to_pylist()]
+            assert texts == [row[name] for row in rows]
+        assert table["nonlinear phi [rad]"].null_count > 0  # it overturns
+
+    def test_without_pyarrow_the_way_to_it_is_said_before_any_work(self, tmp_path, monkeypatch):
+        monkeypatch.setitem(sys.modules, "pyarrow", None)
+        text = run("respond", FRAME, "--record", ACCEL, "--out", "history.parquet", code=2).stderr
+        assert "pip install 'rocking-cli[parquet]'" in text and "record:" not in text
+        assert list(tmp_path.iterdir()) == []
+
     @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
     def test_plots_are_written_by_suffix(self, suffix, tmp_path):
         run("respond", FRAME, "--record", ACCEL, "--plot", f"plot.{suffix}")
@@ -225,7 +245,7 @@ class TestRespond:
         [
             ("--plot", "plot.gif", "does not end in .png or .svg or .pdf"),
             ("--plot", "none/plot.png", "does not exist"),
-            ("--out", "history.txt", "does not end in .csv"),
+            ("--out", "history.txt", "does not end in .csv or .parquet"),
             ("--out", "none/history.csv", "does not exist"),
             ("--scale", "nan", "finite"),
             ("--scale", "big", "not a number"),
@@ -263,7 +283,10 @@ class TestRespond:
         assert "Warning" not in result.stderr
 
     def test_options_of_a_record_need_one(self):
-        for option in (("--scale", "2"), ("--polarity", "-1"), ("--dt", "0.1"), ("--units", "g")):
+        for option in (
+            ("--scale", "2"), ("--target-pga", "1"), ("--target-pgv", "1"), ("--polarity", "both"), ("--dt", "0.1"),
+            ("--units", "g"),
+        ):  # fmt: skip
             assert "give --record" in run("respond", "--release", "0.5", *option, code=2).stderr
 
     def test_an_impossible_dt_is_refused_before_memory_runs_out(self, tmp_path):
@@ -305,6 +328,105 @@ class TestRespond:
         peaks = [response["peak_ratio"] for response in data["responses"].values()]
         assert 0.1 < peaks[0] < 1
         assert peaks[1:] == pytest.approx([peaks[0]] * 2, rel=0.1)
+
+
+class TestBothPolarities:
+    def test_each_is_what_it_is_alone_and_the_larger_governs(self):
+        both = run_json("respond", FRAME, "--record", ACCEL, "--polarity", "both")
+        assert list(both) == ["structure", "record", "release", "polarities", "governs"]
+        assert both["record"]["polarity"] == "both"
+        peaks = {}
+        for polarity in ("1", "-1"):
+            alone = run_json("respond", FRAME, "--record", ACCEL, "--polarity", polarity)
+            assert both["polarities"][polarity]["responses"] == alone["responses"]
+            peaks[int(polarity)] = alone["responses"]["nonlinear"]["peak_ratio"]
+        assert both["governs"] == max(peaks, key=peaks.get)
+        text = run("respond", FRAME, "--record", ACCEL, "--polarity", "both").stdout
+        assert "polarity 1" in text and "polarity -1" in text
+        assert f"Polarity {both['governs']} governs by the nonlinear model" in text.splitlines()[-1]
+
+    def test_neither_governs_a_symmetric_structure(self):
+        assert run_json("respond", "--record", ACCEL, "--polarity", "both")["governs"] is None
+        assert "Neither polarity governs" in run("respond", "--record", ACCEL, "--polarity", "both").stdout
+
+    def test_overturning_governs_and_the_first_to_overturn(self, tmp_path):
+        leaning = "mechanism: rigid_body\npolygon: [[0, 0], [0.7, 0], [1.0, 2.8], [0.3, 2.8]]\n"
+        (tmp_path / "leaning.yaml").write_text(leaning, encoding="utf-8")
+        options = ("respond", "leaning.yaml", "--record", ACCEL, "--polarity", "both", "--model", "linear2")
+        seen = set()
+        for scale in (0.8, 1.0, 1.2, 2.0):
+            data = run_json(*options, "--scale", scale)
+            one, other = (data["polarities"][sign]["responses"]["linear2"] for sign in ("1", "-1"))
+            if one["overturned"] != other["overturned"]:
+                assert data["governs"] == (1 if one["overturned"] else -1)
+                said = "it overturns, polarity"
+            elif one["overturned"]:
+                assert data["governs"] == (1 if one["overturning_time"] < other["overturning_time"] else -1)
+                said = "both overturn"
+            else:
+                continue
+            assert said in run(*options, "--scale", scale).stdout.splitlines()[-1]
+            seen.add(said)
+        assert len(seen) == 2
+
+    def test_the_file_has_columns_of_both(self, tmp_path):
+        run("respond", FRAME, "--record", ACCEL, "--model", "linear1", "--out", "one.csv")
+        run("respond", FRAME, "--record", ACCEL, "--model", "linear1", "--polarity", "-1", "--out", "other.csv")
+        run("respond", FRAME, "--record", ACCEL, "--model", "linear1", "--polarity", "both", "--out", "both.csv")
+        rows = {}
+        for name in ("one", "other", "both"):
+            with (tmp_path / f"{name}.csv").open(encoding="utf-8") as file:
+                rows[name] = list(csv.DictReader(file))
+        for name, column in (("one", "linear1 phi [rad]"), ("other", "reversed linear1 phi [rad]")):
+            alone = [row["linear1 phi [rad]"] for row in rows[name]]
+            assert [row[column] for row in rows["both"]][: len(alone)] == alone
+        ground = "a_g [g]"
+        assert [row[ground] for row in rows["one"]] == [row[ground] for row in rows["both"]][: len(rows["one"])]
+
+    def test_they_can_be_drawn(self, tmp_path):
+        run("respond", FRAME, "--record", ACCEL, "--polarity", "both", "--plot", "both.png")
+        assert (tmp_path / "both.png").stat().st_size > 10_000
+
+
+class TestImpacts:
+    def test_json_lists_them_with_the_rates_of_the_restitution(self):
+        response = run_json("respond", FRAME, "--record", ACCEL, "--impacts")["responses"]["nonlinear"]
+        directions = run_json("equiv", FRAME)["directions"]
+        found = response["impact_list"]
+        assert len(found) == response["impacts"] > 20
+        assert [each["time"] for each in found] == sorted(each["time"] for each in found)
+        for each in found:
+            assert list(each) == ["time", "direction", "rate_before", "rate_after"]
+            assert each["rate_after"] == pytest.approx(directions[each["direction"]]["eta"] * each["rate_before"])
+            assert each["rate_before"] > each["rate_after"] > 0
+        assert {each["direction"] for each in found} == {"positive", "negative"}
+        assert "impact_list" not in run_json("respond", FRAME, "--record", ACCEL)["responses"]["nonlinear"]
+
+    def test_the_rates_are_those_of_the_history(self, tmp_path):
+        """Of a release without a record: before and after the first impact, the samples tend to its rates."""
+        options = ("respond", "--release", "0.5", "--model", "nonlinear", "--impacts", "--out", "history.csv")
+        first = run_json(*options)["responses"]["nonlinear"]["impact_list"][0]
+        with (tmp_path / "history.csv").open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        time = np.array([float(row["t [s]"]) for row in rows])
+        rate = np.array([float(row["nonlinear phi_dot [rad/s]"] or "nan") for row in rows])
+        k = int(np.searchsorted(time, first["time"]))
+        assert first["direction"] == "positive"
+        assert -rate[k - 1] == pytest.approx(first["rate_before"], rel=0.05)
+        assert -rate[k] == pytest.approx(first["rate_after"], rel=0.05)
+
+    def test_the_table_shows_the_first_and_how_many_follow(self):
+        text = run("respond", FRAME, "--record", ACCEL, "--impacts", "--model", "nonlinear").stdout
+        data = run_json("respond", FRAME, "--record", ACCEL, "--impacts", "--model", "nonlinear")
+        response = data["responses"]["nonlinear"]
+        for each in response["impact_list"][:12]:
+            assert f"{each['time']:.4f}" in text and f"{each['rate_after']:.4g}" in text
+        assert f"{response['impacts'] - 12} more follow" in text
+
+    def test_a_structure_at_rest_has_none(self):
+        options = ("respond", FRAME, "--record", ACCEL, "--scale", "0.01", "--impacts")
+        assert run_json(*options)["responses"]["nonlinear"]["impact_list"] == []
+        assert "more follow" not in run(*options).stdout
 
 
 class TestStart:
@@ -352,7 +474,7 @@ def test_the_default_block_is_a_structure():
 
 def test_the_units_offered_are_those_the_readers_know():
     """Written twice so that `--help` needs no numpy."""
-    from rocking_cli.cli.respond import UNITS
+    from rocking_cli.cli.options import UNITS
     from rocking_cli.excitation.records import units
 
     assert set(UNITS) == set(units.UNITS)

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from rocking_cli.errors import InputError
-from rocking_cli.files import check_writable, write_whole
+from rocking_cli.files import check_writable, keep_apart, write_whole
 
 
 def test_a_file_is_written_with_the_usual_rights(tmp_path):
@@ -65,3 +65,13 @@ def test_a_folder_without_write_permission_is_refused(tmp_path):
     with pytest.raises(InputError, match="cannot be written"):
         check_writable(tmp_path / "a.csv")
     tmp_path.chmod(0o700)
+
+
+def test_outputs_are_kept_apart_from_inputs_and_from_each_other(tmp_path):
+    read, new = tmp_path / "read.csv", tmp_path / "new.csv"
+    read.touch()
+    keep_apart([("--out", new), ("--plot", None)], [str(read), None, str(tmp_path / "none")])
+    with pytest.raises(InputError, match="--out would overwrite what is read"):
+        keep_apart([("--out", tmp_path / "." / "read.csv")], [str(read)])
+    with pytest.raises(InputError, match="--out and --plot cannot be the same file"):
+        keep_apart([("--out", new), ("--plot", tmp_path / "." / "new.csv")], [])

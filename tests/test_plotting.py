@@ -1,4 +1,4 @@
-"""The picture of a response shows what happened."""
+"""The pictures show what happened, in print and in grey, however long the record."""
 
 from __future__ import annotations
 
@@ -8,7 +8,11 @@ import pytest
 from mechanisms.block import Block
 from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.measures import measure, velocity
+from rocking_cli.plotting import style
 from rocking_cli.plotting.history import draw_history
+from rocking_cli.plotting.record import draw_record
+from rocking_cli.plotting.thinning import BINS, visible
 
 BLOCK = Block(width=0.7, height=2.8)
 PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)))
@@ -46,3 +50,85 @@ def test_a_free_motion_and_a_structure_at_rest_can_be_drawn(motion):
     histories = respond(BLOCK, motion, release=0.3 if motion is None else None)
     figure = draw_history(histories, motion, "quiet")
     assert len(figure.axes) == (1 if motion is None else 2)
+
+
+def test_a_reversed_record_has_a_panel_of_its_own():
+    histories = respond(BLOCK, PULSE)
+    other = respond(BLOCK, PULSE.scaled(-1), models=("linear1",))
+    figure = draw_history(histories, PULSE, "a block", other)
+    _, one, two = figure.axes
+    assert (one.get_legend().get_title().get_text(), two.get_legend().get_title().get_text()) == (
+        "polarity 1", "polarity -1",
+    )  # fmt: skip
+    (drawn,) = curves(two).values()
+    np.testing.assert_array_equal(drawn.get_ydata(), other["linear1"].ratio)
+    assert one.get_ylim() == two.get_ylim()
+
+
+def test_a_fall_is_cut_off_with_a_cross_inside_the_panel():
+    figure = draw_history(respond(BLOCK, PULSE.scaled(5.0), models=("nonlinear",)), None, "a block")
+    (below,) = figure.axes
+    (cross,) = [line for line in below.get_lines() if line.get_marker() == "x"]
+    bottom, top = below.get_ylim()
+    assert bottom < cross.get_ydata()[0] < 0.99 * top
+    assert curves(below)["nonlinear, overturns"].get_xdata()[-1] == cross.get_xdata()[0]
+
+
+def grey(color):
+    red, green, blue = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    return 0.299 * red + 0.587 * green + 0.114 * blue
+
+
+def test_the_lines_differ_in_grey_by_tone_dash_and_weight():
+    looks = list(style.LINES.values())
+    for key in ("linestyle", "linewidth"):
+        assert len({look[key] for look in looks}) == len(looks)
+    tones = sorted(grey(look["color"]) for look in looks)
+    assert np.diff(tones).min() > 0.15 and tones[-1] < 0.7
+
+
+def test_a_record_is_drawn_with_its_integrals_and_the_build_up():
+    measures = measure(PULSE)
+    figure = draw_record(PULSE, measures)
+    labels = [axes.get_ylabel() for axes in figure.axes]
+    assert labels == ["acceleration [g]", "velocity [m/s]", "displacement [m]", "Arias intensity [%]"]
+    assert figure.axes[-1].get_xlabel() == "time [s]"
+    np.testing.assert_allclose(figure.axes[1].get_lines()[0].get_ydata(), velocity(PULSE))
+    built = figure.axes[3].get_lines()[0].get_ydata()
+    assert built[0] == 0 and built[-1] == pytest.approx(100) and (np.diff(built) >= 0).all()
+    marks = [(line.get_xdata()[0], line.get_ydata()[0]) for line in figure.axes[3].get_lines()[1:]]
+    assert marks == [(measures.t_5, 5), (measures.t_95, 95)]
+    words = " ".join(text.get_text() for axes in figure.axes for text in axes.texts)
+    assert f"PGV {measures.pgv:.3g} m/s" in words and f"95 % at {measures.t_95:.4g} s" in words
+
+
+def test_a_record_of_zeros_can_be_drawn():
+    still = GroundMotion("still", 0.01, np.zeros(100))
+    assert len(draw_record(still, measure(still)).axes) == 4
+
+
+class TestThinning:
+    @pytest.mark.parametrize("size", [1, 2, BINS, 3 * BINS - 1])
+    def test_a_short_curve_is_drawn_whole(self, size):
+        np.testing.assert_array_equal(visible(np.sin(np.arange(size))), np.arange(size))
+
+    @pytest.mark.parametrize("size", [3 * BINS, 10 * BINS + 17, 1_000_003])
+    def test_a_long_one_keeps_its_ends_extremes_and_outline(self, size):
+        values = np.random.default_rng(2).normal(size=size)
+        shown = visible(values)
+        assert shown.size <= 3 * BINS + 2 and (np.diff(shown) > 0).all()
+        assert {0, size - 1, int(values.argmax()), int(values.argmin())} <= set(shown.tolist())
+        step = size // BINS
+        for k in (0, 1, BINS // 2, BINS - 1):
+            part = values[k * step : (k + 1) * step]
+            drawn = values[shown[(shown >= k * step) & (shown < (k + 1) * step)]]
+            assert (drawn.min(), drawn.max()) == (part.min(), part.max())
+
+    def test_a_record_far_longer_than_the_response_shown_is_not_thinned_away(self):
+        long = GroundMotion("long", 0.01, np.concatenate([PULSE.scaled(5).acceleration, np.zeros(300_000)]))
+        figure = draw_history(respond(BLOCK, long, models=("nonlinear",)), long, "falls at once")
+        above, below = figure.axes
+        end = below.get_xlim()[1]
+        assert end < 10
+        np.testing.assert_allclose(above.get_lines()[0].get_ydata()[:81], long.acceleration[:81] / STANDARD_GRAVITY)
+        assert above.get_lines()[0].get_xdata()[-1] >= end

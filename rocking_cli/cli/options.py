@@ -10,6 +10,9 @@ import click
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
+# The names of units stand here again so that `--help` needs no numpy; a test holds them together.
+UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal")
+
 as_json: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
 
 
@@ -47,3 +50,45 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
         return path
 
     return check
+
+
+def _in_order(*decorators: Decorator) -> Decorator:
+    """Several options as one decorator; the help lists them in this order."""
+
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+        for decorator in reversed(decorators):
+            command = decorator(command)
+        return command
+
+    return decorate
+
+
+reading: Decorator = _in_order(
+    click.option("--units", type=click.Choice(UNITS), help="Unit of the record, where the file does not say."),
+    click.option("--dt", type=Finite(positive=True), metavar="SECONDS", help="Sample interval of a one-column record."),
+    click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name."),
+)
+"""How to read a record: `units`, `dt` and `channel`."""
+
+
+def scaling(*polarities: str) -> Decorator:
+    """How to change a record: `scale`, `target_pga`, `target_pgv` and `polarity`, which is one of these.
+
+    `motions.factor` turns the first three, of which a user may give one, into a number.
+    """
+    return _in_order(
+        click.option("--scale", type=Finite(), metavar="FACTOR", help="Factor on the record.  [default: 1]"),
+        click.option(
+            "--target-pga", type=Finite(positive=True), metavar="G", help="Scale the record to this peak, in g."
+        ),
+        click.option(
+            "--target-pgv", type=Finite(positive=True), metavar="M/S", help="Scale it to this peak velocity, in m/s."
+        ),
+        click.option(
+            "--polarity",
+            type=click.Choice(polarities),
+            default="1",
+            show_default=True,
+            help="-1 reverses the record." + (" both: one after the other." if "both" in polarities else ""),
+        ),
+    )

@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import os
-from math import degrees
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import click
 
-from rocking_cli.cli import options, terminal
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.cli import motions, options, terminal
 
 if TYPE_CHECKING:
-    from rocking_cli.core import Mechanism
+    from rocking_cli.cli.responses import Runs
+    from rocking_cli.core import Equivalence, Mechanism
     from rocking_cli.dynamics.history import History
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.base import GroundMotion
 
-# The names of units and models stand here again so that `--help` needs no numpy; a test holds them together.
-UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal")
-COARSE = 0.1  # s between samples; strong-motion records have 0.02 or less
-PLAUSIBLE = (0.002, 4.0)  # g; the strongest ground motions on record have some 2.5
+# The names of the models stand here again so that `--help` needs no numpy.
 NAMES = ("nonlinear", "linear1", "linear2")
 
 
@@ -50,15 +46,8 @@ def _tail(ctx: click.Context, param: click.Parameter, value: float) -> float:
 @click.command(short_help="Response to a ground motion: nonlinear and linear histories.")
 @click.argument("file", required=False, type=click.Path())
 @click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format.")
-@click.option("--units", type=click.Choice(UNITS), help="Unit of the record, where the file does not say.")
-@click.option(
-    "--dt", type=options.Finite(positive=True), metavar="SECONDS", help="Sample interval of a one-column record."
-)
-@click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name.")
-@click.option("--scale", type=options.Finite(), default=1.0, show_default=True, help="Factor on the record.")
-@click.option(
-    "--polarity", type=click.Choice(["1", "-1"]), default="1", show_default=True, help="-1 reverses the record."
-)
+@options.reading
+@options.scaling("1", "-1", "both")
 @click.option(
     "--release",
     type=options.Finite(),
@@ -78,7 +67,13 @@ def _tail(ctx: click.Context, param: click.Parameter, value: float) -> float:
     callback=_tail,
     help="How long the history goes on after the record.",
 )
-@click.option("--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the histories.")
+@click.option("--impacts", is_flag=True, help="List the impacts: times, and rates before and after.")
+@click.option(
+    "--out",
+    callback=options.output_path(".csv", ".parquet"),
+    metavar="FILE.csv",
+    help="Write the histories (.csv or .parquet).",
+)
 @click.option(
     "--plot",
     callback=options.output_path(".png", ".svg", ".pdf"),
@@ -92,11 +87,14 @@ def command(
     units: str | None,
     dt: float | None,
     channel: str | None,
-    scale: float,
+    scale: float | None,
+    target_pga: float | None,
+    target_pgv: float | None,
     polarity: str,
     release: float | None,
     models: tuple[str, ...],
     tail: float,
+    impacts: bool,
     out: Path | None,
     plot: Path | None,
     as_json: bool,
@@ -112,7 +110,7 @@ def command(
     \b
     Example:
       rocking respond frame.yaml --record accel.csv --plot response.png
-      rocking respond --record accel.txt --dt 0.01 --units g --scale 1.5
+      rocking respond --record accel.txt --dt 0.01 --units g --target-pga 0.4 --polarity both
       rocking respond arch.yaml --release 0.5
     """
     if record is None and release is None:
@@ -121,43 +119,58 @@ def command(
         raise click.UsageError("--units and --dt describe a record: give --record FILE.")
     if record is None and channel is not None:
         raise click.UsageError("--channel is one of a record: give --record FILE.")
-    if record is None and (scale != 1 or polarity != "1"):
-        raise click.UsageError("--scale and --polarity change a record: give --record FILE.")
-    _keep_apart(out, plot, file, record)
-    from rocking_cli.cli import structures
+    motions.check_scaling(scale, target_pga, target_pgv)
+    scaled = any(value is not None for value in (scale, target_pga, target_pgv))
+    if record is None and (scaled or polarity != "1"):
+        raise click.UsageError(
+            "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE."
+        )
+    from rocking_cli.cli import responses, structures
+    from rocking_cli.files import keep_apart
 
+    keep_apart([("--out", out), ("--plot", plot)], [file, record])
+    if out is not None and out.suffix.lower() == ".parquet":
+        from rocking_cli.history_parquet import check_parquet
+
+        check_parquet(out)
     mechanism = structures.load([file] if file else [])[0]
-    as_read = _read(record, dt, units, channel) if record is not None else None
-    motion = as_read.scaled(scale * int(polarity)) if as_read is not None else None
-    histories = _respond(mechanism, motion, cast("tuple[ModelName, ...]", models), release, tail)
+    equivalence = _equivalence(mechanism)
+    as_read, factor = None, 1.0
+    if record is not None:
+        as_read = _read(record, dt, units, channel)
+        factor = _judge(as_read, equivalence, scale, target_pga, target_pgv)
+    signs = (1, -1) if polarity == "both" else (int(polarity),)
+    shaking = {sign: as_read.scaled(sign * factor) if as_read is not None else None for sign in signs}
+    runs = {
+        sign: _respond(mechanism, motion, cast("tuple[ModelName, ...]", models), release, tail)
+        for sign, motion in shaking.items()
+    }
     if out is not None:
-        from rocking_cli.files import write_whole
-        from rocking_cli.history_csv import history_csv
-
-        write_whole(out, lambda stream: stream.write(history_csv(histories, motion).encode()))
-        terminal.note(f"wrote {out}")
+        _write(out, runs, shaking[signs[0]])
     if plot is not None:
-        os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
-        from rocking_cli.files import write_whole
-        from rocking_cli.plotting.history import draw_history
-
-        figure = draw_history(histories, motion, structures.label(mechanism))
-        write_whole(plot, lambda stream: figure.savefig(stream, format=plot.suffix[1:].lower()))
-        terminal.note(f"wrote {plot}")
+        _draw(plot, runs, shaking[signs[0]], structures.label(mechanism))
+    etas = equivalence if impacts else None
     if as_json:
-        terminal.print_json(_as_json(mechanism, as_read, scale, polarity, release, histories))
+        terminal.print_json(
+            {
+                "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
+                "record": responses.record_json(as_read, factor, polarity) if as_read is not None else None,
+                "release": release,
+                **responses.runs_json(runs, etas),
+            }
+        )
     else:
-        _print_table(mechanism, histories)
+        responses.print_tables(structures.label(mechanism), runs, etas)
 
 
-def _keep_apart(out: Path | None, plot: Path | None, *inputs: str | None) -> None:
-    """Refuse to write over an input, or both outputs to one file."""
-    read = [Path(name) for name in inputs if name is not None and Path(name).exists()]
-    for option, path in (("--out", out), ("--plot", plot)):
-        if path is not None and path.exists() and any(path.samefile(each) for each in read):
-            raise InputError(Problem(f"{option} would overwrite what is read", str(path), hint="give another name"))
-    if out is not None and plot is not None and out.resolve() == plot.resolve():
-        raise InputError(Problem("--out and --plot cannot be the same file", str(out)))
+def _equivalence(mechanism: Mechanism) -> Equivalence:
+    from rocking_cli.core import equivalent_block
+    from rocking_cli.errors import MechanismError
+
+    try:
+        return equivalent_block(mechanism)
+    except MechanismError as error:
+        raise MechanismError(f"{mechanism.name}: {error}") from error
 
 
 def _read(record: str, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
@@ -168,15 +181,29 @@ def _read(record: str, dt: float | None, units: str | None, channel: str | None)
         f"record: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:g} s, "
         f"in {motion.unit}, PGA = {motion.pga:.4g} g"
     )
-    if motion.dt > COARSE:
-        terminal.warning(
-            f"dt = {motion.dt:g} s is coarse for a ground motion: is the first column really time in seconds?"
-        )
-    if not PLAUSIBLE[0] <= motion.pga <= PLAUSIBLE[1]:
-        terminal.warning(
-            f"a PGA of {motion.pga:.3g} g is unusual for a ground motion: is the unit really {motion.unit}?"
-        )
     return motion
+
+
+def _judge(
+    motion: GroundMotion,
+    equivalence: Equivalence,
+    scale: float | None,
+    target_pga: float | None,
+    target_pgv: float | None,
+) -> float:
+    """The factor on the record, after saying what is doubtful about it, for this structure too."""
+    from rocking_cli.excitation.doubts import coarse_for, doubts
+    from rocking_cli.excitation.measures import measure
+
+    measured = measure(motion)
+    motions.warn(
+        motion, doubts(motion, measured) + coarse_for(motion, max(equivalence.positive.p, equivalence.negative.p))
+    )
+    factor = motions.factor(motion, measured, scale, target_pga, target_pgv)
+    if factor != 1:
+        pga, pgv = abs(factor) * measured.pga, abs(factor) * measured.pgv
+        terminal.note(f"scaled by {factor:.6g}: PGA = {pga:.4g} g, PGV = {pgv:.4g} m/s")
+    return factor
 
 
 def _respond(
@@ -194,66 +221,25 @@ def _respond(
         raise MechanismError(f"{mechanism.name}: {error}") from error
 
 
-def _as_json(
-    mechanism: Mechanism,
-    motion: GroundMotion | None,
-    scale: float,
-    polarity: str,
-    release: float | None,
-    histories: dict[ModelName, History],
-) -> dict[str, Any]:
-    record = None
-    if motion is not None:
-        record = {
-            "name": motion.name,
-            "npts": motion.npts,
-            "dt": motion.dt,
-            "unit": motion.unit,
-            "pga": motion.pga,
-            "format": motion.format,
-            "scale": scale,
-            "polarity": int(polarity),
-        }
-    return {
-        "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
-        "record": record,
-        "release": release,
-        "responses": {
-            name: {
-                "peak_positive": history.peak_positive,
-                "peak_negative": history.peak_negative,
-                "peak_ratio": history.peak_ratio,
-                "overturned": history.overturned,
-                "overturning_time": history.overturning_time,
-                "overturning_direction": history.fell_to.label if history.fell_to else None,
-                "uplift_time": history.uplift_time,
-                "impacts": history.impact_count,
-                "outcome": history.outcome.name.lower(),
-            }
-            for name, history in histories.items()
-        },
-    }
+def _write(path: Path, runs: Runs, motion: GroundMotion | None) -> None:
+    """Write the histories; those of the second polarity stand after the first, under names that say so."""
+    from rocking_cli.files import write_whole
+    from rocking_cli.history_csv import write_history_csv
+    from rocking_cli.history_parquet import write_history_parquet
+
+    first, *others = runs.values()
+    columns: dict[str, History] = dict(first.items())
+    columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
+    write = write_history_parquet if path.suffix.lower() == ".parquet" else write_history_csv
+    write_whole(path, lambda stream: write(stream, columns, motion))
+    terminal.note(f"wrote {path}")
 
 
-def _print_table(mechanism: Mechanism, histories: dict[ModelName, History]) -> None:
-    from rocking_cli.cli.structures import label
-    from rocking_cli.dynamics.verdict import verdict
+def _draw(path: Path, runs: Runs, motion: GroundMotion | None, title: str) -> None:
+    os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
+    from rocking_cli.files import write_whole
+    from rocking_cli.plotting.history import draw_history
 
-    number = terminal.number
-    runs = list(histories.values())
-
-    def in_degrees(phi: float | None) -> str:
-        return terminal.ABSENT if phi is None else number(degrees(phi), 5)
-
-    rows = [
-        ["outcome", *(run.outcome.name.lower().replace("_", " ") for run in runs), ""],
-        ["peak / phi_cr", *(number(run.peak_ratio, 5) for run in runs), ""],
-        ["peak, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
-        ["peak, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
-        ["first uplift", *(number(run.uplift_time, 5) for run in runs), "s"],
-        ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
-        ["impacts", *(str(run.impact_count) for run in runs), ""],
-    ]
-    columns = ["", *(run.model for run in runs), "unit"]
-    terminal.table(label(mechanism), columns, rows, numbers=range(1, len(runs) + 1))
-    terminal.result(verdict(histories))
+    figure = draw_history(runs[next(iter(runs))], motion, title, runs[-1] if len(runs) > 1 else None)
+    write_whole(path, lambda stream: figure.savefig(stream, format=path.suffix[1:].lower()))
+    terminal.note(f"wrote {path}")

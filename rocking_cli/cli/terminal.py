@@ -37,6 +37,13 @@ def error(text: str) -> None:
     click.echo(click.style("error: ", fg="red", bold=True) + text, err=True)
 
 
+def width() -> int:
+    """Columns of the terminal."""
+    from rich.console import Console
+
+    return Console().width
+
+
 def table(
     title: str,
     columns: Sequence[str],
@@ -52,7 +59,7 @@ def table(
     title : str
         Printed above it.
     columns : sequence of str
-        Headings.
+        Headings; a line break in one, or in a cell, is kept.
     rows : sequence of sequence of str
         Cells.
     numbers : sequence of int
@@ -69,14 +76,20 @@ def table(
     console = Console()
     if explained and console.width < NARROW:
         columns, rows = columns[:-1], [row[:-1] for row in rows]
-    drawn = Table(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, title_style="bold", pad_edge=False)
+    drawn = Table(
+        title=Text(title) if title else None,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        title_style="bold",
+        pad_edge=False,
+    )
     for k, heading in enumerate(columns):
         whole = k == 0 or k in numbers
         drawn.add_column(
             Text(heading),
             justify="right" if k in numbers else "left",
             no_wrap=whole,
-            min_width=max(len(cell) for cell in [heading, *(row[k] for row in rows)]) if whole else None,
+            min_width=max(_widest_line(cell) for cell in [heading, *(row[k] for row in rows)]) if whole else None,
             overflow="fold",
         )
     for row in rows:
@@ -85,6 +98,10 @@ def table(
     unbounded = console.options.update(max_width=1000)
     console.width = max(console.width, Measurement.get(console, unbounded, drawn).minimum)
     console.print(drawn)
+
+
+def _widest_line(text: str) -> int:
+    return max(len(line) for line in text.split("\n"))
 
 
 def number(value: float | None, digits: int = 6) -> str:

@@ -9,19 +9,27 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plotting import style
+from rocking_cli.plotting.thinning import visible
 
-TALLEST = 1.6  # phi/phi_cr shown at most: beyond, the structure is falling
+TALLEST = 1.6  # phi/phi_cr shown at most
+FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
 FELT = 0.02  # of the strongest impact: weaker ones, of a chatter to rest, are not marked
 LONGEST = 95  # characters of a heading
 SHORTEST = 0.1  # s of the time axis
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
 
 
-def draw_history(histories: Mapping[ModelName, History], motion: GroundMotion | None, title: str) -> Figure:
+def draw_history(
+    histories: Mapping[ModelName, History],
+    motion: GroundMotion | None,
+    title: str,
+    reversed_histories: Mapping[ModelName, History] | None = None,
+) -> Figure:
     """Draw histories over time.
 
     Parameters
@@ -32,52 +40,69 @@ def draw_history(histories: Mapping[ModelName, History], motion: GroundMotion | 
         Drawn above, in g.
     title : str
         Heading.
+    reversed_histories : mapping of str to History, optional
+        The responses to the reversed motion, drawn in a panel of their own.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(4.8 if motion is not None else 3.4)
-    if motion is not None:
-        above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1, 1.8])
-        _draw_motion(above, motion)
-    else:
-        above = below = figure.subplots()
-    heading = shorten(title, LONGEST, placeholder=" ...")
-    above.set_title(heading, loc="left", fontsize=10, color=style.INK, parse_math=False)  # a $ in a name is a $
-    for lane, (name, run) in enumerate(histories.items()):
-        _draw_run(below, name, run, (len(histories) - lane) * LANE)
-    for level in (-1.0, 1.0):
-        below.axhline(level, color=style.FAINT, linewidth=0.8, linestyle=":")
-    below.axhline(0.0, color=style.FAINT, linewidth=0.6)
-    ends = [1.1 * run.end_time if run.overturned else run.time[-1] for run in histories.values()]
-    below.set_xlim(0.0, max(*ends, SHORTEST))
-    reach = max(float(np.nanmax(np.abs(run.ratio))) for run in histories.values())
-    tall = min(max(1.1 * reach, 1e-3), TALLEST)
-    below.set_ylim(-1.2 * tall, tall)  # room for the impacts below
-    below.set_xlabel("time [s]", fontsize=9)
-    below.set_ylabel(r"rotation $\phi/\phi_{cr}$, clockwise up", fontsize=9)
-    below.annotate(
-        "impacts", (0.005, (len(histories) + 1.2) * LANE), xycoords="axes fraction", fontsize=7, color=style.FAINT
+    responses = {"": histories}
+    if reversed_histories is not None:
+        responses = {"polarity 1": histories, "polarity -1": reversed_histories}
+    shaken = motion is not None
+    figure = style.new_figure(1.4 * shaken + 3.4 * len(responses))
+    panels = list(
+        figure.subplots(
+            shaken + len(responses), 1, sharex=True, squeeze=False, height_ratios=[1] * shaken + [1.8] * len(responses)
+        )[:, 0]
     )
-    below.legend(loc="upper right", fontsize=8, frameon=True, framealpha=0.9, edgecolor="none")
-    style.tidy(below)
+    heading = shorten(title, LONGEST, placeholder=" ...")
+    panels[0].set_title(heading, loc="left", fontsize=10, color=style.INK, parse_math=False)  # a $ in a name is a $
+    runs = [run for each in responses.values() for run in each.values()]
+    end = max(SHORTEST, *(1.1 * run.end_time if run.overturned else float(run.time[-1]) for run in runs))
+    if motion is not None:
+        _draw_motion(panels[0], motion, end)
+    reach = max(float(np.nanmax(np.abs(run.ratio))) for run in runs)
+    tall = min(max(1.1 * reach, 1e-3), TALLEST)
+    for axes, (what, each) in zip(panels[shaken:], responses.items(), strict=True):
+        _draw_responses(axes, each, what, tall)
+    panels[-1].set_xlim(0.0, end)
+    panels[-1].set_xlabel("time [s]", fontsize=9)
+    figure.align_ylabels()
     return figure
 
 
-def _draw_motion(axes: Axes, motion: GroundMotion) -> None:
-    time = np.arange(motion.npts) * motion.dt
-    axes.plot(time, motion.acceleration / STANDARD_GRAVITY, color=style.INK, linewidth=0.7)
+def _draw_motion(axes: Axes, motion: GroundMotion, end: float) -> None:
+    """Draw what there is of the record up to the end of the picture [s]."""
+    ground = motion.acceleration[: int(min(end, motion.duration) / motion.dt) + 2] / STANDARD_GRAVITY
+    shown = visible(ground)
+    axes.plot(shown * motion.dt, ground[shown], color=style.INK, linewidth=0.7)
     axes.set_ylabel("ground [g]", fontsize=9)
-    axes.annotate(
-        f"{motion.name}, PGA {motion.pga:.3g} g",
-        (1.0, 0.96),
-        xycoords="axes fraction",
-        ha="right",
-        va="top",
+    style.note(axes, f"{motion.name}, PGA {motion.pga:.3g} g")
+    style.tidy(axes)
+
+
+def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: str, tall: float) -> None:
+    for lane, (name, run) in enumerate(histories.items()):
+        _draw_run(axes, name, run, (len(histories) - lane) * LANE)
+    for level in (-1.0, 1.0):
+        axes.axhline(level, color=style.FAINT, linewidth=0.8, linestyle=":")
+    axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
+    axes.set_ylim(-1.3 * tall, tall)  # room for the impacts below
+    axes.set_ylabel(r"rotation $\phi/\phi_{cr}$, clockwise up", fontsize=9)
+    place = (0.005, (len(histories) + 1.2) * LANE)
+    axes.annotate("impacts, in the order of the legend", place, xycoords="axes fraction", fontsize=7, color=style.FAINT)
+    falls_up = any(run.fell_to is Direction.POSITIVE for run in histories.values())  # into the right corner
+    axes.legend(
+        loc="upper left" if falls_up else "upper right",
+        title=what,
+        title_fontsize=8,
+        alignment="left",
         fontsize=8,
-        parse_math=False,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
+        frameon=True,
+        framealpha=0.9,
+        edgecolor="none",
     )
     style.tidy(axes)
 
@@ -85,10 +110,12 @@ def _draw_motion(axes: Axes, motion: GroundMotion) -> None:
 def _draw_run(axes: Axes, name: str, run: History, height: float) -> None:
     look = style.LINES[name]
     fate = ", overturns" if run.overturned else ""
-    axes.plot(run.time, run.ratio, label=style.LABELS[name] + fate, **look)  # type: ignore[arg-type]
+    followed = run.ratio[np.isfinite(run.ratio)]  # all, or all before overturning
     if run.overturned:
-        last = np.flatnonzero(np.isfinite(run.ratio) & (np.abs(run.ratio) <= TALLEST))[-1]
-        axes.plot(run.time[last], run.ratio[last], marker="x", markersize=6, color=look["color"])
+        followed = followed[: np.flatnonzero(np.abs(followed) <= FALLING)[-1] + 1]
+        axes.plot(run.time[followed.size - 1], followed[-1], marker="x", markersize=6, color=look["color"])
+    shown = visible(followed)
+    axes.plot(run.time[shown], followed[shown], label=style.LABELS[name] + fate, **look)  # type: ignore[arg-type]
     if len(run.impacts):
         felt = run.impacts[run.impacts[:, 2] >= FELT * run.impacts[:, 2].max(), 0]
         axes.plot(

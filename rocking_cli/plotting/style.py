@@ -6,12 +6,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 WIDTH = 7.2  # inches: the width of a page of text
-INK, FAINT = "#222222", "#9a9a9a"
-# Distinct in grey by darkness and dash as well as by hue.
+INK, FAINT, SHADE = "#222222", "#9a9a9a", "#eeeeee"
+# Distinct in grey by darkness, dash and weight as well as by hue; the heaviest shows on both sides of the others.
 LINES = {
-    "nonlinear": {"color": "#111111", "linestyle": "-", "linewidth": 1.3},
-    "linear1": {"color": "#e08a00", "linestyle": "--", "linewidth": 1.1},
-    "linear2": {"color": "#1f77b4", "linestyle": "-.", "linewidth": 1.1},
+    "nonlinear": {"color": "#111111", "linestyle": "-", "linewidth": 1.9},
+    "linear1": {"color": "#e08a00", "linestyle": "--", "linewidth": 1.3},
+    "linear2": {"color": "#1f77b4", "linestyle": "-.", "linewidth": 0.9},
 }
 LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2": r"linear, $\kappa_2$"}
 
@@ -19,6 +19,20 @@ LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2":
 def new_figure(height: float) -> Figure:
     """An empty figure of the common width; `height` in inches."""
     return Figure(figsize=(WIDTH, height), dpi=150, layout="constrained")
+
+
+def note(axes: Axes, text: str, height: float = 0.96) -> None:
+    """A remark at the right edge of a panel, at this fraction of its height, legible over curves."""
+    axes.annotate(
+        text,
+        (1.0, height),
+        xycoords="axes fraction",
+        ha="right",
+        va="top",
+        fontsize=8,
+        parse_math=False,  # a $ in a name is a $
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
+    )
 
 
 def tidy(axes: Axes) -> None:

@@ -1,0 +1,142 @@
+"""Responses as people and programs read them: of one polarity of the record, or of both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import degrees, isclose
+from typing import Any
+
+from rocking_cli.cli import terminal
+from rocking_cli.core import Direction, Equivalence
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import SENSE, verdict
+from rocking_cli.excitation.base import GroundMotion
+
+Histories = Mapping[ModelName, History]
+Runs = Mapping[int, Histories]
+"""Histories under each polarity asked for, 1 or -1."""
+
+FIRST = 12  # impacts of a model in its table; --json has all
+ALIKE = 1e-6  # relative difference below which neither polarity governs
+
+
+def record_json(motion: GroundMotion, factor: float, polarity: str) -> dict[str, Any]:
+    """The record as read, and what was done to it."""
+    return {
+        "name": motion.name,
+        "npts": motion.npts,
+        "dt": motion.dt,
+        "unit": motion.unit,
+        "pga": motion.pga,
+        "format": motion.format,
+        "scale": factor,
+        "polarity": polarity if polarity == "both" else int(polarity),
+    }
+
+
+def runs_json(runs: Runs, etas: Equivalence | None) -> dict[str, Any]:
+    """The responses, under their polarities if there are two; with the impacts if there are `etas`."""
+    each = {
+        str(polarity): {"responses": {name: _history_json(run, etas) for name, run in histories.items()}}
+        for polarity, histories in runs.items()
+    }
+    return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": _governs(runs)[0]}
+
+
+def _history_json(history: History, etas: Equivalence | None) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "peak_positive": history.peak_positive,
+        "peak_negative": history.peak_negative,
+        "peak_ratio": history.peak_ratio,
+        "overturned": history.overturned,
+        "overturning_time": history.overturning_time,
+        "overturning_direction": history.fell_to.label if history.fell_to else None,
+        "uplift_time": history.uplift_time,
+        "impacts": history.impact_count,
+        "outcome": history.outcome.name.lower(),
+    }
+    if etas is not None:
+        found["impact_list"] = [
+            {"time": time, "direction": direction.label, "rate_before": before, "rate_after": after}
+            for time, direction, before, after in _impacts(history, etas, len(history.impacts))
+        ]
+    return found
+
+
+def _impacts(history: History, etas: Equivalence, most: int) -> list[tuple[float, Direction, float, float]]:
+    """Time [s], direction that ends, and rates before and after [rad/s] of the first impacts."""
+    rows = ((time, Direction(int(sign)), rate) for time, sign, rate in history.impacts[:most].tolist())
+    return [(time, direction, rate, etas[direction].eta * rate) for time, direction, rate in rows]
+
+
+def print_tables(title: str, runs: Runs, etas: Equivalence | None) -> None:
+    """A table and a verdict for each polarity, which of two governs, and the first impacts if there are `etas`."""
+    for polarity, histories in runs.items():
+        heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
+        _print_table(heading, histories)
+        terminal.result(verdict(histories))
+        for name, run in histories.items() if etas is not None else ():
+            assert etas is not None
+            terminal.result()
+            _print_impacts(f"{heading}: impacts, {name}", run, etas)
+        if len(runs) > 1:
+            terminal.result()
+    if len(runs) > 1:
+        terminal.result(_governs(runs)[1])
+
+
+def _print_table(title: str, histories: Histories) -> None:
+    number = terminal.number
+    runs = list(histories.values())
+
+    def in_degrees(phi: float | None) -> str:
+        return terminal.ABSENT if phi is None else number(degrees(phi), 5)
+
+    rows = [
+        ["outcome", *(run.outcome.name.lower().replace("_", " ") for run in runs), ""],
+        ["peak / phi_cr", *(number(run.peak_ratio, 5) for run in runs), ""],
+        ["peak, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
+        ["peak, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
+        ["first uplift", *(number(run.uplift_time, 5) for run in runs), "s"],
+        ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
+        ["impacts", *(str(run.impact_count) for run in runs), ""],
+    ]
+    columns = ["", *(run.model for run in runs), "unit"]
+    terminal.table(title, columns, rows, numbers=range(1, len(runs) + 1))
+
+
+def _print_impacts(title: str, history: History, etas: Equivalence) -> None:
+    rows = [
+        [f"{time:.4f}", SENSE[direction], terminal.number(before, 4), terminal.number(after, 4)]
+        for time, direction, before, after in _impacts(history, etas, FIRST)
+    ]
+    columns = ["time [s]", "ends motion", "before [rad/s]", "after [rad/s]"]
+    terminal.table(title, columns, rows, numbers=(0, 2, 3))
+    if history.impact_count > FIRST:
+        terminal.result(f"{history.impact_count - FIRST} more follow: --json lists them")
+
+
+def _governs(runs: Runs) -> tuple[int | None, str]:
+    """Which polarity is the worse by the best model, if one is; and a sentence on it."""
+    model: ModelName = "nonlinear" if "nonlinear" in runs[1] else next(iter(runs[1]))
+    by_model = f"by the {model} model"
+    one, other = runs[1][model], runs[-1][model]
+    if one.overturned != other.overturned:
+        worse = 1 if one.overturned else -1
+        return worse, f"Polarity {worse} governs {by_model}: it overturns, polarity {-worse} does not."
+    sizes = {1: _size(one), -1: _size(other)}
+    if isclose(sizes[1], sizes[-1], rel_tol=ALIKE):
+        return None, f"Neither polarity governs {by_model}: they do alike."
+    if one.overturned:
+        worse = min(sizes, key=sizes.__getitem__)
+        said = f"both overturn, this one at {sizes[worse]:.4g} s, the other at {sizes[-worse]:.4g} s"
+    else:
+        worse = max(sizes, key=sizes.__getitem__)
+        said = f"it rocks to {sizes[worse]:.4g} of the critical rotation, the other to {sizes[-worse]:.4g}"
+    return worse, f"Polarity {worse} governs {by_model}: {said}."
+
+
+def _size(history: History) -> float:
+    """What two polarities are compared by: the overturning time [s], else the peak ratio."""
+    return (history.overturning_time if history.overturned else history.peak_ratio) or 0.0

@@ -1,0 +1,55 @@
+"""Histories as the columns of a table, a block of rows at a time: a long one never stands in memory twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.dynamics.history import History
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+
+Reals = NDArray[np.float64]
+
+
+def names(histories: Mapping[str, History]) -> list[str]:
+    """Names of the columns, with units: time, ground acceleration, and for each history rotation, rate and ratio."""
+    each = [f"{name} {what}" for name in histories for what in ("phi [rad]", "phi_dot [rad/s]", "phi/phi_cr")]
+    return ["t [s]", "a_g [g]", *each]
+
+
+def blocks(histories: Mapping[str, History], motion: GroundMotion | None, rows: int) -> Iterator[list[Reals]]:
+    """The columns of `names`, in blocks.
+
+    Parameters
+    ----------
+    histories : mapping of str to History
+        At least one; all on the same samples.
+    motion : GroundMotion, optional
+        The ground motion they respond to.
+    rows : int
+        Samples in a block, at most.
+
+    Yields
+    ------
+    list of ndarray
+        NaN after overturning.
+    """
+    runs = list(histories.values())
+    longest = max(runs, key=lambda run: run.time.size)
+    shaken = motion.acceleration if motion is not None else np.zeros(0)
+    for start in range(0, longest.time.size, rows):
+        part = slice(start, min(start + rows, longest.time.size))
+        columns = [longest.time[part], _padded(shaken, part, 0.0) / STANDARD_GRAVITY]
+        for run in runs:
+            # A motion that has come to rest before the longest one stays there.
+            after = np.nan if run.overturned else 0.0
+            columns += [_padded(values, part, after) for values in (run.phi, run.rate, run.ratio)]
+        yield columns
+
+
+def _padded(values: Reals, part: slice, after: float) -> Reals:
+    """Part of the values; `after` where they have ended."""
+    found = values[part]
+    return np.concatenate([found, np.full(part.stop - part.start - found.size, after)])
