@@ -13,7 +13,7 @@ from rocking_cli import __version__
 from rocking_cli.cli import terminal
 from rocking_cli.errors import RockingError
 
-COMMANDS = ("equiv", "respond", "pulse", "mechanisms", "new")
+COMMANDS = ("equiv", "record", "respond", "pulse", "mechanisms", "new")
 
 
 class LazyGroup(click.Group):
@@ -70,6 +70,7 @@ def main() -> None:
     Start with:
       rocking new block > block.yaml
       rocking equiv block.yaml
+      rocking record accel.csv
       rocking respond block.yaml --record accel.csv --plot response.png
       rocking pulse --a 4 --omega 6
 

@@ -1,0 +1,48 @@
+"""A ground motion as comma-separated text that the reader of delimited text takes back number for number."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from rocking_cli.excitation.base import GroundMotion
+
+HEADER = "t [s],a [m/s2]\n"  # metres: any other unit would round the accelerations on the way back
+BLOCK = 10_000  # lines written at a time: a long record never stands in memory as text
+
+
+def is_record_csv(path: Path) -> bool:
+    """Whether a file begins as `write_record_csv` begins it."""
+    with path.open("rb") as file:
+        return file.read(len(HEADER)) == HEADER.encode()
+
+
+def write_record_csv(stream: BinaryIO, motion: GroundMotion) -> None:
+    """Write time [s] and acceleration [m/s2], a line a sample.
+
+    Parameters
+    ----------
+    stream : binary file
+        Where to.
+    motion : GroundMotion
+        The motion. Its accelerations are read back identical, its interval too or to the last bit.
+    """
+    stream.write(HEADER.encode())
+    last = motion.npts - 1
+    for start in range(0, motion.npts, BLOCK):
+        values = motion.acceleration[start : start + BLOCK].tolist()
+        times = [f"{(start + k) * motion.dt:.12g}" for k in range(len(values))]
+        if start + len(values) > last:
+            times[-1] = _last_time(motion.dt, last)
+        lines = (f"{time},{value!r}\n" for time, value in zip(times, values, strict=True))
+        stream.write("".join(lines).encode())
+
+
+def _last_time(dt: float, intervals: int) -> str:
+    """The last time, which the reader divides by the number of intervals: one that gives back dt if there is any."""
+    product = dt * intervals
+    rounded = float(f"{product:.12g}")
+    near = (rounded, product, float(np.nextafter(product, 0.0)), float(np.nextafter(product, np.inf)))
+    return repr(next((time for time in near if time / intervals == dt), product))

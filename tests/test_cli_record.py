@@ -1,0 +1,244 @@
+"""`rocking record` as a user runs it, and the scaling that it shares with `respond`."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from rocking_cli.cli.main import main
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.measures import measure
+from rocking_cli.excitation.records import read_record
+from rocking_cli.record_csv import write_record_csv
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+ACCEL = str(EXAMPLES / "accel.csv")
+
+
+@pytest.fixture
+def odd(tmp_path):
+    """A record that is offset, clipped and coarse at once."""
+    t = np.arange(200) * 0.02
+    a = np.clip(np.sin(2 * np.pi * t), -0.6, 0.6) * 0.5 + 0.05
+    lines = [f"{x:.2f},{y:.6f}" for x, y in zip(t, a, strict=True)]
+    path = tmp_path / "odd.csv"
+    path.write_text("t,accel_g\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+class TestWhatIsShown:
+    def test_json_has_the_promised_keys_and_the_measures_of_the_library(self):
+        data = run_json("record", ACCEL)
+        assert list(data) == [
+            "file", "name", "format", "channel", "unit", "npts", "dt", "duration", "factor", "pga", "pgv", "pgd",
+            "arias_intensity", "significant_duration", "t_5", "t_95", "mean_acceleration", "final_velocity",
+            "final_displacement", "p_dt", "warnings",
+        ]  # fmt: skip
+        found = measure(read_record(ACCEL))
+        assert (data["file"], data["name"], data["format"], data["channel"]) == (ACCEL, "accel.csv", "text", None)
+        assert (data["npts"], data["dt"], data["unit"], data["duration"]) == (1201, 0.01, "g", 12)
+        assert (data["pga"], data["pgv"], data["pgd"]) == (found.pga, found.pgv, found.pgd)
+        assert (data["arias_intensity"], data["significant_duration"]) == (found.arias, found.significant_duration)
+        assert (data["mean_acceleration"], data["warnings"], data["factor"]) == (found.mean, [], 1)
+
+    def test_the_table_has_every_measure_and_no_row_that_says_nothing(self):
+        result = run("record", ACCEL)
+        data = run_json("record", ACCEL)
+        for key in ("pga", "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95"):
+            assert f"{data[key]:.4g}" in result.stdout
+        assert all(word in result.stdout for word in ("accel.csv", "text", "1201", "m/s", "5-95 %"))
+        assert not any(word in result.stdout for word in ("channel", "scaled", "p dt"))
+        assert result.stderr == ""
+
+    @pytest.mark.parametrize("width", [60, 80, 200])
+    def test_several_files_fit_the_terminal(self, width, monkeypatch, tmp_path):
+        monkeypatch.setenv("COLUMNS", str(width))
+        files = [tmp_path / f"a_record_with_quite_a_long_name_{k}.txt" for k in range(5)]
+        for k, file in enumerate(files):
+            file.write_text(f"accel_g\n0\n0.{k + 1}\n-0.{k + 1}\n0\n", encoding="utf-8")
+        text = run("record", *files, "--dt", "0.01").stdout
+        assert max(map(len, text.splitlines())) <= width
+        assert all(f"0.{k + 1} " in text for k in range(5))  # each PGA
+        assert text.count("PGV") == {60: 3, 80: 2, 200: 1}[width]
+
+    def test_a_channel_is_named(self, tmp_path):
+        rows = "".join(f"{value:8.1f}" for value in (0.0, 100.0, -100.0, 0.0))
+        header = [
+            "Corrected accelerogram made", *[""] * 8, "Number of points     4    Duration 0.03 sec",
+            "Instrument corrected data at 0.010 sec intervals", "", "Component {}  axis",
+            "Acceleration:  peak    100.0 mm/s/s at  0.01 sec", "", "",
+        ]  # fmt: skip
+        numbers = ["0 0 0", "0 0 0", "0 0 0", "0 0 0 4 0 0", *["0"] * 6]
+        both = "\n".join(("\n".join([*header, *numbers, rows])).format(name) for name in ("N", "UP"))
+        (tmp_path / "two.v2a").write_text(both + "\n", encoding="utf-8")
+        assert "choose one with --channel" in run("record", "two.v2a", code=2).stderr
+        data = run_json("record", "two.v2a", "--channel", "UP")
+        assert (data["channel"], data["name"]) == ("UP", "two.v2a channel UP")
+        assert " channel " in run("record", "two.v2a", "--channel", "2").stdout
+        run("record", "two.v2a", "--channel", "UP", "--to", "csv")
+        assert (tmp_path / "two-UP.csv").exists()
+
+
+class TestDoubts:
+    def test_each_is_a_warning_with_its_number_and_in_the_json(self, odd):
+        result = run("record", odd, "--json")
+        warnings = json.loads(result.stdout)["warnings"]
+        assert {each["kind"] for each in warnings} >= {"offset", "start", "final_velocity", "clipped"}
+        for each in warnings:
+            assert f"warning: odd.csv: {each['text']}" in result.stderr
+        assert all(each["kind"] != "p_dt" for each in warnings)
+
+    def test_respond_says_the_same(self, odd):
+        said = run("record", odd).stderr.splitlines()
+        assert said and set(said) <= set(run("respond", "--record", odd).stderr.splitlines())
+
+    def test_an_interval_too_coarse_for_a_structure(self, tmp_path):
+        (tmp_path / "small.yaml").write_text("mechanism: block\nwidth: 0.02\nheight: 0.06\n", encoding="utf-8")
+        result = run("record", ACCEL, "--structure", "small.yaml")
+        assert "p dt = 0.15" in result.stderr and "p dt" in result.stdout
+        assert "p dt = 0.15" in run("respond", "small.yaml", "--record", ACCEL).stderr
+        data = run_json("record", ACCEL, "--structure", EXAMPLES / "frame.yaml")
+        p = run_json("equiv", EXAMPLES / "frame.yaml")["directions"]["negative"]["p"]
+        assert data["p_dt"] == pytest.approx(0.01 * p) and data["warnings"] == []
+
+    def test_a_motion_of_zeros_has_dashes_and_nulls(self, tmp_path):
+        (tmp_path / "zero.txt").write_text("accel_g\n0\n0\n0\n", encoding="utf-8")
+        assert run_json("record", "zero.txt", "--dt", "0.01")["significant_duration"] is None
+        assert re.search(r"5-95 % duration +- +s", run("record", "zero.txt", "--dt", "0.01").stdout)
+
+
+class TestScaling:
+    @pytest.mark.parametrize(("option", "key"), [("--target-pga", "pga"), ("--target-pgv", "pgv")])
+    def test_a_target_is_reached_and_the_factor_said(self, option, key):
+        plain, scaled = run_json("record", ACCEL), run_json("record", ACCEL, option, "0.4")
+        assert scaled[key] == pytest.approx(0.4, rel=1e-12)
+        assert scaled["factor"] == pytest.approx(0.4 / plain[key])
+        assert scaled["arias_intensity"] == pytest.approx(scaled["factor"] ** 2 * plain["arias_intensity"])
+        assert f"{scaled['factor']:.6g}" in run("record", ACCEL, option, "0.4").stdout
+
+    def test_polarity_reverses(self):
+        plain, reversed_ = run_json("record", ACCEL), run_json("record", ACCEL, "--polarity", "-1", "--scale", "2")
+        assert reversed_["factor"] == -2 and reversed_["pga"] == 2 * plain["pga"]
+        assert reversed_["final_displacement"] == pytest.approx(-2 * plain["final_displacement"])
+
+    def test_respond_scales_to_the_same(self):
+        for option in ("--target-pga", "--target-pgv"):
+            record = run_json("respond", "--record", ACCEL, option, "0.3", "--polarity", "-1")["record"]
+            assert record["scale"] == run_json("record", ACCEL, option, "0.3")["factor"]
+            assert (record["pga"], record["polarity"]) == (pytest.approx(0.55), -1)
+        assert "PGV = 0.3 m/s" in run("respond", "--record", ACCEL, "--target-pgv", "0.3").stderr
+
+    def test_an_odd_unit_is_not_hidden_by_a_target(self, tmp_path):
+        (tmp_path / "cm.csv").write_text("t,accel_g\n0,0\n0.01,300\n0.02,0\n", encoding="utf-8")
+        assert "is the unit really g?" in run("record", "cm.csv", "--target-pga", "0.3").stderr
+
+    @pytest.mark.parametrize("command", [("record", ACCEL), ("respond", "--record", ACCEL)])
+    def test_wrong_scaling_is_refused(self, command):
+        assert "exclude each other" in run(*command, "--scale", "1", "--target-pga", "1", code=2).stderr
+        assert "exclude each other" in run(*command, "--target-pgv", "1", "--target-pga", "1", code=2).stderr
+        assert "positive" in run(*command, "--target-pgv", "0", code=2).stderr
+
+    def test_nothing_cannot_be_scaled_to_a_peak(self, tmp_path):
+        (tmp_path / "zero.txt").write_text("accel_g\n0\n0\n0\n", encoding="utf-8")
+        assert "zero throughout" in run("record", "zero.txt", "--dt", "1", "--target-pga", "1", code=2).stderr
+
+    def test_both_polarities_are_for_responses(self):
+        assert "'1', '-1'" in run("record", ACCEL, "--polarity", "both", code=2).stderr
+
+
+class TestBadFiles:
+    def test_one_of_several_is_reported_and_the_others_shown(self, tmp_path):
+        (tmp_path / "bad.csv").write_text("t,accel_g\n0,0\n0.01,x\n", encoding="utf-8")
+        result = CliRunner().invoke(main, ["record", "bad.csv", ACCEL, "none.csv", "--json"])
+        assert result.exit_code == 2
+        assert [json.loads(line)["name"] for line in result.stdout.splitlines()] == ["accel.csv"]
+        assert "bad.csv:3" in result.stderr and "none.csv: no such file" in result.stderr
+        result = CliRunner().invoke(main, ["record", "bad.csv", ACCEL])
+        assert result.exit_code == 2 and "0.55" in result.stdout
+
+    def test_none_at_all(self):
+        assert "FILE" in run("record", code=2).stderr
+        run("record", "none.csv", code=2)
+
+    def test_a_bad_structure_is_said_first(self, tmp_path):
+        (tmp_path / "bad.yaml").write_text("mechanism: block\nwidth: 1\n", encoding="utf-8")
+        assert "height: is missing" in run("record", ACCEL, "--structure", "bad.yaml", code=2).stderr
+
+
+class TestCleanFile:
+    def test_it_goes_into_this_folder_and_its_path_is_said(self, tmp_path):
+        source = tmp_path / "motion.txt"
+        source.write_text("accel_g\n0\n0.1\n-0.3\n0\n", encoding="utf-8")
+        result = run("record", source, "--dt", "0.01", "--to", "csv", "--scale", "2")
+        assert f"wrote {(tmp_path / 'motion.csv').resolve()}" in result.stderr
+        assert (tmp_path / "motion.csv").read_text(encoding="utf-8").splitlines()[0] == "t [s],a [m/s2]"
+        back, want = read_record(tmp_path / "motion.csv"), read_record(source, dt=0.01).scaled(2)
+        assert back.dt == 0.01 and (back.acceleration == want.acceleration).all()
+        run("record", source, "--dt", "0.01", "--to", "csv")  # its own file may be renewed
+
+    @settings(deadline=None)  # it writes files
+    @given(
+        st.lists(st.floats(-1e29, 1e29), min_size=2, max_size=60),
+        st.sampled_from([0.01, 0.005, 0.02, 1 / 256, 1 / 3, 0.03]) | st.floats(1e-4, 1),
+    )
+    @example([0.0] * 4, 0.20222855553486224)  # more digits than are written of the other times
+    def test_it_reads_back_number_for_number(self, tmp_path_factory, values, dt):
+        path = tmp_path_factory.getbasetemp() / "back.csv"
+        with path.open("wb") as stream:
+            write_record_csv(stream, GroundMotion("any", dt, np.array(values)))
+        back = read_record(path)
+        assert back.acceleration.tolist() == values
+        assert abs(back.dt - dt) <= np.spacing(dt)
+
+    @pytest.mark.parametrize("npts", [2, 1991, 5372, 10_000, 10_001, 34_717])
+    def test_usual_intervals_come_back_too_over_block_borders(self, npts, tmp_path):
+        with (tmp_path / "back.csv").open("wb") as stream:
+            write_record_csv(stream, GroundMotion("any", 0.005, np.linspace(-1, 1, npts)))
+        back = read_record(tmp_path / "back.csv")
+        assert back.dt == 0.005 and (back.acceleration == np.linspace(-1, 1, npts)).all()
+
+    def test_an_input_is_never_replaced(self, tmp_path):
+        (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        assert "overwrite what is read" in run("record", "accel.csv", "--to", "csv", code=2).stderr
+        assert (tmp_path / "accel.csv").read_bytes() == (EXAMPLES / "accel.csv").read_bytes()
+
+    def test_a_file_of_somebody_else_is_never_replaced(self, tmp_path):
+        (tmp_path / "accel.csv").write_text("precious\n", encoding="utf-8")
+        assert "did not write" in run("record", ACCEL, "--to", "csv", code=2).stderr
+        assert (tmp_path / "accel.csv").read_text(encoding="utf-8") == "precious\n"
+
+    def test_two_records_of_one_name_are_refused(self, tmp_path):
+        (tmp_path / "accel.AT2").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        assert "two records would be written" in run("record", ACCEL, "accel.AT2", "--to", "csv", code=2).stderr
+        assert [path.name for path in tmp_path.iterdir()] == ["accel.AT2"]
+
+
+class TestPlot:
+    @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+    def test_by_suffix(self, suffix, tmp_path):
+        assert f"wrote plot.{suffix}" in run("record", ACCEL, "--plot", f"plot.{suffix}").stderr
+        start = (tmp_path / f"plot.{suffix}").read_bytes()[:200]
+        assert {"png": b"\x89PNG", "svg": b"<svg", "pdf": b"%PDF"}[suffix] in start or b"<?xml" in start
+
+    def test_of_one_record_only_and_never_over_it(self, tmp_path):
+        assert "one FILE" in run("record", ACCEL, ACCEL, "--plot", "x.png", code=2).stderr
+        (tmp_path / "a.png").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        assert "overwrite what is read" in run("record", "a.png", "--plot", "a.png", code=2).stderr
+
+
+def test_record_does_without_the_compiler_and_scipy():
+    code = (
+        f"import sys, rocking_cli.cli.main as m; m.main(['record', {ACCEL!r}, '--json'], standalone_mode=False);"
+        "print([n for n in ('numba', 'scipy', 'matplotlib', 'pydantic') if n in sys.modules], file=sys.stderr)"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stderr.strip() == "[]"
