@@ -13,10 +13,11 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 Reals = NDArray[np.float64]
 
 
-def names(histories: Mapping[str, History]) -> list[str]:
+def names(histories: Mapping[str, History], motion: GroundMotion | None) -> list[str]:
     """Names of the columns, with units: time, ground acceleration, and for each history rotation, rate and ratio."""
+    vertical = ["v_g [g]"] if motion is not None and motion.vertical is not None else []
     each = [f"{name} {what}" for name in histories for what in ("phi [rad]", "phi_dot [rad/s]", "phi/phi_cr")]
-    return ["t [s]", "a_g [g]", *each]
+    return ["t [s]", "a_g [g]", *vertical, *each]
 
 
 def blocks(histories: Mapping[str, History], motion: GroundMotion | None, rows: int) -> Iterator[list[Reals]]:
@@ -42,11 +43,19 @@ def blocks(histories: Mapping[str, History], motion: GroundMotion | None, rows: 
     for start in range(0, longest.time.size, rows):
         part = slice(start, min(start + rows, longest.time.size))
         columns = [longest.time[part], _padded(shaken, part, 0.0) / STANDARD_GRAVITY]
+        if motion is not None and motion.vertical is not None:
+            columns.append(_at(longest.time[part], motion.vertical) / STANDARD_GRAVITY)
         for run in runs:
             # A motion that has come to rest before the longest one stays there.
             after = np.nan if run.overturned else 0.0
             columns += [_padded(values, part, after) for values in (run.phi, run.rate, run.ratio)]
         yield columns
+
+
+def _at(time: Reals, motion: GroundMotion) -> Reals:
+    """A component at other times than its own samples; zero after its last."""
+    own = np.arange(motion.npts) * motion.dt
+    return np.interp(time, own, motion.acceleration, right=0.0)
 
 
 def _padded(values: Reals, part: slice, after: float) -> Reals:

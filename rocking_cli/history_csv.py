@@ -30,7 +30,7 @@ def write_history_csv(stream: BinaryIO, histories: Mapping[str, History], motion
     -----
     Nine digits; fields are empty after overturning.
     """
-    header = history_columns.names(histories)
+    header = history_columns.names(histories, motion)
     stream.write((",".join(header) + "\n").encode())
     line = ",".join(["%.9g"] * len(header)) + "\n"
     for columns in history_columns.blocks(histories, motion, ROWS):

@@ -31,7 +31,7 @@ def write_history_parquet(stream: BinaryIO, histories: Mapping[str, History], mo
     import pyarrow
     from pyarrow import parquet
 
-    schema = pyarrow.schema([(name, pyarrow.float64()) for name in history_columns.names(histories)])
+    schema = pyarrow.schema([(name, pyarrow.float64()) for name in history_columns.names(histories, motion)])
     with parquet.ParquetWriter(stream, schema) as writer:
         for columns in history_columns.blocks(histories, motion, ROWS):
             arrays = [pyarrow.array(values, from_pandas=True) for values in columns]  # NaN becomes null

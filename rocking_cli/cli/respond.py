@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -43,10 +44,21 @@ def _tail(ctx: click.Context, param: click.Parameter, value: float) -> float:
     return value
 
 
+def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
+    if not value < 1:
+        raise click.BadParameter(f"{value:g} is not a number between 0 and 1.", ctx, param)
+    return value
+
+
 @click.command(short_help="Response to a ground motion: nonlinear and linear histories.")
 @click.argument("file", required=False, type=click.Path())
 @click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format.")
 @options.reading
+@click.option("--vertical", type=click.Path(), metavar="FILE", help="Its vertical component: g becomes g + v_g''.")
+@click.option(
+    "--vertical-dt", type=options.Finite(positive=True), metavar="SECONDS", help="Its interval, if it has one column."
+)
+@click.option("--vertical-channel", metavar="CHANNEL", help="Which of several it is in its file.")
 @options.scaling("1", "-1", "both")
 @click.option(
     "--release",
@@ -66,6 +78,15 @@ def _tail(ctx: click.Context, param: click.Parameter, value: float) -> float:
     metavar="SECONDS",
     callback=_tail,
     help="How long the history goes on after the record.",
+)
+@click.option(
+    "--rtol",
+    type=options.Finite(positive=True),
+    default=1e-10,
+    show_default=True,
+    metavar="TOLERANCE",
+    callback=_rtol,
+    help="Relative local error of a step of the nonlinear history.",
 )
 @click.option("--impacts", is_flag=True, help="List the impacts: times, and rates before and after.")
 @click.option(
@@ -87,6 +108,9 @@ def command(
     units: str | None,
     dt: float | None,
     channel: str | None,
+    vertical: str | None,
+    vertical_dt: float | None,
+    vertical_channel: str | None,
     scale: float | None,
     target_pga: float | None,
     target_pgv: float | None,
@@ -94,6 +118,7 @@ def command(
     release: float | None,
     models: tuple[str, ...],
     tail: float,
+    rtol: float,
     impacts: bool,
     out: Path | None,
     plot: Path | None,
@@ -119,6 +144,10 @@ def command(
         raise click.UsageError("--units and --dt describe a record: give --record FILE.")
     if record is None and channel is not None:
         raise click.UsageError("--channel is one of a record: give --record FILE.")
+    if record is None and vertical is not None:
+        raise click.UsageError("--vertical goes with a horizontal component: give --record FILE.")
+    if vertical is None and (vertical_dt is not None or vertical_channel is not None):
+        raise click.UsageError("--vertical-dt and --vertical-channel describe one: give --vertical FILE.")
     motions.check_scaling(scale, target_pga, target_pgv)
     scaled = any(value is not None for value in (scale, target_pga, target_pgv))
     if record is None and (scaled or polarity != "1"):
@@ -126,9 +155,10 @@ def command(
             "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE."
         )
     from rocking_cli.cli import responses, structures
+    from rocking_cli.dynamics.vertical import vertical_notes
     from rocking_cli.files import keep_apart
 
-    keep_apart([("--out", out), ("--plot", plot)], [file, record])
+    keep_apart([("--out", out), ("--plot", plot)], [file, record, vertical])
     if out is not None and out.suffix.lower() == ".parquet":
         from rocking_cli.history_parquet import check_parquet
 
@@ -137,19 +167,24 @@ def command(
     equivalence = _equivalence(mechanism)
     as_read, factor = None, 1.0
     if record is not None:
-        as_read = _read(record, dt, units, channel)
+        as_read = _read("record", record, dt, units, channel)
+        if vertical is not None:
+            own = dt if vertical_dt is None else vertical_dt
+            as_read = replace(as_read, vertical=_read("vertical", vertical, own, units, vertical_channel))
         factor = _judge(as_read, equivalence, scale, target_pga, target_pgv)
     signs = (1, -1) if polarity == "both" else (int(polarity),)
     shaking = {sign: as_read.scaled(sign * factor) if as_read is not None else None for sign in signs}
     runs = {
-        sign: _respond(mechanism, motion, cast("tuple[ModelName, ...]", models), release, tail)
+        sign: _respond(mechanism, motion, cast("tuple[ModelName, ...]", models), release, tail, rtol)
         for sign, motion in shaking.items()
     }
+    shaken = shaking[signs[0]]
     if out is not None:
-        _write(out, runs, shaking[signs[0]])
+        _write(out, runs, shaken)
     if plot is not None:
-        _draw(plot, runs, shaking[signs[0]], structures.label(mechanism))
+        _draw(plot, runs, shaken, structures.label(mechanism))
     etas = equivalence if impacts else None
+    notes = vertical_notes(shaken, mechanism.gravity) if shaken is not None else []
     if as_json:
         terminal.print_json(
             {
@@ -157,10 +192,13 @@ def command(
                 "record": responses.record_json(as_read, factor, polarity) if as_read is not None else None,
                 "release": release,
                 **responses.runs_json(runs, etas),
+                "notes": notes,
             }
         )
     else:
         responses.print_tables(structures.label(mechanism), runs, etas)
+        for note in notes:
+            terminal.result(note)
 
 
 def _equivalence(mechanism: Mechanism) -> Equivalence:
@@ -173,12 +211,12 @@ def _equivalence(mechanism: Mechanism) -> Equivalence:
         raise MechanismError(f"{mechanism.name}: {error}") from error
 
 
-def _read(record: str, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
+def _read(what: str, file: str, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
     from rocking_cli.excitation.records import read_record
 
-    motion = read_record(record, dt=dt, units=units, channel=channel)
+    motion = read_record(file, dt=dt, units=units, channel=channel)
     terminal.note(
-        f"record: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:g} s, "
+        f"{what}: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:g} s, "
         f"in {motion.unit}, PGA = {motion.pga:.4g} g"
     )
     return motion
@@ -199,6 +237,8 @@ def _judge(
     motions.warn(
         motion, doubts(motion, measured) + coarse_for(motion, max(equivalence.positive.p, equivalence.negative.p))
     )
+    if motion.vertical is not None:
+        motions.warn(motion.vertical, doubts(motion.vertical, measure(motion.vertical)))
     factor = motions.factor(motion, measured, scale, target_pga, target_pgv)
     if factor != 1:
         pga, pgv = abs(factor) * measured.pga, abs(factor) * measured.pgv
@@ -207,7 +247,12 @@ def _judge(
 
 
 def _respond(
-    mechanism: Mechanism, motion: GroundMotion | None, models: tuple[ModelName, ...], release: float | None, tail: float
+    mechanism: Mechanism,
+    motion: GroundMotion | None,
+    models: tuple[ModelName, ...],
+    release: float | None,
+    tail: float,
+    rtol: float,
 ) -> dict[ModelName, History]:
     from rocking_cli.dynamics.compiled import needs_compiling
     from rocking_cli.dynamics.history import respond
@@ -216,7 +261,7 @@ def _respond(
     if needs_compiling():
         terminal.note("compiling the history kernel, some ten seconds, once for this machine ...")
     try:
-        return respond(mechanism, motion, models=models, release=release, tail=tail)
+        return respond(mechanism, motion, models=models, release=release, tail=tail, rtol=rtol)
     except MechanismError as error:
         raise MechanismError(f"{mechanism.name}: {error}") from error
 

@@ -24,14 +24,21 @@ ALIKE = 1e-6  # relative difference below which neither polarity governs
 def record_json(motion: GroundMotion, factor: float, polarity: str) -> dict[str, Any]:
     """The record as read, and what was done to it."""
     return {
+        **_motion_json(motion),
+        "vertical": _motion_json(motion.vertical) if motion.vertical is not None else None,
+        "scale": factor,
+        "polarity": polarity if polarity == "both" else int(polarity),
+    }
+
+
+def _motion_json(motion: GroundMotion) -> dict[str, Any]:
+    return {
         "name": motion.name,
         "npts": motion.npts,
         "dt": motion.dt,
         "unit": motion.unit,
         "pga": motion.pga,
         "format": motion.format,
-        "scale": factor,
-        "polarity": polarity if polarity == "both" else int(polarity),
     }
 
 
@@ -55,6 +62,7 @@ def _history_json(history: History, etas: Equivalence | None) -> dict[str, Any]:
         "uplift_time": history.uplift_time,
         "impacts": history.impact_count,
         "outcome": history.outcome.name.lower(),
+        "contact_lost": history.contact_lost,
     }
     if etas is not None:
         found["impact_list"] = [

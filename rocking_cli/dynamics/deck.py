@@ -14,6 +14,7 @@ from rocking_cli.excitation.base import GroundMotion
 
 Reals = NDArray[np.float64]
 
+NOTHING = np.empty(0)
 RELEASE_DT = 0.005  # s between samples of a free motion without a record
 MOST_IMPACTS = 20_000  # after the record and its tail, to call it still rocking; eta = 0.999 rests in 14 000
 
@@ -82,47 +83,50 @@ class Deck:
 
 def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> Deck:
     """Lay out models and ground motions (None: no shaking) for the kernel; a single one is not copied."""
-    sizes = [len(model.forces) for model in models]
-    structures = np.column_stack([_starts(sizes), sizes, [model.is_linear for model in models]]).astype(np.int64)
-    u = [motion.acceleration if motion is not None else np.empty(0) for motion in motions]
-    dt = [motion.dt if motion is not None else RELEASE_DT for motion in motions]
-    vertical = [motion.vertical if motion is not None else None for motion in motions]
-    v = [up.acceleration if up is not None else np.empty(0) for up in vertical]
-    v_dt = [up.dt if up is not None else 1.0 for up in vertical]
-    ahead, v_ahead = [], []
-    for horizontal, up, step, v_step in zip(u, v, dt, v_dt, strict=True):
-        length = max(horizontal.size, ceil((up.size - 1) * v_step / step) + 1 if up.size else 0)
-        ahead.append(_strongest_to_come(np.abs(horizontal), 1.0, length))
-        v_ahead.append(_strongest_to_come(np.maximum(-up, 0.0), step / v_step, length if up.size else 0))
-    # Where no record has a vertical component, the second array is empty, and the kernel leaves it alone.
-    if not any(len(each) for each in v_ahead):
-        v_ahead = []
-    else:
-        v_ahead = [each if each.size else np.zeros(one.size) for each, one in zip(v_ahead, ahead, strict=True)]
-    records = np.column_stack(
-        [
-            _starts([each.size for each in u]),
-            [each.size for each in u],
-            _starts([each.size for each in v]),
-            [each.size for each in v],
-            _starts([each.size for each in ahead]),
-            [each.size for each in ahead],
-            dt,
-            v_dt,
-        ]
-    ).astype(np.float64)
+    structures, records = [], []
+    cells = 0
+    for model in models:
+        structures.append((cells, len(model.forces), model.is_linear))
+        cells += len(model.forces)
+    us, vs, aheads, v_aheads = _Row(), _Row(), _Row(), _Row()
+    for motion in motions:
+        up = motion.vertical if motion is not None else None
+        u, dt = (motion.acceleration, motion.dt) if motion is not None else (NOTHING, RELEASE_DT)
+        v, v_dt = (up.acceleration, up.dt) if up is not None else (NOTHING, 1.0)
+        length = max(u.size, ceil((v.size - 1) * v_dt / dt) + 1)
+        places = (*us.add(u), *vs.add(v), *aheads.add(_strongest_to_come(np.abs(u), 1.0, length)))
+        if any(each is not None and each.vertical is not None for each in motions):
+            v_aheads.add(_strongest_to_come(np.maximum(-v, 0.0), dt / v_dt, length))  # beside the other
+        records.append((*places, dt, v_dt))
     return Deck(
-        structures,
-        np.stack([model.numbers for model in models]),
+        np.array(structures, dtype=np.int64),
+        np.array([model.numbers for model in models]),
         _joined([model.forces for model in models]),
         _joined([model.angles for model in models]),
         _joined([model.certain for model in models]),
-        records,
-        _joined(u),
-        _joined(v),
-        _joined(ahead),
-        _joined(v_ahead or [np.empty(0)]),
+        np.array(records),
+        us.joined(),
+        vs.joined(),
+        aheads.joined(),
+        v_aheads.joined(),
     )
+
+
+class _Row:
+    """Arrays to stand one after the other."""
+
+    def __init__(self) -> None:
+        self.arrays: list[Reals] = []
+        self.size = 0
+
+    def add(self, array: Reals) -> tuple[int, int]:
+        """Where an array begins, and its size."""
+        self.arrays.append(array)
+        self.size += array.size
+        return self.size - array.size, array.size
+
+    def joined(self) -> Reals:
+        return _joined(self.arrays or [NOTHING])
 
 
 def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:
@@ -130,14 +134,13 @@ def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:
     result = np.zeros(length)
     if strength.size:
         ahead = np.maximum.accumulate(strength[::-1])[::-1]
-        places = np.arange(length) if stride == 1 else np.floor(np.arange(length) * stride).astype(np.int64)
-        inside = places < strength.size - 1
-        result[inside] = ahead[places[inside]]
+        ahead[-1] = 0.0
+        if stride == 1:
+            result[: ahead.size] = ahead
+        else:
+            places = np.floor(np.arange(length) * stride).astype(np.int64)
+            result = ahead[np.minimum(places, ahead.size - 1)]
     return result
-
-
-def _starts(sizes: Sequence[int]) -> NDArray[np.int64]:
-    return np.concatenate([[0], np.cumsum(sizes)[:-1]]).astype(np.int64)
 
 
 def _joined(arrays: Sequence[Reals]) -> Reals:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build_models
+from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
 
@@ -215,29 +216,3 @@ def _samples(motion: GroundMotion) -> int:
     """Samples of the horizontal component that cover both."""
     longest = motion.vertical.duration if motion.vertical is not None else 0.0
     return max(motion.npts, ceil(longest / motion.dt) + 1)
-
-
-def contact_lost(motion: GroundMotion | None, gravity: float) -> float | None:
-    """When the vertical ground acceleration first comes down to -g [s]: from then on nothing holds a structure down.
-
-    Parameters
-    ----------
-    motion : GroundMotion or None
-        The ground motion.
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Returns
-    -------
-    float or None
-        None if it never does, or there is no vertical component.
-    """
-    if motion is None or motion.vertical is None:
-        return None
-    weight = gravity + motion.vertical.acceleration
-    lost = np.flatnonzero(weight <= 0)
-    if not lost.size:
-        return None
-    k = int(lost[0])
-    before = weight[k - 1] if k else 0.0
-    return motion.vertical.dt * (k - weight[k] / (weight[k] - before) if before > 0 else k)

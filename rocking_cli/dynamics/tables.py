@@ -55,11 +55,11 @@ class Table:
     def q(self, phi: float) -> float:
         """q at a rotation [rad] within the table."""
         k = min(max(int(np.searchsorted(self.nodes, phi, side="right")) - 1, 0), len(self.angles) - 1)
-        cubic = np.polynomial.Polynomial(self.angles[k, :4])
-        x = (phi - self.nodes[k]) / (self.nodes[k + 1] - self.nodes[k])
+        a0, a1, a2, a3 = self.angles[k, :4].tolist()
+        x = (phi - a0) / a1
         for _ in range(4):  # Newton, on a cubic that is all but straight
-            x -= (cubic(x) - phi) / cubic.deriv()(x)
-        return self.cell * (k + float(x))
+            x -= (a0 - phi + x * (a1 + x * (a2 + x * a3))) / (a1 + x * (2 * a2 + x * 3 * a3))
+        return self.cell * float(k + x)
 
 
 def tabulate(mechanism: Mechanism) -> tuple[Table, Table]:

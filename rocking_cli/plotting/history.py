@@ -79,7 +79,14 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float) -> None:
     shown = visible(ground)
     axes.plot(shown * motion.dt, ground[shown], color=style.INK, linewidth=0.7)
     axes.set_ylabel("ground [g]", fontsize=9)
-    style.note(axes, f"{motion.name}, PGA {motion.pga:.3g} g")
+    named = f"{motion.name}, PGA {motion.pga:.3g} g"
+    if motion.vertical is not None:
+        up = motion.vertical
+        part = up.acceleration[: int(min(end, up.duration) / up.dt) + 2] / STANDARD_GRAVITY
+        seen = visible(part)
+        axes.plot(seen * up.dt, part[seen], color=style.FAINT, linewidth=0.7, zorder=1)
+        named += f"; grey: {up.name}, vertical, {up.pga:.3g} g"
+    style.note(axes, named)
     style.tidy(axes)
 
 

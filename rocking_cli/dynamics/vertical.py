@@ -1,0 +1,70 @@
+"""What a vertical ground motion does to the answers: it changes the weight, and may take it away."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from rocking_cli.excitation.base import GroundMotion
+
+
+def contact_lost(motion: GroundMotion | None, gravity: float) -> float | None:
+    """When the vertical ground acceleration first comes down to -g [s]: from then on nothing holds a structure down.
+
+    Parameters
+    ----------
+    motion : GroundMotion or None
+        The ground motion.
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    float or None
+        None if it never does, or there is no vertical component.
+    """
+    if motion is None or motion.vertical is None:
+        return None
+    weight = gravity + motion.vertical.acceleration
+    lost = np.flatnonzero(weight <= 0)
+    if not lost.size:
+        return None
+    k = int(lost[0])
+    if k == 0:
+        return 0.0
+    return motion.vertical.dt * float(k - 1 + weight[k - 1] / (weight[k - 1] - weight[k]))
+
+
+def vertical_notes(motion: GroundMotion, gravity: float) -> list[str]:
+    """Say what the vertical component of a motion means for the answers, in sentences; none without one.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The ground motion, as scaled.
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    list of str
+        How far g changes and what that leaves of the equivalent block, and when contact is lost if it is.
+    """
+    if motion.vertical is None:
+        return []
+    v = motion.vertical.acceleration / gravity
+    low, high = 1 + min(float(v.min()), 0.0), 1 + max(float(v.max()), 0.0)
+    swing = f"{sqrt(low):.2f} to {sqrt(high):.2f} times" if low > 0 else f"nothing to {sqrt(high):.2f} times"
+    said = [
+        f"Vertical ground motion: g + v_g'' goes from {low:.3g} g to {high:.3g} g. All histories follow it, in uplift "
+        f"and in the restoring force. The equivalent block itself holds for constant g: its p swings from {swing} "
+        "its value, and closed forms and spectra in p know nothing of that."
+    ]
+    lost = contact_lost(motion, gravity)
+    if lost is not None:
+        said.append(
+            f"Contact is lost: at {lost:.4g} s v_g'' comes down to -g and nothing holds the structure to the ground. "
+            "It may fly, which no model here follows: do not trust the response from then on."
+        )
+    return said
