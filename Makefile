@@ -38,8 +38,9 @@ contracts: setup  ## Who may import whom
 
 check: lint type contracts test
 
-bench: setup  ## Ratios within one run; see docs/performance.md
-	$(BIN)/python benchmarks/histories.py
+bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for a record of your own
+	-$(BIN)/python -m pip install --quiet ".[bench]"
+	$(BIN)/python benchmarks/histories.py $(RECORD)
 
 clean:
 	$(PYTHON) -c "import shutil; [shutil.rmtree(p, ignore_errors=True) for p in ('$(VENV)', 'out', '.mypy_cache', '.ruff_cache', '.pytest_cache')]"

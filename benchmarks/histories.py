@@ -1,85 +1,254 @@
-"""How fast a history is, as ratios within one run: machines differ, and so does one machine from hour to hour.
+"""What a history costs, as ratios within one run: machines differ, and so does one machine from hour to hour.
 
     python benchmarks/histories.py [RECORD]
 
-Times the compiled kernel, warm and to the end of the motion, on a record of your own or the shipped example; for the
-block also against scipy's `solve_ivp` on Eq. 3, stopped at every impact.
+On a record of your own, or the shipped example. Each part prints a table in Markdown.
 """
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
-from functools import partial
-from math import cos, sin
 from pathlib import Path
+from statistics import median
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from by_solve_ivp import BySolveIvp
 
-from rocking_cli import GroundMotion, equivalent_block, load_structure, read_record
-from rocking_cli.core import EquivalentBlock
-from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import MODELS, build_models
+from rocking_cli import GroundMotion, Model, Runs, build_models, load_structure, read_record, respond_many
+from rocking_cli.dynamics import kernels as at
+from rocking_cli.dynamics.compiled import compile_kernel
+from rocking_cli.dynamics.deck import Deck, lay_out
+from rocking_cli.dynamics.history import RTOL, follow
+from rocking_cli.registry import Registry
 
-EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
-SCALES = {"block": (0.5, 0.6), "frame": (0.5, 1.0)}
+PROJECT = Path(__file__).resolve().parents[1]
+ACCEL = PROJECT / "examples" / "accel.csv"
+CASES = [("block", 0.3), ("block", 0.5), ("block", 0.7), ("frame", 0.5)]
+WANTED = 1e-8  # relative error of the peak at which solvers are compared
+BATCH = 100_000
 
 
-def median_time(work: Callable[[], object], repeats: int = 30) -> float:
-    """Median seconds of one call, after one to warm up."""
+def seconds(work: Callable[[], object], repeats: int = 50) -> float:
+    """Median time of one call, after one to warm up."""
     work()
     times = []
     for _ in range(repeats):
         start = time.perf_counter()
         work()
         times.append(time.perf_counter() - start)
-    return float(np.median(times))
+    return median(times)
 
 
-def by_solve_ivp(block: EquivalentBlock, motion: GroundMotion, t: float, s: float) -> None:
-    """Eq. 3 in plain floats by `solve_ivp`, stopped at impacts, from uplift at t to side s."""
-    grid = (np.arange(motion.npts) * motion.dt).tolist()
-    ground = (motion.acceleration / 9.80665).tolist()
-    state = [1e-12, 0.0]
-    for _ in range(500):
-        side = s
+def most_memory() -> float:
+    """Bytes this process has held at most; NaN where the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return float("nan")
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
-        def slopes(t: float, y: list[float], s: float = side) -> list[float]:
-            k = min(int(t / motion.dt), motion.npts - 2)
-            a = ground[k] + (ground[k + 1] - ground[k]) * (t - grid[k]) / motion.dt
-            return [y[1], block.p**2 * (-sin(block.phi_cr - y[0]) - s * a * cos(block.phi_cr - y[0]))]
 
-        def impact(t: float, y: list[float]) -> float:
-            return y[0]
+def table(title: str, columns: list[str], rows: list[list[str]]) -> None:
+    print(f"\n{title}\n")
+    for row in (columns, ["---"] * len(columns), *rows):
+        print("| " + " | ".join(row) + " |")
+    sys.stdout.flush()
 
-        impact.terminal, impact.direction = True, -1  # type: ignore[attr-defined]
-        run = solve_ivp(
-            slopes, (t, grid[-1]), state, "DOP853", events=impact, rtol=1e-8, atol=1e-10, max_step=2 * motion.dt
-        )
-        if run.status != 1 or run.y[0].max() > 2 * block.phi_cr or abs(run.y[1][-1]) < 1e-5:
-            return
-        t, state, s = run.t[-1], [0.0, -block.eta * run.y[1][-1]], -s
+
+class Prepared:
+    """One history, ready for the kernel: what a batch or a design loop pays for each."""
+
+    def __init__(self, model: Model, motion: GroundMotion, *, samples: bool = True) -> None:
+        self.deck: Deck = lay_out([model], [motion])
+        self.model = model
+        self.runs, self.marks = np.zeros((1, at.RUN_COLUMNS)), np.empty((1, at.MARKS))
+        self.runs[0, [at.FACTOR, at.V_FACTOR, at.SIZE]] = 1.0
+        self.runs[0, [at.ETA_POSITIVE, at.ETA_NEGATIVE]] = np.nan
+        self.out = {"phi": np.empty(motion.npts), "rate": np.empty(motion.npts)} if samples else {}
+
+    def run(self, rtol: float = RTOL) -> float:
+        """Peak |phi|/phi_cr; if it overturns, minus the time at which it passes phi_cr."""
+        self.deck.run(self.runs, self.marks, rtol=rtol, **self.out)
+        if self.marks[0, at.STATUS] == at.OVERTURNED:
+            return -float(self.marks[0, at.CROSSED])
+        return float((self.marks[0, at.PEAK : at.PEAK + 2] / self.model.phi_cr).max())
+
+
+@compile_kernel
+def bare_loop(forces, numbers, u, dt):
+    """One step of the pair a sample and nothing else: no impacts, no error control, no samples kept."""
+    law = at.law_of(False, numbers, 0)
+    state = at.State(0.5 * numbers[0, at.Q_CR], 0.0, 0.0)
+    for k in range(u.size - 1):
+        state, _, _ = at.nystrom(forces, law, at.Ground(u[k], (u[k + 1] - u[k]) / dt, 9.80665, 0.0), 0.0, state, dt)
+        if not 0 < state.q < numbers[0, at.Q_CR]:
+            state = at.State(0.5 * numbers[0, at.Q_CR], 0.0, state.f)
+    return state.q
+
+
+def against_solvers(motion: GroundMotion, models: dict[str, list[Model]]) -> None:
+    rows = []
+    for name, scale in CASES:
+        shaken = motion.scaled(scale)
+        nonlinear = models[name][0]
+        one = Prepared(nonlinear, shaken)
+        ours, fast = one.run(), seconds(one.run)
+        error = abs(ours / one.run(1e-14) - 1)
+        bare = seconds(lambda m=nonlinear, s=shaken: bare_loop(m.forces, m.numbers, s.acceleration, s.dt))
+        for rtol in (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12):
+            start = time.perf_counter()
+            other = BySolveIvp(nonlinear, shaken, rtol).outcome()
+            slow = time.perf_counter() - start
+            if abs(other / ours - 1) <= WANTED:
+                break
+        whole = seconds(lambda m=nonlinear, s=shaken: follow(m, s, tail=0.0))
+        linear = seconds(Prepared(models[name][2], shaken).run)
+        what = f"{ours:.6f}" if ours > 0 else f"falls at {-ours:.4f} s"
+        rows.append([
+            name, f"{scale:g}", what, f"{error:.0e}", f"{1e3 * fast:.3f}",
+            f"{1e3 * whole:.3f}", f"{fast / bare:.2f}", f"{slow:.2f}", f"{rtol:.0e}", f"{slow / fast:.0f}",
+            f"{1e3 * linear:.3f}",
+        ])  # fmt: skip
+    table(
+        f"One history on {motion.name}, {motion.npts} points at {motion.dt:g} s, to rest or certain overturning, warm",
+        ["structure", "scale", "peak", "its error", "nonlinear ms", "in Python ms", "/ bare loop", "solve_ivp s",
+         "at rtol", "solve_ivp / ours", "linear ms"],
+        rows,
+    )  # fmt: skip
+
+
+def against_pybullet(motion: GroundMotion, models: dict[str, list[Model]]) -> None:
+    try:
+        from by_pybullet import STEPS, by_pybullet
+    except ImportError:
+        print("\nPyBullet is not installed: pip install '.[bench]'")
+        return
+    rows = []
+    for scale in (0.3, 0.5, 0.7):
+        shaken = motion.scaled(scale)
+        one = Prepared(models["block"][0], shaken)
+        start = time.perf_counter()
+        worst = by_pybullet(0.7, 2.8, shaken)
+        slow = time.perf_counter() - start
+        theirs = worst / models["block"][0].phi_cr[0]
+        peaks = [f"{peak:.3f}" if 0 <= peak < 1 else "falls" for peak in (one.run(), theirs)]
+        rows.append([f"{scale:g}", *peaks, f"{slow:.2f}", f"{slow / seconds(one.run):.0f}"])
+    table(
+        f"The block by PyBullet, {STEPS} steps a sample, friction 2, no restitution",
+        ["scale", "peak, ours", "peak, PyBullet", "PyBullet s", "PyBullet / ours"],
+        rows,
+    )
+
+
+def tolerance(models: dict[str, list[Model]]) -> None:
+    """Coarser and coarser samples of a sine that keeps the block rocking."""
+    model = models["block"][0]
+    p, strength = float(model.numbers[0, at.P]), 1.5 * float(model.numbers[0, at.LAMBDA]) * 9.80665
+    rows = []
+    for p_dt in (0.02, 0.1, 0.5):
+        time_over_p = np.arange(round(12 / p_dt)) * p_dt
+        one = Prepared(model, GroundMotion("sine", p_dt / p, strength * np.sin(5 * time_over_p)))
+        exact = one.run(1e-14)
+        for rtol in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12):
+            error = abs(one.run(rtol) / exact - 1)
+            spent = seconds(lambda r=rtol, o=one: o.run(r)) / time_over_p.size
+            rows.append([f"{p_dt:g}", f"{rtol:.0e}", f"{error:.0e}", f"{1e9 * spent:.0f}"])
+    table("Tolerance, error of the peak, and price", ["p dt", "rtol", "error of the peak", "ns a sample"], rows)
+
+
+def batches(motion: GroundMotion, models: dict[str, list[Model]]) -> None:
+    threads = os.cpu_count() or 1
+    rows = []
+    for model in models["block"][0], models["block"][2]:
+        runs = Runs.of(0, 0, scale=np.random.default_rng(1).uniform(0.2, 0.9, BATCH))
+        sample = Runs.of(0, 0, scale=runs.scale[: BATCH // 20])
+        single = seconds(lambda m=model, s=sample: respond_many([m], [motion], s, threads=1), 3) / len(sample)
+        before = most_memory()
+        start = time.perf_counter()
+        respond_many([model], [motion], runs, threads=threads)
+        each = (time.perf_counter() - start) / BATCH
+        grown = (most_memory() - before) / BATCH
+        rows.append([
+            model.name, f"{BATCH:,}", f"{1e6 * single:.1f}", f"{1 / single:,.0f}", str(threads), f"{1 / each:,.0f}",
+            f"{single / each / threads:.0%}", f"{grown:.0f}",
+        ])  # fmt: skip
+    table(
+        "A batch: scales from 0.2 to 0.9 on the block",
+        ["model", "histories", "us each, one thread", "a second", "threads", "a second", "of threads x single",
+         "bytes each"],
+        rows,
+    )  # fmt: skip
+
+
+def length() -> None:
+    """Cost of a sample of a noise that keeps a large block rocking, short and long."""
+    structure = Registry()["block"](width=44.8, height=179.2, restitution=0.8)  # so large that it does not overturn
+    noise = np.random.default_rng(3).normal(size=1_000_000)
+    ground = 2.5 * np.convolve(noise, np.hanning(40) / np.sqrt(40), "same")
+    rows = []
+    for model in build_models(structure, ("nonlinear", "linear2")):
+        for n in (1_000, 10_000, 100_000, 1_000_000):
+            one = Prepared(model, GroundMotion("noise", 0.01, ground[:n]))
+            spent = seconds(one.run, max(3, 200_000 // n))
+            impacts, rocking = one.marks[0, at.IMPACTS], np.mean(one.out["phi"] != 0)
+            row = [
+                model.name,
+                f"{n:,}",
+                f"{1e9 * spent / n:.0f}",
+                f"{1e3 * impacts / n:.0f}",
+                f"{rocking:.0%}",
+            ]
+            rows.append(row)
+    table("Cost of a sample", ["model", "samples", "ns a sample", "impacts in 1000", "rocking"], rows)
+
+
+def start_up() -> None:
+    """Processes from launch to their first history, with an empty and with a filled cache."""
+    script = (
+        "from rocking_cli import GroundMotion, load_structure, respond; import sys;"
+        "respond(load_structure(sys.argv[1]), GroundMotion('x', 0.01, [0.0, 3.0, 0.0]), models=('nonlinear',))"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
+
+        def launch(*arguments: str) -> float:
+            start = time.perf_counter()
+            subprocess.run([sys.executable, *arguments], check=True, env=environment, capture_output=True)
+            return time.perf_counter() - start
+
+        block = str(PROJECT / "examples" / "block.yaml")
+        first = launch("-c", script, block)
+        command = "from rocking_cli.cli.main import main; main()"
+        processes = {
+            "python": ("-c", "pass"),
+            "import numpy": ("-c", "import numpy"),
+            "import numba": ("-c", "import numba"),
+            "a history": ("-c", script, block),
+            "rocking respond": ("-c", command, "respond", block, "--record", str(ACCEL), "--json"),
+        }
+        rows = [["a history, first on the machine", f"{first:.2f}"]]
+        rows += [[name, f"{median(launch(*each) for _ in range(9)):.2f}"] for name, each in processes.items()]
+    table("From launch to the end of the process, the kernel in the cache", ["process", "s"], rows)
 
 
 def main() -> None:
-    motion = read_record(sys.argv[1] if len(sys.argv) > 1 else EXAMPLES / "accel.csv")
-    print(f"{motion.name}: {motion.npts} points, dt = {motion.dt:g} s; medians, warm")
-    print(f"{'structure':<10} {'scale':>5} {'model':<10} {'ms':>8} {'ns/sample':>10} {'solve_ivp/kernel':>17}")
-    for name, scale in ((name, scale) for name, scales in SCALES.items() for scale in scales):
-        mechanism, shaken = load_structure(EXAMPLES / f"{name}.yaml"), motion.scaled(scale)
-        equivalence = equivalent_block(mechanism)
-        for model in build_models(mechanism, MODELS):
-            work = partial(follow, model, shaken, tail=0.0)
-            fast, ratio = median_time(work), ""
-            if name == "block" and model.name == "nonlinear":
-                run = work()
-                slow = partial(by_solve_ivp, equivalence.positive, shaken, run.uplift_time, run.impacts[0, 1])
-                ratio = f"{median_time(slow, 1) / fast:17.0f}"
-            print(
-                f"{name:<10} {scale:5.2g} {model.name:<10} {fast * 1e3:8.3f} {fast / motion.npts * 1e9:10.0f} {ratio}"
-            )
+    motion = read_record(sys.argv[1] if len(sys.argv) > 1 else ACCEL)
+    structures = {
+        "block": Registry()["block"](width=0.7, height=2.8),
+        "frame": load_structure(PROJECT / "examples" / "frame.yaml"),
+    }
+    models = {name: build_models(structure) for name, structure in structures.items()}
+    against_solvers(motion, models)
+    tolerance(models)
+    batches(motion, models)
+    length()
+    against_pybullet(motion, models)
+    start_up()
 
 
 if __name__ == "__main__":

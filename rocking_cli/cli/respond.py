@@ -82,7 +82,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 @click.option(
     "--rtol",
     type=options.Finite(positive=True),
-    default=1e-10,
+    default=1e-9,
     show_default=True,
     metavar="TOLERANCE",
     callback=_rtol,

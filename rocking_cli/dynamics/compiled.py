@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -25,8 +26,24 @@ def cache_folder() -> Path:
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": False, "error_model": "numpy"}
 
 
+def _start_numba() -> None:
+    """Load numba without scipy.linalg, which it asks for only to see whether there is a BLAS: a tenth of a second.
+
+    No kernel calls a BLAS; other code of numba that does still finds it, but for one-dimensional inner products, which
+    numba then sums itself. Where other threads may want scipy.linalg at this moment it is left alone.
+    """
+    if "numba.np.arraymath" in sys.modules or "scipy.linalg" in sys.modules or threading.active_count() > 1:
+        return
+    sys.modules["scipy.linalg"] = None  # type: ignore[assignment]
+    try:
+        import numba.np.arraymath  # noqa: F401
+    finally:
+        del sys.modules["scipy.linalg"]
+
+
 def compile_inline(function: Callable[..., Any]) -> Any:
     """`function`, set by the compiler into each place of a kernel that calls it: a call costs more than a few sums."""
+    _start_numba()
     from numba import njit
 
     return njit(forceinline=True, **OPTIONS)(function)
@@ -34,6 +51,7 @@ def compile_inline(function: Callable[..., Any]) -> Any:
 
 def compile_kernel(function: Callable[..., Any]) -> Any:
     """`function` compiled by numba at its first call, and kept on disk where that is possible."""
+    _start_numba()
     import numba
     from numba import njit
 

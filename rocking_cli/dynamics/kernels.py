@@ -216,7 +216,7 @@ def locate(forces, law, ground, tau, state, low, high, guess, sought, level, fal
     """
     q, w, f = state
     h = guess if low < guess < high else (low + high) / 2
-    close = 1e-8 if sought == HEIGHT else 1e-5  # Newton's next error is then below rounding; near a turn q stands still
+    close = 1e-8 if sought == HEIGHT else 1e-4  # what then is missing is below rounding: near a turn q stands still
     for _ in range(200):
         (q, w, f), _, _ = advance(forces, law, ground, tau, state, h)
         value = f if sought == BALANCE else w if sought == TURN else q - level
@@ -367,7 +367,7 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
         q, w, f = state
         size = left if law.exact else min(left, h)
         if q == 0 and f < 0 and w > 0:  # a hop: it lands after 2 w/-f or so
-            size = min(size, -2.5 * w / f)
+            size = min(size, -2.05 * w / f)
         whole = size == left
         ended, e_q, e_w = advance(forces, law, ground, tau, state, size)
         error = misses(law, rtol, state, ended, e_q, e_w)
