@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from importlib.metadata import EntryPoint, entry_points
 
 from rocking_cli.errors import MechanismError
@@ -43,3 +44,9 @@ def load(point: EntryPoint) -> object:
     except Exception as error:  # a plugin may fail in any way; the user needs to know whose it is
         raise MechanismError(f"{origin(point)} cannot be loaded: {type(error).__name__}: {error}") from error
     return loaded
+
+
+def did_you_mean(word: str, known: list[str]) -> str | None:
+    """A hint with the known word nearest to a mistyped one, or the list of all."""
+    close = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
+    return f"did you mean {close[0]}?" if close else f"known: {', '.join(sorted(known))}" if known else None

@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from difflib import get_close_matches
 from importlib.metadata import EntryPoint
 from typing import cast
 
 from rocking_cli import plugins
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.plugins import did_you_mean
 
 GROUP = "rocking.mechanisms"
-
-
-def did_you_mean(word: str, known: list[str]) -> str | None:
-    """A hint with the known word nearest to a mistyped one, or the list of all."""
-    close = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
-    return f"did you mean {close[0]}?" if close else f"known: {', '.join(sorted(known))}" if known else None
 
 
 class UnknownMechanismError(InputError, KeyError):

@@ -15,7 +15,8 @@ from pydantic_core import ErrorDetails
 
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.registry import Registry, did_you_mean
+from rocking_cli.plugins import did_you_mean
+from rocking_cli.registry import Registry
 
 LARGEST = 1_000_000  # bytes; a structure takes a few hundred
 DEEPEST = 20  # nesting

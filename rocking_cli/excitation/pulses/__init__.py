@@ -1,0 +1,97 @@
+"""Pulses: the shapes that are installed, found through the entry points `rocking.pulses`, and their specifications."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+
+from rocking_cli import plugins
+from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.excitation.pulses.base import Pulse, Segment
+from rocking_cli.excitation.records.units import UNITS
+from rocking_cli.plugins import did_you_mean
+
+__all__ = ["Pulse", "PulseShapes", "Segment", "parse_pulse"]
+
+GROUP = "rocking.pulses"
+_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?", re.ASCII)
+_TIMES = {"s": 1.0, "ms": 1e-3}
+
+
+class PulseShapes(Mapping[str, type[Pulse]]):
+    """Pulse shapes by name. Listing names loads nothing; looking one up loads it.
+
+    Raises
+    ------
+    InputError
+        On looking up an unknown name.
+    MechanismError
+        On looking up a plugin that cannot be loaded, is no pulse shape, or has a name that two packages claim.
+    """
+
+    def __init__(self) -> None:
+        self._points = plugins.find(GROUP)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(sorted(self._points))
+
+    def __len__(self) -> int:
+        return len(self._points)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._points
+
+    def __getitem__(self, name: str) -> type[Pulse]:
+        if name not in self._points:
+            hint = did_you_mean(name, list(self._points))
+            raise InputError(f"unknown pulse: {name}" + (f" ({hint})" if hint else ""))
+        point = plugins.only("pulse", name, self._points[name])
+        shape = plugins.load(point)
+        if not (isinstance(shape, type) and issubclass(shape, Pulse)) or shape.__abstractmethods__:
+            raise MechanismError(
+                f"{plugins.origin(point)} is no pulse shape: it must derive from Pulse and be complete"
+            )
+        return shape
+
+
+def parse_pulse(text: str) -> Pulse:
+    """Read a specification such as `sine:0.6g:0.8s`.
+
+    Parameters
+    ----------
+    text : str
+        Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2 or gal), period with its unit (s or ms; a frequency in Hz
+        will do), and what the shape takes besides: for `mavroeidis` the phase in deg and the number of cycles.
+
+    Raises
+    ------
+    InputError
+        If the shape is unknown, a number or a unit is missing or out of range; it gives the expected form.
+    """
+    name, *words = (word.strip() for word in text.split(":"))
+    shape = PulseShapes()[name]
+    further = fields(shape)[2:]
+    form = f"expected {name}:{shape.form}, such as {name}:0.6g:0.8s"
+    if not 2 <= len(words) <= 2 + len(further):
+        raise InputError(f"malformed pulse '{text}': {form}")
+    amplitude, unit = _quantity(text, words[0], "amplitude", form, tuple(UNITS))
+    period, time = _quantity(text, words[1], "period", form, (*_TIMES, "Hz"))
+    if time == "Hz" and period == 0:
+        raise InputError(f"pulse '{text}': a frequency of zero is no pulse")
+    seconds = 1 / period if time == "Hz" else period * _TIMES[time]
+    rest = {}
+    for field, word in zip(further, words[2:], strict=False):
+        rest[field.name], _ = _quantity(text, word.removesuffix("deg"), field.name, form, ("",))
+    return shape(amplitude * UNITS[unit], seconds, **rest)
+
+
+def _quantity(text: str, word: str, what: str, form: str, units: tuple[str, ...]) -> tuple[float, str]:
+    match = _QUANTITY.fullmatch(word)
+    if match is None:
+        raise InputError(f"pulse '{text}': '{word}' is no {what}: {form}")
+    unit = next((each for each in units if each.lower() == (match[2] or "").strip().lower()), None)
+    if unit is None:
+        found = f"has the unknown unit '{match[2].strip()}'" if match[2] else "has no unit"
+        raise InputError(f"pulse '{text}': the {what} {found}, give one of {', '.join(filter(None, units))}: {form}")
+    return float(match[1]), unit

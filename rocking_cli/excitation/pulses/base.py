@@ -1,0 +1,117 @@
+"""What a pulse is: a shape over time, an amplitude and a period."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from math import isfinite
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+
+Reals = NDArray[np.float64]
+SAMPLES = 400  # to a period of the sampled motion: chords of a sine are then off by 3e-5 of its amplitude
+
+
+class Segment(NamedTuple):
+    """A piece of a pulse that is a sine, or a constant if omega is zero: a = amplitude sin(omega (t - start) + phase).
+
+    Parameters
+    ----------
+    start, stop : float
+        When [s], from the start of the pulse.
+    amplitude : float
+        [m/s2].
+    omega : float
+        [rad/s].
+    phase : float
+        [rad].
+    """
+
+    start: float
+    stop: float
+    amplitude: float
+    omega: float
+    phase: float
+
+
+@dataclass(frozen=True)
+class Pulse(ABC):
+    """A pulse of the ground acceleration, positive to the right at first or at its peak.
+
+    A shape is a subclass, found by its entry point in `rocking.pulses`, that gives `span` and `shape`, and `segments`
+    if it is made of sines and constants. Parameters beyond amplitude and period are further fields with defaults.
+
+    Parameters
+    ----------
+    amplitude : float
+        Largest acceleration of the pulse [m/s2], > 0.
+    period : float
+        [s], > 0.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive and finite.
+    """
+
+    amplitude: float
+    period: float
+
+    name: ClassVar[str]
+    """What it is called in a specification such as `sine:0.6g:0.8s`."""
+    title: ClassVar[str]
+    """What it is, in a few words."""
+    form: ClassVar[str] = "AMPLITUDE:PERIOD"
+    """What follows the name in a specification."""
+    source: ClassVar[str] = ""
+    """Where it comes from."""
+
+    def __post_init__(self) -> None:
+        for what in ("amplitude", "period"):
+            value = getattr(self, what)
+            if not (isfinite(value) and value > 0):
+                raise InputError(f"{self.name} pulse: the {what} must be positive, got {value:g}")
+
+    @property
+    @abstractmethod
+    def span(self) -> float:
+        """How many periods it lasts."""
+
+    @abstractmethod
+    def shape(self, x: Reals) -> Reals:
+        """Acceleration over its amplitude at times x in [0, span] in periods; 1 in size at its largest."""
+
+    def segments(self) -> tuple[Segment, ...]:
+        """The pieces it is made of, one after the other; empty if it is no chain of sines and constants."""
+        return ()
+
+    @property
+    def duration(self) -> float:
+        """How long it lasts [s]."""
+        return self.span * self.period
+
+    def acceleration(self, t: Reals) -> Reals:
+        """Ground acceleration [m/s2] at times t [s], any shape; zero outside of [0, duration]."""
+        x = np.asarray(t, dtype=np.float64) / self.period
+        inside = (x >= 0) & (x <= self.span)
+        return self.amplitude * np.where(inside, self.shape(np.clip(x, 0.0, self.span)), 0.0)
+
+    def sampled(self, per_period: int = SAMPLES) -> GroundMotion:
+        """The pulse as a ground motion with straight lines between samples, zero after the last.
+
+        Parameters
+        ----------
+        per_period : int
+            Samples to a period, made a few more if the pulse would not end on one.
+        """
+        steps = int(np.ceil(self.span * per_period - 1e-9))
+        x = np.linspace(0.0, self.span, steps + 1)
+        return GroundMotion(str(self), self.duration / steps, self.amplitude * self.shape(x), "m/s2", "pulse")
+
+    def __str__(self) -> str:
+        return f"{self.name}:{self.amplitude / STANDARD_GRAVITY:.6g}g:{self.period:.6g}s"

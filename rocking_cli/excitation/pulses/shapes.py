@@ -1,0 +1,169 @@
+"""The pulse shapes of the literature on rocking."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite, pi
+from typing import ClassVar
+
+import numpy as np
+
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.pulses.base import Pulse, Reals, Segment
+
+
+class Sine(Pulse):
+    """One full cycle of a sine."""
+
+    name = "sine"
+    title = "full sine"
+    source = "DeJong and Dimitrakopoulos (2014), Eq. 40; Zhang and Makris (2001), type A"
+    span = 1.0
+
+    def shape(self, x: Reals) -> Reals:
+        """See `Pulse.shape`."""
+        return np.sin(2 * pi * x)
+
+    def segments(self) -> tuple[Segment, ...]:
+        """See `Pulse.segments`."""
+        return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, 0.0),)
+
+
+class Cosine(Pulse):
+    """One full cycle of a cosine: it begins and ends at its peak."""
+
+    name = "cosine"
+    title = "full cosine"
+    source = "Zhang and Makris (2001), type B"
+    span = 1.0
+
+    def shape(self, x: Reals) -> Reals:
+        """See `Pulse.shape`."""
+        return np.cos(2 * pi * x)
+
+    def segments(self) -> tuple[Segment, ...]:
+        """See `Pulse.segments`."""
+        return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, pi / 2),)
+
+
+class HalfSine(Pulse):
+    """The first half of a sine of the given period: it lasts half of it."""
+
+    name = "half_sine"
+    title = "half sine, of half the period"
+    source = "Housner (1963)"
+    span = 0.5
+
+    def shape(self, x: Reals) -> Reals:
+        """See `Pulse.shape`."""
+        return np.sin(2 * pi * x)
+
+    def segments(self) -> tuple[Segment, ...]:
+        """See `Pulse.segments`."""
+        return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, 0.0),)
+
+
+class Rectangular(Pulse):
+    """A constant acceleration: its period is what it lasts."""
+
+    name = "rectangular"
+    title = "constant, for one period"
+    source = "Housner (1963)"
+    span = 1.0
+
+    def shape(self, x: Reals) -> Reals:
+        """See `Pulse.shape`."""
+        return np.ones_like(x)
+
+    def segments(self) -> tuple[Segment, ...]:
+        """See `Pulse.segments`."""
+        return (Segment(0.0, self.duration, self.amplitude, 0.0, pi / 2),)
+
+
+class Ricker(Pulse):
+    """The symmetric Ricker wavelet, second derivative of a Gaussian, where it is above 1e-5 of its peak."""
+
+    name = "ricker"
+    title = "symmetric Ricker wavelet"
+    source = "Ricker (1943); Vassiliou and Makris (2011)"
+    span = 2.6
+
+    def shape(self, x: Reals) -> Reals:
+        """See `Pulse.shape`."""
+        z = 2 * pi**2 * (x - self.span / 2) ** 2
+        curve: Reals = (1 - z) * np.exp(-z / 2)
+        return curve
+
+
+class AntisymmetricRicker(Pulse):
+    """The antisymmetric Ricker wavelet, third derivative of a Gaussian, where it is above 1e-5 of its peak."""
+
+    name = "ricker_antisymmetric"
+    title = "antisymmetric Ricker wavelet"
+    source = "Vassiliou and Makris (2011)"
+    span = 3.6
+    PEAK: ClassVar[float] = float(np.sqrt(3 - np.sqrt(6)) * np.sqrt(6) * np.exp(-(3 - np.sqrt(6)) / 2))  # 1.38
+
+    def shape(self, x: Reals) -> Reals:
+        """See `Pulse.shape`."""
+        z = 2 * pi / np.sqrt(3) * (x - self.span / 2)
+        curve: Reals = (3 - z**2) * z * np.exp(-(z**2) / 2) / self.PEAK
+        return curve
+
+
+@dataclass(frozen=True)
+class MavroeidisPapageorgiou(Pulse):
+    """A cosine of the velocity under a bell: near-fault pulses of one to a few cycles.
+
+    Parameters
+    ----------
+    phase : float
+        [deg]: 0 gives a velocity symmetric about the middle, 90 an antisymmetric one.
+    cycles : float
+        Length of the bell in periods, gamma > 1 in the source.
+    """
+
+    phase: float = 0.0
+    cycles: float = 2.0
+
+    name = "mavroeidis"
+    title = "Mavroeidis and Papageorgiou's near-fault pulse"
+    form = "AMPLITUDE:PERIOD[:PHASE:CYCLES], such as mavroeidis:0.6g:0.8s:90deg:2"
+    source = "Mavroeidis and Papageorgiou (2003), Eq. 3"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not isfinite(self.phase):
+            raise InputError(f"{self.name} pulse: the phase must be a number of degrees, got {self.phase:g}")
+        if not 1 < self.cycles <= 20:
+            raise InputError(
+                f"{self.name} pulse: the number of cycles must be above 1 and at most 20, got {self.cycles:g}"
+            )
+
+    @property
+    def span(self) -> float:
+        """See `Pulse.span`."""
+        return self.cycles
+
+    def shape(self, x: Reals) -> Reals:
+        """See `Pulse.shape`."""
+        return self._raw(x) / self._peak
+
+    def _raw(self, x: Reals) -> Reals:
+        """The acceleration over pi A/T, A the amplitude of the velocity."""
+        z, nu, gamma = 2 * pi * (x - self.span / 2), np.radians(self.phase), self.cycles
+        bell = z / gamma
+        curve: Reals = -(np.sin(bell) * np.cos(z + nu) + gamma * np.sin(z + nu) * (1 + np.cos(bell))) / gamma
+        return curve
+
+    @cached_property
+    def _peak(self) -> float:
+        """Largest size of the raw shape, sought on a fine grid and made exact by a parabola through its best points."""
+        y = np.abs(self._raw(np.linspace(0.0, self.span, 20_001)))
+        k = min(max(int(y.argmax()), 1), y.size - 2)
+        a, b, c = y[k - 1 : k + 2].tolist()
+        return float(b + (a - c) ** 2 / (8 * (2 * b - a - c)))
+
+    def __str__(self) -> str:
+        return f"{super().__str__()}:{self.phase:.6g}deg:{self.cycles:.6g}"
