@@ -1,0 +1,1 @@
+"""Questions asked of many histories or of a mechanism over a range; they know nothing of terminals."""

@@ -1,0 +1,217 @@
+"""How far the equivalent block is from the mechanism it stands for: the paper's three measures, for any structure.
+
+Free rocking period (Eq. 24), uplift acceleration, and overturning time under a constant acceleration (Eq. 25), each as
+the ratio of the equivalent block's value to the mechanism's. The mechanism's times are integrals of its energy
+equation, in the variable in which the equivalent block's own integrand is constant: what is left to integrate is
+smooth, up to phi_cr and down to the uplift acceleration, and Gauss's rule converges fast on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking_cli.core import Direction, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.errors import InputError, SolverError
+
+Reals = NDArray[np.float64]
+PRECISION = 1e-10  # relative change at which doubling the nodes stops
+FEWEST, MOST = 16, 512  # nodes along the motion
+INNER = 20  # nodes of the energy between two rotations
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """The equivalent block over the mechanism in one direction; a ratio of 1 is no error.
+
+    Parameters
+    ----------
+    direction : Direction
+        Of rocking.
+    block : EquivalentBlock
+        Its equivalent block.
+    amplitude : ndarray, shape (n,)
+        phi/phi_cr of the free motion.
+    period, period_ratio : ndarray, shape (n,)
+        Period of the mechanism [s], four times its quarter in this direction, and the block's over it [Eq. 24].
+    uplift_ratio1, uplift_ratio2 : float
+        Uplift acceleration with kappa1 and kappa2 over the mechanism's; the second is 1.
+    acceleration : ndarray, shape (m,)
+        Constant acceleration over the uplift acceleration of the mechanism, a/lambda.
+    overturning : ndarray, shape (m,)
+        Time from rest to phi_cr [s].
+    overturning_ratio1, overturning_ratio2 : ndarray, shape (m,)
+        The block's time with kappa1 and kappa2 over it [Eq. 25]; infinite where the block does not uplift.
+    """
+
+    direction: Direction
+    block: EquivalentBlock
+    amplitude: Reals
+    period: Reals
+    period_ratio: Reals
+    uplift_ratio1: float
+    uplift_ratio2: float
+    acceleration: Reals
+    overturning: Reals
+    overturning_ratio1: Reals
+    overturning_ratio2: Reals
+
+
+def linearisation(
+    mechanism: Mechanism, direction: Direction, amplitude: ArrayLike = (), acceleration: ArrayLike = ()
+) -> Linearisation:
+    """Compare a mechanism with its equivalent block in one direction.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    direction : Direction
+        Of rocking.
+    amplitude : array of float
+        phi/phi_cr of free motions, in (0, 1).
+    acceleration : array of float
+        Constant accelerations over the uplift acceleration, above 1.
+
+    Returns
+    -------
+    Linearisation
+
+    Raises
+    ------
+    InputError
+        If an amplitude or an acceleration is out of range.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If an integral does not converge, or the mechanism does not overturn under an acceleration.
+    """
+    r, rho = np.atleast_1d(np.asarray(amplitude, float)), np.atleast_1d(np.asarray(acceleration, float))
+    inside, beyond = (r > 0) & (r < 1), (rho > 1) & np.isfinite(rho)
+    if not inside.all():
+        raise InputError(f"an amplitude must be a fraction of phi_cr between 0 and 1, got {r[~inside][0]:g}")
+    if not beyond.all():
+        raise InputError(
+            f"an acceleration must be above 1 times that of uplift to move anything, got {rho[~beyond][0]:g}"
+        )
+    block = equivalent_block(mechanism)[direction]
+    period, time = free_period(mechanism, direction, r), overturning_time(mechanism, direction, rho)
+    lin = block.lambda_lin / block.lambda_
+    with np.errstate(divide="ignore", invalid="ignore"):
+        excess = np.where(rho > lin, rho / lin - 1, np.nan)
+        with_kappa1 = np.where(rho > lin, np.arccosh(1 + 1 / excess) / block.p, np.inf)  # Eq. 25
+    return Linearisation(
+        direction=direction,
+        block=block,
+        amplitude=r,
+        period=period,
+        period_ratio=4 / block.p * np.arccosh(1 / (1 - r)) / period,  # Eq. 24
+        uplift_ratio1=lin,
+        uplift_ratio2=block.theta_cr2 / block.lambda_,
+        acceleration=rho,
+        overturning=time,
+        overturning_ratio1=with_kappa1 / time,
+        overturning_ratio2=np.arccosh(1 + 1 / (rho - 1)) / block.p / time,  # Eq. 25 with lambda
+    )
+
+
+def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) -> Reals:
+    """Period of free rocking without losses [s]: four times the quarter from an amplitude to rest at phi = 0.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    direction : Direction
+        The direction of the quarter.
+    amplitude : ndarray, shape (n,)
+        phi/phi_cr, in (0, 1).
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    critical = mechanism.critical_rotation(direction)
+    short = critical * (1 - amplitude[:, None])
+
+    def slowness(u: Reals) -> Reals:
+        # phi_cr - phi = (phi_cr - phi_0) cosh u: the equivalent block has u = p t.
+        fallen = np.minimum(2 * short * np.sinh(u / 2) ** 2, critical * amplitude[:, None])
+        top = critical - short
+        fall = fallen * _mean(mechanism, direction, top - fallen, top, 0.0)
+        inertia = _coefficients(mechanism, direction, top - fallen, "I")
+        slow: Reals = np.sqrt(inertia / (2 * mechanism.gravity * fall)) * short * np.sinh(u)
+        return slow
+
+    return 4 * _integral(slowness, np.arccosh(1 / (1 - amplitude)))
+
+
+def overturning_time(mechanism: Mechanism, direction: Direction, acceleration: Reals) -> Reals:
+    """Time from rest to phi_cr under a constant acceleration [s].
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    direction : Direction
+        Of rocking.
+    acceleration : ndarray, shape (m,)
+        Over the uplift acceleration, above 1.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+
+    Raises
+    ------
+    SolverError
+        If the mechanism does not reach phi_cr under it.
+    """
+    critical = mechanism.critical_rotation(direction)
+    excess = acceleration[:, None] - 1
+    push = acceleration[:, None] * equivalent_block(mechanism)[direction].lambda_
+
+    def slowness(u: Reals) -> Reals:
+        # phi = phi_cr (a/lambda - 1)(cosh u - 1): the equivalent block has u = p t.
+        phi = np.minimum(2 * critical * excess * np.sinh(u / 2) ** 2, critical)
+        gain = -phi * _mean(mechanism, direction, np.zeros_like(phi), phi, push)
+        if not (gain > 0).all():
+            stuck = acceleration[~(gain > 0).all(axis=1)]
+            raise SolverError(
+                f"under {stuck[0]:.4g} times its uplift acceleration the mechanism does not overturn from rest"
+            )
+        inertia = _coefficients(mechanism, direction, phi, "I")
+        slow: Reals = np.sqrt(inertia / (2 * mechanism.gravity * gain)) * critical * excess * np.sinh(u)
+        return slow
+
+    return _integral(slowness, np.arccosh(1 + 1 / (acceleration - 1)))
+
+
+def _mean(mechanism: Mechanism, direction: Direction, low: Reals, high: Reals, push: Reals | float) -> Reals:
+    """Mean of G - push B between two rotations, without the cancellation of a difference of potentials."""
+    x, weight = np.polynomial.legendre.leggauss(INNER)
+    phi = low[..., None] + (high - low)[..., None] * (1 + x) / 2
+    G, B = (_coefficients(mechanism, direction, phi, name) for name in ("G", "B"))
+    mean: Reals = (G - np.asarray(push)[..., None] * B) @ (weight / 2)
+    return mean
+
+
+def _coefficients(mechanism: Mechanism, direction: Direction, phi: Reals, name: str) -> Reals:
+    """A coefficient of Eq. 8 at rotations of any shape."""
+    values: Reals = getattr(mechanism.coefficients(phi.ravel(), direction), name)
+    return values.reshape(phi.shape)
+
+
+def _integral(integrand, until: Reals) -> Reals:  # type: ignore[no-untyped-def]
+    """Integrals of f(u) from 0 to each `until`, by Gauss's rule with more and more nodes."""
+    before = np.full_like(until, np.nan)
+    nodes = FEWEST
+    while nodes <= MOST:
+        x, weight = np.polynomial.legendre.leggauss(nodes)
+        found: Reals = until / 2 * (integrand(until[:, None] * (1 + x) / 2) @ weight)
+        if (np.abs(found - before) <= PRECISION * np.abs(found)).all():
+            return found
+        before, nodes = found, 2 * nodes
+    raise SolverError("the integral of the energy equation does not converge: is the mechanism smooth up to phi_cr?")

@@ -1,0 +1,228 @@
+"""The error of the equivalent block: its integrals against motions, and against the trends the paper reports."""
+
+from __future__ import annotations
+
+import json
+from math import cos, sin, tan
+
+import numpy as np
+import pytest
+from mpmath import mp
+
+from mechanisms.arch import Arch
+from mechanisms.asymmetric_frame import AsymmetricFrame
+from mechanisms.block import Block
+from mechanisms.wall import Wall
+from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.dynamics.history import respond
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import load_structure
+from rocking_cli.studies.linearisation import linearisation
+from rocking_cli.studies.trust import trust
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+FILES = sorted(path.name for path in EXAMPLES.glob("*.yaml"))
+every_direction = pytest.mark.parametrize("direction", list(Direction))
+
+
+def wall_of(alpha):
+    return Wall(thickness=2 * sin(alpha), height=4 * cos(alpha))
+
+
+def frame_of(right):
+    return AsymmetricFrame(
+        column_width=1.6, left_height=8.0, right_height=right, spacing=10.0, beam_depth=1.5, density=2500.0, depth=2.0
+    )
+
+
+def arch_of(thickness, angle):
+    return Arch(radius=10.0, thickness=thickness, inclusion_angle_deg=angle)
+
+
+# --- the integrals
+
+
+@every_direction
+@pytest.mark.parametrize("file", FILES)
+def test_periods_are_those_of_the_integrated_motion(file, direction):
+    mechanism = load_structure(EXAMPLES / file)
+    amplitudes = (0.001, 0.1, 0.5, 0.9, 0.99)
+    found = linearisation(mechanism, direction, amplitudes)
+    for r, period in zip(amplitudes, found.period, strict=True):
+        motion = respond(mechanism, release=direction * r, models=("nonlinear",), rtol=1e-12)["nonlinear"]
+        assert period == pytest.approx(4 * motion.impacts[0, 0], rel=2e-9)
+
+
+@every_direction
+@pytest.mark.parametrize("file", FILES)
+def test_overturning_times_are_those_of_the_integrated_motion(file, direction):
+    mechanism = load_structure(EXAMPLES / file)
+    block = equivalent_block(mechanism)[direction]
+    accelerations = (1.01, 1.5, 4.0, 20.0)
+    found = linearisation(mechanism, direction, acceleration=accelerations)
+    for a, time in zip(accelerations, found.overturning, strict=True):
+        push = np.full(3000, -direction * a * block.lambda_ * mechanism.gravity)
+        motion = GroundMotion("constant", 0.005 / block.p, push)
+        history = respond(mechanism, motion, models=("nonlinear",), rtol=1e-12)["nonlinear"]
+        assert history.overturning_time == pytest.approx(time, rel=2e-9)
+
+
+@pytest.mark.parametrize("r", [1e-6, 0.3, 0.9, 0.9999])
+def test_the_period_of_a_block_is_an_elliptic_integral(r):
+    # theta.^2/2 = p^2 (cos(alpha - theta) - cos(alpha - theta_0)), by mpmath's own quadrature of the pendulum's form.
+    block = Block(width=0.7, height=2.8)
+    mp.dps = 30
+    alpha = mp.atan(mp.mpf(7) / 28)
+    p = mp.sqrt(3 * mp.mpf("9.80665") / (4 * mp.sqrt(mp.mpf("0.35") ** 2 + mp.mpf("1.4") ** 2)))
+    rest = alpha * (1 - mp.mpf(r))  # psi = alpha - theta, from rest to alpha
+    k = mp.cos(rest / 2) ** 2  # psi.^2 = 4 p^2 (sin^2(psi/2) - sin^2(rest/2)); cos(psi/2) = cos(rest/2) sin(w)
+    w = mp.asin(mp.cos(alpha / 2) / mp.cos(rest / 2))
+    quarter = (mp.ellipk(k) - mp.ellipf(w, k)) / p
+    found = linearisation(block, Direction.POSITIVE, r)
+    assert found.period[0] == pytest.approx(float(4 * quarter), rel=1e-9)
+    assert found.period_ratio[0] == pytest.approx(float(mp.acosh(1 / (1 - mp.mpf(r))) / p / quarter), rel=1e-9)
+
+
+def test_ratios_are_those_of_equations_24_and_25():
+    mechanism = load_structure(EXAMPLES / "arch.yaml")
+    block = equivalent_block(mechanism).positive
+    found = linearisation(mechanism, Direction.POSITIVE, 0.4, (1.2, 3.0))
+    assert found.period_ratio[0] * found.period[0] == pytest.approx(4 / block.p * float(mp.acosh(1 / 0.6)), rel=1e-12)
+    for k, a in enumerate((1.2, 3.0)):
+        one = float(mp.acosh(1 + 1 / (a * block.lambda_ / block.lambda_lin - 1))) / block.p
+        two = float(mp.acosh(1 + 1 / (a - 1))) / block.p
+        assert found.overturning_ratio1[k] * found.overturning[k] == pytest.approx(one, rel=1e-12)
+        assert found.overturning_ratio2[k] * found.overturning[k] == pytest.approx(two, rel=1e-12)
+    assert found.uplift_ratio1 == block.lambda_lin / block.lambda_
+    assert found.uplift_ratio2 == pytest.approx(1, rel=1e-14)
+
+
+def test_a_block_that_does_not_uplift_never_overturns():
+    # A thick beam on columns of very different height: lambda_lin above lambda, and between them kappa1 keeps it at rest.
+    mechanism = AsymmetricFrame(
+        column_width=2.2, left_height=2.9, right_height=5.8, spacing=3.8, beam_depth=6.0, density=2500.0, depth=1.0
+    )
+    ratio = linearisation(mechanism, Direction.POSITIVE).uplift_ratio1
+    assert ratio > 1.1
+    found = linearisation(mechanism, Direction.POSITIVE, acceleration=((1 + ratio) / 2, 1.01 * ratio))
+    assert np.isinf(found.overturning_ratio1).tolist() == [True, False]
+    assert np.isfinite(found.overturning_ratio2).all()
+
+
+# --- the trends of the paper's text
+
+
+@pytest.mark.parametrize("alpha", [0.05, 0.1, 0.15, 0.2])
+def test_errors_are_small_for_slender_walls_and_the_period_s_least_near_phi_cr(alpha):
+    found = linearisation(wall_of(alpha), Direction.POSITIVE, np.linspace(0.05, 0.99, 20), (1.5, 2.0, 5.0, 10.0))
+    error = np.abs(found.period_ratio - 1)
+    assert error.max() < 0.06
+    assert (np.diff(error) < 0).all()
+    assert np.abs(found.overturning_ratio2 - 1).max() < 0.05
+    assert np.abs(found.overturning_ratio1 - 1).max() < 0.06
+    assert found.uplift_ratio1 == pytest.approx(alpha / tan(alpha), rel=1e-12)
+
+
+def test_kappa1_and_kappa2_differ_most_near_uplift():
+    found = linearisation(wall_of(0.3), Direction.POSITIVE, acceleration=np.geomspace(1.02, 20, 12))
+    assert (np.diff(np.abs(found.overturning_ratio1 - found.overturning_ratio2)) < 0).all()
+
+
+@pytest.mark.parametrize("angle", [120.0, 157.5])
+@pytest.mark.parametrize("thickness", [1.5, 2.0])
+def test_kappa2_is_far_better_than_kappa1_for_arches(thickness, angle):
+    found = linearisation(arch_of(thickness, angle), Direction.POSITIVE, acceleration=(1.2, 1.5, 2.0, 5.0))
+    one, two = (np.abs(ratio - 1) for ratio in (found.overturning_ratio1, found.overturning_ratio2))
+    assert (two < 0.7 * one).all()
+    assert found.uplift_ratio1 < 0.9
+
+
+def test_wider_and_thinner_arches_have_lower_phi_cr_and_lambda_and_much_the_same_p():
+    by_angle = [equivalent_block(arch_of(1.5, angle)).positive for angle in (90.0, 120.0, 150.0)]
+    by_thickness = [equivalent_block(arch_of(t, 150.0)).positive for t in (2.0, 1.6, 1.2)]
+    for blocks in (by_angle, by_thickness):
+        values = {name: np.array([getattr(block, name) for block in blocks]) for name in ("phi_cr", "lambda_", "p")}
+        assert (np.diff(values["phi_cr"]) < 0).all()
+        assert (np.diff(values["lambda_"]) < 0).all()
+        spread = {name: each.max() / each.min() for name, each in values.items()}
+        assert spread["p"] < min(spread["phi_cr"], spread["lambda_"])
+
+
+def test_the_directions_of_a_frame_differ_more_the_more_asymmetric_it_is():
+    apart = []
+    for ratio in (1.0, 1.1, 1.25, 1.5):
+        equivalence = equivalent_block(frame_of(8.0 * ratio))
+        apart.append(abs(equivalence.positive.lambda_ / equivalence.negative.lambda_ - 1))
+    assert apart[0] < 1e-12
+    assert (np.diff(apart) > 0).all()
+
+
+# --- the command
+
+
+def test_the_command_gives_what_the_library_gives():
+    data = run_json("error", EXAMPLES / "frame.yaml", "--at", "0.3", "--at", "0.8", "--accel", "1.5")
+    mechanism = load_structure(EXAMPLES / "frame.yaml")
+    assert set(data["directions"]) == {"positive", "negative"}
+    for direction in Direction:
+        expected = linearisation(mechanism, direction, (0.3, 0.8), 1.5)
+        got = data["directions"][direction.label]
+        assert [row["ratio"] for row in got["free_period"]] == expected.period_ratio.tolist()
+        assert [row["period"] for row in got["free_period"]] == expected.period.tolist()
+        assert got["overturning_time"][0]["ratio"]["kappa2"] == expected.overturning_ratio2[0]
+        assert got["uplift_ratio"]["kappa1"] == expected.uplift_ratio1
+
+
+def test_a_symmetric_structure_has_one_table_and_an_asymmetric_one_two():
+    assert "direction" not in run("error", EXAMPLES / "arch.yaml").stdout
+    text = run("error", EXAMPLES / "frame.yaml").stdout
+    assert "positive direction" in text and "negative direction" in text
+
+
+def test_the_words_follow_the_numbers():
+    assert "serves design" in run_json("error", EXAMPLES / "block.yaml")["verdict"]
+    arch = run_json("error", EXAMPLES / "arch.yaml")["verdict"]
+    assert "prefer kappa2" in arch and "first estimate" in arch and "more than 5%" in arch
+    stocky = arch_of(3.0, 100.0)
+    curves = [linearisation(stocky, Direction.POSITIVE, np.linspace(0.05, 0.95, 9), np.geomspace(1.1, 10, 9))]
+    assert "use the nonlinear history" in trust(curves, [linearisation(stocky, Direction.POSITIVE, 0.1, 1.1)])
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_it_draws(suffix, tmp_path):
+    file = tmp_path / f"error.{suffix}"
+    run("error", EXAMPLES / "frame.yaml", "--plot", file)
+    assert file.stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [("--at", "1", "between 0 and 1"), ("--at", "0", "between 0 and 1"), ("--accel", "1", "above 1"),
+     ("--accel", "-2", "above 1"), ("--at", "x", "not a number"), ("--plot", "x.txt", "does not end")],
+)  # fmt: skip
+def test_wrong_options_are_refused(option, value, words):
+    assert words in run("error", EXAMPLES / "block.yaml", option, value, code=2).stderr
+
+
+def test_wrong_values_are_refused_by_the_library():
+    block = Block(width=0.7, height=2.8)
+    for amplitude in (0.0, 1.0, float("nan")):
+        with pytest.raises(InputError, match="between 0 and 1"):
+            linearisation(block, Direction.POSITIVE, amplitude)
+    for acceleration in (1.0, 0.5, float("inf"), float("nan")):
+        with pytest.raises(InputError, match="above 1"):
+            linearisation(block, Direction.POSITIVE, acceleration=acceleration)
+
+
+def test_a_structure_without_a_critical_rotation_is_refused_by_name(tmp_path):
+    file = tmp_path / "thin.yaml"
+    text = "mechanism: arch\nname: paper arch\nradius: 10\nthickness: 0.3\ninclusion_angle_deg: 180\n"
+    file.write_text(text, encoding="utf-8")
+    result = run("error", file, code=2)
+    assert "thin" in result.stderr
+
+
+def test_the_json_is_one_object():
+    assert json.loads(run("error", EXAMPLES / "arch.yaml", "--json").stdout)["symmetric"] is True
