@@ -100,7 +100,7 @@ def test_ratios_are_those_of_equations_24_and_25():
 
 
 def test_a_block_that_does_not_uplift_never_overturns():
-    # A thick beam on columns of very different height: lambda_lin above lambda, and between them kappa1 keeps it at rest.
+    # A thick beam on unequal columns: lambda_lin is above lambda, and between them kappa1 keeps the block at rest.
     mechanism = AsymmetricFrame(
         column_width=2.2, left_height=2.9, right_height=5.8, spacing=3.8, beam_depth=6.0, density=2500.0, depth=1.0
     )

@@ -1,0 +1,65 @@
+"""Figures of panels with families of curves, told apart in grey by dash and darkness."""
+
+from __future__ import annotations
+
+from textwrap import fill
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import ScalarFormatter
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.paper_figures import PaperFigure
+
+DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
+COLOURS = ("#111111", "#1f77b4", "#e08a00", "#7b4ea3", "#4a8f3c")
+CAPTION = 115  # characters a line
+PANEL = 2.6  # inches high
+FLAT = 0.01  # what differs by less is shown flat
+SPREAD = 0.5  # of 1: ratios beyond are cut off
+
+
+def draw_paper_figure(paper: PaperFigure) -> Figure:
+    """Draw a figure of the paper with its caption below.
+
+    Parameters
+    ----------
+    paper : PaperFigure
+        What to draw.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows, columns = len(paper.panels), len(paper.panels[0])
+    caption = fill(
+        f"Figure {paper.number} of DeJong and Dimitrakopoulos (2014), computed anew. {paper.caption}", CAPTION
+    )
+    figure = style.new_figure(PANEL * rows + 0.5 + 0.14 * (caption.count("\n") + 1))
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for panel, each in zip((p for row in paper.panels for p in row), axes.flat, strict=True):
+        for k, curve in enumerate(panel.curves):
+            each.plot(
+                curve.x, curve.y, label=curve.label, color=COLOURS[k], linestyle=DASHES[k], linewidth=1.6 - 0.15 * k
+            )
+        if panel.log:
+            each.set_xscale("log")
+            each.set_xticks([1, 2, 5, 10])
+            each.xaxis.set_major_formatter(ScalarFormatter())
+            each.minorticks_off()
+        each.ticklabel_format(axis="y", useOffset=False)
+        values = np.concatenate([curve.y[np.isfinite(curve.y)] for curve in panel.curves])
+        if panel.ylabel.startswith(("$T", "$t")):
+            each.axhline(1.0, color=style.FAINT, linewidth=0.6)
+            low, high = max(values.min(), 1 - SPREAD), min(values.max(), 1 + SPREAD)
+            margin = 0.05 * max(high - low, FLAT)
+            each.set_ylim(min(low - margin, 1 - margin), max(high + margin, 1 + margin))
+        elif np.ptp(values) < FLAT:
+            each.set_ylim(values.mean() - FLAT, values.mean() + FLAT)
+        each.set_title(panel.title, fontsize=8, loc="left")
+        each.set_xlabel(panel.xlabel, fontsize=8)
+        each.set_ylabel(panel.ylabel, fontsize=8)
+        style.tidy(each)
+    axes.flat[0].legend(fontsize=7, frameon=True, framealpha=0.9, edgecolor="none")
+    figure.supxlabel(caption, fontsize=7, x=0.01, ha="left", color=style.INK)
+    return figure

@@ -1,0 +1,316 @@
+"""The figures of the paper that measure the equivalence, computed anew: 3, 5 to 8, and 10 to 13.
+
+The scan has lost the pictures, and with them the ranges of some geometries. What is chosen here to show what the text
+says they show is stated in the caption.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from math import cos, sin, sqrt, tan
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Direction, Mechanism, equivalent_block
+from rocking_cli.errors import MechanismError
+from rocking_cli.registry import Registry
+from rocking_cli.studies.linearisation import linearisation
+
+Reals = NDArray[np.float64]
+AMPLITUDES = np.linspace(0.02, 0.98, 25)
+ACCELERATIONS = 1 + np.geomspace(0.02, 9.0, 40)  # closer where the curves bend
+SLENDERNESS = (0.1, 0.2, 0.3, 0.4)  # rad, of the wall
+HEIGHTS = (1.0, 1.1, 1.2, 1.3)  # H1/H of the frame
+THICKNESSES = (0.12, 0.14, 0.16, 0.18, 0.20)  # t/r of the arch, as in the paper
+ANGLES = (100.0, 120.0, 140.0, 157.5)  # deg, of the arch
+OURS = "Ranges of the geometry are ours: the scan has lost them."
+OVER_AMPLITUDE, OVER_ACCELERATION = r"$\phi/\phi_{cr}$", r"$\ddot u_g/g\lambda$"
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A line of a panel.
+
+    Parameters
+    ----------
+    label : str
+        What tells it from the others of the panel.
+    x, y : ndarray
+        Its points.
+    negative : bool
+        Whether it is of the negative direction, where both are in the panel.
+    """
+
+    label: str
+    x: Reals
+    y: Reals
+    negative: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """Axes with curves.
+
+    Parameters
+    ----------
+    title, xlabel, ylabel : str
+        Words at the axes; labels may hold mathematics between dollars.
+    curves : list of Curve
+        What is drawn.
+    log : bool
+        Whether x is logarithmic.
+    """
+
+    title: str
+    xlabel: str
+    ylabel: str
+    curves: list[Curve] = field(default_factory=list)
+    log: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class PaperFigure:
+    """A figure of the paper.
+
+    Parameters
+    ----------
+    number : int
+        Its number there.
+    title, caption : str
+        What it shows, and what of it is our choice.
+    panels : list of list of Panel
+        By rows.
+    """
+
+    number: int
+    title: str
+    caption: str
+    panels: list[list[Panel]]
+
+    def rows(self) -> Iterator[list[str]]:
+        """The data as a table: a header, then a line for each point."""
+        yield ["panel", "curve", "x", "y", "x is", "y is"]
+        for panel in (each for row in self.panels for each in row):
+            for curve in panel.curves:
+                for x, y in zip(curve.x.tolist(), curve.y.tolist(), strict=True):
+                    yield [panel.title, curve.label, f"{x:.9g}", f"{y:.9g}", panel.xlabel, panel.ylabel]
+
+
+def paper_figure(number: int) -> PaperFigure:
+    """Compute a figure of the paper.
+
+    Parameters
+    ----------
+    number : int
+        One of `NUMBERS`.
+
+    Returns
+    -------
+    PaperFigure
+    """
+    return _FIGURES[number]()
+
+
+def wall_errors() -> PaperFigure:
+    """Figure 3."""
+    period = Panel("free rocking period", OVER_AMPLITUDE, "$T_{r,block}/T_{r,wall}$")
+    over = [_overturning(f"overturning time, $\\kappa_{k}$", "wall") for k in (1, 2)]
+    for alpha in SLENDERNESS:
+        wall = _make("wall", thickness=2 * sin(alpha), height=4 * cos(alpha))
+        found = linearisation(wall, Direction.POSITIVE, AMPLITUDES, ACCELERATIONS)
+        label = rf"$\alpha$ = {alpha:g}"
+        period.curves.append(Curve(label, AMPLITUDES, found.period_ratio))
+        over[0].curves.append(Curve(label, ACCELERATIONS, found.overturning_ratio1))
+        over[1].curves.append(Curve(label, ACCELERATIONS, found.overturning_ratio2))
+    slenderness = np.linspace(0.01, 0.5, 50)
+    uplift = Panel("uplift", r"$\alpha$ [rad]", r"$\lambda_{lin}/\lambda$")
+    uplift.curves.append(Curve("wall", slenderness, slenderness / np.tan(slenderness)))
+    caption = (
+        "Ratios of the equivalent block's value to the wall's, for slenderness of one block from 0.1 to 0.4. " + OURS
+    )
+    return PaperFigure(3, "Equivalent block of the wall", caption, [[period, over[0]], [uplift, over[1]]])
+
+
+@dataclass(frozen=True)
+class _FrameShape:
+    """A family of asymmetric frames: what the left column leaves open, in multiples of its height 2H."""
+
+    name: str
+    slenderness: float
+    spacing: float
+    beam: float
+
+    def frame(self, ratio: float) -> Mechanism:
+        """The frame with H1/H = ratio; its size changes nothing that is shown."""
+        left = 8.0
+        return _make(
+            "asymmetric_frame",
+            column_width=left * tan(self.slenderness),
+            left_height=left,
+            right_height=left * ratio,
+            spacing=left * self.spacing,
+            beam_depth=left * self.beam,
+            density=2500.0,
+            depth=1.0,
+        )
+
+
+SHAPES = (
+    _FrameShape("square, slender beam", 0.2, 1.0, 0.1),
+    _FrameShape("narrow, thick beam", 0.2, 0.4, 1.0),
+)
+FRAMES = (
+    "Left: columns of slenderness 0.2, their axes one left height apart, a beam a tenth as deep. Right: 0.4 of that "
+    "height apart, a beam as deep as it. " + OURS
+)
+
+
+def frame_parameters() -> PaperFigure:
+    """Figure 5."""
+    ratios = np.linspace(1.0, 1.5, 21)
+    names = (
+        ("critical rotation", r"$\phi_{cr}/\alpha$"),
+        ("frequency parameter", "$p/p(H_1 = H)$"),
+        ("uplift", r"$\lambda/\tan\alpha$"),
+        ("linearised uplift", r"$\lambda_{lin}/\lambda$"),
+    )
+    columns = []
+    for shape in SHAPES:
+        column = [Panel(f"{title}: {shape.name}", "$H_1/H$", label) for title, label in names]
+        blocks = [equivalent_block(shape.frame(ratio)) for ratio in ratios]
+        for direction in Direction:
+            each = [block[direction] for block in blocks]
+            series = (
+                [block.phi_cr / shape.slenderness for block in each],
+                [block.p / each[0].p for block in each],
+                [block.lambda_ / tan(shape.slenderness) for block in each],
+                [block.lambda_lin / block.lambda_ for block in each],
+            )
+            for panel, values in zip(column, series, strict=True):
+                panel.curves.append(Curve(direction.label, ratios, np.array(values), direction < 0))
+        columns.append(column)
+    caption = "Parameters of the equivalent block of the asymmetric frame, in both directions. " + FRAMES
+    panels = [list(row) for row in zip(*columns, strict=True)]
+    return PaperFigure(5, "Equivalent block of the asymmetric frame", caption, panels)
+
+
+def frame_errors(number: int) -> PaperFigure:
+    """Figures 6 (free period), 7 and 8 (overturning time with kappa1 and kappa2)."""
+    title, make, x, pick = _measure(number - 6, "frame")
+    rows = []
+    for direction in Direction:
+        row = []
+        for shape in SHAPES:
+            panel = make(f"{direction.label} direction: {shape.name}")
+            for ratio in HEIGHTS:
+                y = pick(shape.frame(ratio), direction)
+                panel.curves.append(Curve(f"$H_1/H$ = {ratio:g}", x, y))
+            row.append(panel)
+        rows.append(row)
+    caption = f"{title}: ratio of the equivalent block's value to the asymmetric frame's. {FRAMES}"
+    return PaperFigure(number, f"Error of the equivalent block of the asymmetric frame: {title.lower()}", caption, rows)
+
+
+def arch_parameters() -> PaperFigure:
+    """Figure 10."""
+    angles = np.linspace(90.0, 170.0, 17)
+    names = (
+        ("critical rotation", r"$\phi_{cr}$ [rad]"),
+        ("uplift", r"$\lambda$"),
+        ("frequency parameter", r"$p\sqrt{r_a/g}$"),
+        ("linearised uplift", r"$\lambda_{lin}/\lambda$"),
+    )
+    panels = [Panel(title, r"$\beta$ [deg]", label) for title, label in names]
+    for thickness in THICKNESSES:
+        stands, blocks = [], []
+        for angle in angles.tolist():
+            arch = _arch(thickness, angle)
+            if arch is not None:
+                stands.append(angle)
+                blocks.append((equivalent_block(arch).positive, arch.gravity))
+        series = (
+            [block.phi_cr for block, _ in blocks],
+            [block.lambda_ for block, _ in blocks],
+            [block.p * sqrt(10.0 / gravity) for block, gravity in blocks],
+            [block.lambda_lin / block.lambda_ for block, _ in blocks],
+        )
+        for panel, values in zip(panels, series, strict=True):
+            panel.curves.append(Curve(f"$t_a/r_a$ = {thickness:g}", np.array(stands), np.array(values)))
+    caption = (
+        "Parameters of the equivalent block of the arch over its inclusion angle, hinges anywhere. The range of angles "
+        "is ours; a curve is there where the arch has a four-hinge mechanism."
+    )
+    return PaperFigure(10, "Equivalent block of the arch", caption, [panels[:2], panels[2:]])
+
+
+def arch_errors(number: int) -> PaperFigure:
+    """Figures 11 (free period), 12 and 13 (overturning time with kappa1 and kappa2)."""
+    title, make, x, pick = _measure(number - 11, "arch")
+    panels = []
+    for thickness in (0.12, 0.14, 0.16, 0.20):
+        panel = make(f"$t_a/r_a$ = {thickness:g}")
+        for angle in ANGLES:
+            arch = _arch(thickness, angle)
+            if arch is not None:
+                panel.curves.append(Curve(rf"$\beta$ = {angle:g} deg", x, pick(arch, Direction.POSITIVE)))
+        panels.append(panel)
+    caption = (
+        f"{title}: ratio of the equivalent block's value to the arch's, hinges anywhere; the least slender arches are "
+        f"at the bottom right. {OURS}"
+    )
+    rows = [panels[:2], panels[2:]]
+    return PaperFigure(number, f"Error of the equivalent block of the arch: {title.lower()}", caption, rows)
+
+
+def _measure(
+    which: int, structure: str
+) -> tuple[str, Callable[[str], Panel], Reals, Callable[[Mechanism, Direction], Reals]]:
+    """Title, an empty panel, x, and y of a structure for one of the three measures of error."""
+    if which == 0:
+        ylabel = f"$T_{{r,block}}/T_{{r,{structure}}}$"
+        return (
+            "Free rocking period",
+            lambda title: Panel(title, OVER_AMPLITUDE, ylabel),
+            AMPLITUDES,
+            lambda mechanism, direction: linearisation(mechanism, direction, AMPLITUDES).period_ratio,
+        )
+    return (
+        f"Overturning time with kappa{which}",
+        lambda title: _overturning(title, structure),
+        ACCELERATIONS,
+        lambda mechanism, direction: getattr(
+            linearisation(mechanism, direction, acceleration=ACCELERATIONS), f"overturning_ratio{which}"
+        ),
+    )
+
+
+def _overturning(title: str, structure: str) -> Panel:
+    return Panel(title, OVER_ACCELERATION, f"$t_{{over,block}}/t_{{over,{structure}}}$", log=True)
+
+
+def _make(name: str, **values: Any) -> Mechanism:
+    mechanism: Mechanism = Registry()[name](**values)
+    return mechanism
+
+
+def _arch(thickness: float, angle: float) -> Mechanism | None:
+    """An arch of radius 10 m, or None if it does not stand or does not collapse on four hinges."""
+    try:
+        arch = _make("arch", radius=10.0, thickness=10.0 * thickness, inclusion_angle_deg=angle)
+        equivalent_block(arch)
+    except (MechanismError, ValueError):
+        return None
+    return arch
+
+
+_FIGURES: dict[int, Callable[[], PaperFigure]] = {
+    3: wall_errors,
+    5: frame_parameters,
+    10: arch_parameters,
+    **{number: lambda number=number: frame_errors(number) for number in (6, 7, 8)},  # type: ignore[misc]
+    **{number: lambda number=number: arch_errors(number) for number in (11, 12, 13)},  # type: ignore[misc]
+}
+NUMBERS: Sequence[int] = sorted(_FIGURES)
