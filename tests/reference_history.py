@@ -1,7 +1,7 @@
 """Independent histories for the tests: slow, and by other means than the engine's.
 
-Nonlinear: I phi'' + J phi'^2 + g G = -s B u on the mechanism's own coefficients (not the engine's
-tables), by DOP853 at 1e-12.
+Nonlinear: I phi'' + J phi'^2 + (g + v) G = -s B u on the mechanism's own coefficients (not the engine's
+tables), by DOP853 at 1e-12; the linear model with vertical ground motion likewise.
 Linear: phi'' = p^2 (phi - phi_cr - s kappa u/g) with 50 digits, its turning points from a quadratic in exp(p t).
 """
 
@@ -18,6 +18,28 @@ from rocking_cli.core import Direction
 mp.dps = 50
 SIDES = (1, -1)
 GAUSS = np.polynomial.legendre.leggauss(60)
+
+
+def pieces(dt, u, vertical=None):
+    """The straight pieces of both components, the vertical one as (dt, samples): start, length, u and v at both ends.
+
+    Nothing after the end of both, in pieces of length dt for ever.
+    """
+    components = [(dt, u)] if vertical is None else [(dt, u), vertical]
+    times = np.unique(np.concatenate([np.arange(len(samples)) * step for step, samples in components]))
+    times = times[np.append(True, np.diff(times) > 1e-11)]
+
+    def at(t, middle, step, samples):
+        k = int(middle / step)
+        return samples[k] + (samples[k + 1] - samples[k]) * (t / step - k) if k < len(samples) - 1 else 0.0
+
+    for a, b in pairwise(times.tolist()):
+        ends = [at(t, (a + b) / 2, *component) for component in components for t in (a, b)]
+        yield a, b - a, *ends, *([0.0, 0.0] if vertical is None else [])
+    end = float(times[-1])
+    while True:
+        yield end, dt, 0.0, 0.0, 0.0, 0.0
+        end += dt
 
 
 @dataclass
@@ -80,9 +102,9 @@ class Nonlinear:
         c = self.at(phi, s)
         return np.array([c.I[0], c.J[0], c.G[0], c.B[0]])
 
-    def slopes(self, y, s, u):
+    def slopes(self, y, s, u, v=0.0):
         inertia, j, g, b = self.four(y[0], s)
-        return np.array([y[1], -(j * y[1] ** 2 + self.g * g + s * b * u) / inertia])
+        return np.array([y[1], -(j * y[1] ** 2 + (self.g + v) * g + s * b * u) / inertia])
 
     def energy(self, phi, rate, s):
         c = self.at(phi, s)
@@ -97,34 +119,30 @@ class Nonlinear:
         fall = (amplitude - phi) * (self.many(between.ravel(), s).G.reshape(between.shape) @ weight)
         return float(weight @ (2 * amplitude * x * np.sqrt(self.many(phi, s).I / (2 * self.g * fall))))
 
-    def follow(self, dt, samples, release=0.0, impacts_after=3, until=np.inf):
-        """Follow a record and on, until `impacts_after` more impacts, rest, the kinematic limit or `until`."""
-        u = np.asarray(samples, float)
+    def follow(self, dt, samples, release=0.0, impacts_after=3, vertical=None):
+        """Follow a ground motion and on, until `impacts_after` more impacts, rest or the kinematic limit."""
         motion = Motion()
         s = -1 if release < 0 else 1
         y = np.array([abs(release) * self.phi_cr[s], 0.0])
         motion.peaks[s] = y[0]
         resting = y[0] == 0
         wanted = None
-        k, last = 0, u.size - 1
-        while k * dt < until:
-            start = k * dt
-            u0, u1 = (u[k], u[k + 1]) if k < last else (0.0, 0.0)
-            k += 1
-            if k > last:
+        quiet = max(step * (len(x) - 1) for step, x in ((dt, samples), vertical or (dt, samples)))
+        for start, length, *ground in pieces(dt, np.asarray(samples, float), vertical):
+            if start > quiet - 1e-11:
                 wanted = len(motion.impacts) + impacts_after if wanted is None else wanted
                 if resting:
                     motion.ended = "rest"
                     break
             tau = 0.0
-            while tau < dt:
+            while tau < length:
                 if resting:
-                    tau, s = self._lifts(tau, dt, u0, u1)
+                    tau, s = self._lifts(tau, length, *ground)
                     if s == 0:
                         break
                     resting, y = False, np.zeros(2)
                     motion.uplift = start + tau if motion.uplift is None else motion.uplift
-                tau, y, hit = self._fly(motion, s, start, tau, dt, y, u0, (u1 - u0) / dt)
+                tau, y, hit = self._fly(motion, s, start, tau, length, y, *ground)
                 if motion.ended == "fallen":
                     motion.end = start + tau
                     return motion
@@ -136,26 +154,31 @@ class Nonlinear:
                         motion.end = start + tau
                         return motion
                     # Rest: less kinetic energy than 1e-12 of what overturns, and nothing to lift it now.
-                    now = u0 + (u1 - u0) * tau / dt
                     faint = self.inertia[s] * y[1] ** 2 / 2 < 1e-12 * self.barrier[s]
-                    if faint and all(-side * now < self.threshold[side] for side in SIDES):
+                    if faint and all(self._excess(side, tau / length, *ground) < 0 for side in SIDES):
                         resting = True
-        motion.end = k * dt
+        motion.end = start
         return motion
 
-    def _lifts(self, tau, dt, u0, u1):
+    def _excess(self, s, x, u0, u1, v0, v1):
+        """How far the ground is beyond uplift at a fraction x of a piece."""
+        return -s * (u0 + (u1 - u0) * x) - self.threshold[s] * (1 + (v0 + (v1 - v0) * x) / self.g)
+
+    def _lifts(self, tau, end, *ground):
         found = []
         for s in SIDES:
-            now, then = (-s * (u0 + (u1 - u0) * x / dt) - self.threshold[s] for x in (tau, dt))
+            now, then = (self._excess(s, x / end, *ground) for x in (tau, end))
             if now > 0:
                 found.append((tau, s))
             elif then > 0:
-                found.append((tau - (dt - tau) * now / (then - now), s))
-        return min(found, default=(dt, 0))
+                found.append((tau - (end - tau) * now / (then - now), s))
+        return min(found, default=(end, 0))
 
-    def _fly(self, motion, s, start, tau, end, y, u0, ramp):
+    def _fly(self, motion, s, start, tau, end, y, u0, u1, v0, v1):
+        ramp, grade = (u1 - u0) / end, (v1 - v0) / end
+
         def f(t, z):
-            return self.slopes(z, s, u0 + ramp * t)
+            return self.slopes(z, s, u0 + ramp * t, v0 + grade * t)
 
         tiny = 1e-14 * self.phi_cr[s] * np.array([1.0, self.p[s]])
         solver = DOP853(f, tau, y, end, rtol=1e-12, atol=tiny, first_step=min(end - tau, max(self.size, 1e-9)))
@@ -197,6 +220,26 @@ class Nonlinear:
                     motion.ended = "fallen"
                     return b, z[:, i + 1], False
         return end, solver.y, False
+
+
+class Equivalent(Nonlinear):
+    """The linear model with vertical ground motion: phi'' = p^2 ((1 + v/g) (phi - phi_cr) - s kappa u/g)."""
+
+    def __init__(self, equivalence, kappa, gravity):
+        blocks = {1: equivalence.positive, -1: equivalence.negative}
+        self.g, self.size = gravity, 1e-3
+        self.p, self.phi_cr, self.eta = (
+            {s: float(getattr(block, name)) for s, block in blocks.items()} for name in ("p", "phi_cr", "eta")
+        )
+        self.kappa = {s: float(getattr(block, f"kappa{kappa}")) for s, block in blocks.items()}
+        self.threshold = {s: gravity * self.phi_cr[s] / self.kappa[s] for s in SIDES}
+        self.limit = dict.fromkeys(SIDES, 100.0)
+        self.inertia = dict.fromkeys(SIDES, 1.0)
+        self.barrier = {s: (self.p[s] * self.phi_cr[s]) ** 2 / 2 for s in SIDES}
+
+    def four(self, phi, s):
+        stiffness = self.p[s] ** 2 / self.g
+        return 1.0, 0.0, stiffness * (self.phi_cr[s] - phi), stiffness * self.kappa[s]
 
 
 class Linear:
