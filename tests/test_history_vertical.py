@@ -237,6 +237,21 @@ def test_a_vertical_component_resampled_on_its_own_straight_lines_gives_the_same
 
 
 @every_model
+def test_ever_so_many_vertical_samples_between_two_horizontal_ones_are_all_followed(model):
+    # 20 000 of them; the quiet horizontal component is the same at any interval.
+    v = 0.3 * G * np.sin(np.arange(20_000) * 0.005)
+    coarse, fine = (
+        respond(BLOCK, shaken(dt, np.zeros(npts), 0.001, v), models=(model,), release=0.5)[model]
+        for dt, npts in ((20.0, 2), (0.01, 2001))
+    )
+    assert coarse.outcome is Outcome.AT_REST
+    early = np.count_nonzero(fine.impacts[:, 2] > 1e-4 * fine.impacts[:, 2].max())
+    assert early > 50
+    np.testing.assert_allclose(coarse.impacts[:early, 0], fine.impacts[:early, 0], rtol=0, atol=1e-8)
+    assert coarse.peak_ratio == pytest.approx(fine.peak_ratio, rel=1e-9)
+
+
+@every_model
 def test_samples_go_on_to_the_end_of_the_longer_component(model):
     samples = noise("block", model, 3, 1.5, 24)
     history = respond(BLOCK, shaken(0.05, samples, 0.3, 0.4 * G * np.sin(np.arange(20.0))), models=(model,), tail=0.0)

@@ -44,7 +44,7 @@ MARGIN = 1e-12  # of the uplift acceleration: by how much it must be passed, so 
 FAINT = 1e-9  # of the rate of rest: what still counts as motion while the ground is pushing beyond uplift
 CHATTER = 1000  # impacts in one sample interval that count as rest, however elastic: with dt < 1 s below 1e-6 phi_cr
 IDLE = 10_000  # of these intervals without impact: swinging in a hollow beyond phi_cr, for ever
-LOOPS = 10_000  # events in one sample interval before giving up
+LOOPS = 10_000  # events in one sample interval, or a piece of it, before giving up
 SLOW = 0.5  # of 1/p: the interval to go on with after the record
 COINCIDE = 1e-9  # of an interval: samples of two components closer than this are at one moment
 
@@ -542,8 +542,8 @@ def follow(
                 q, w, f = ended
                 tau = span
         g, grade, end = gravity, 0.0, span
-        loops = 0
         while tau < span:
+            loops = 0
             if v.size > 0:  # a piece of the interval, up to the next sample of the vertical component
                 while j < v_last and (j + 1) * v_dt - t <= tau + COINCIDE * v_dt:
                     j += 1
