@@ -355,6 +355,20 @@ def test_contact_is_lost_by_the_gravity_of_the_structure_and_not_without_a_verti
 
 
 @every_model
+@every_side
+def test_a_structure_without_weight_lifts_the_way_that_opens_first(model, side):
+    # g + v falls through lambda (g + v) = -s u, then through zero, then through the other direction's.
+    samples = -side * 0.2 * np.array([1.0, 1.0, 0.0])
+    history = respond(BLOCK, shaken(1.0, samples, 1.0, G * np.array([0.0, -3.0, 0.0])), models=(model,))[model]
+    assert history.uplift_time == pytest.approx((1 - 0.2 / uplift("block", model)) / 3, abs=1e-14)
+    assert history.fell_to is Direction(side)
+    # From the first sample on both are open: it goes where it is pushed.
+    history = respond(BLOCK, shaken(1.0, samples, 1.0, G * np.array([-2.0, -2.0, 0.0])), models=(model,))[model]
+    assert history.uplift_time == 0.0
+    assert history.fell_to is Direction(side)
+
+
+@every_model
 @pytest.mark.parametrize("release", [None, 0.5, -0.99])
 @pytest.mark.parametrize("depth", [-1.0, -1.0000001, -1.5, -40.0])
 @pytest.mark.parametrize("later", [0.0, 0.9, -0.9, 30.0])

@@ -406,19 +406,27 @@ def is_certain(linear, numbers, certain, d, q, strongest):
 def lifts_at(numbers, tau, end, u, ramp, g, grade):
     """When a structure at rest lifts between tau and end, and in which direction (-1: it does not).
 
-    It lifts where the ramp crosses the uplift acceleration lambda (g + v_g''), not at the sample.
+    It lifts where the ramp crosses the uplift acceleration lambda (g + v_g''), not at the sample. Without weight both
+    directions are open: it takes the first, or the one with more behind it.
     """
+    lifted, most = -1, 0.0
     for d in range(2):
         threshold = numbers[d, LAMBDA] * (g + grade * tau)
-        if (2.0 * d - 1.0) * (u + ramp * tau) - threshold > MARGIN * abs(threshold):
-            return tau, d
+        excess = (2.0 * d - 1.0) * (u + ramp * tau) - threshold
+        if excess > MARGIN * abs(threshold) and excess > most:
+            lifted, most = d, excess
+    if lifted >= 0:
+        return tau, lifted
+    first = end
     for d in range(2):
         threshold = numbers[d, LAMBDA] * (g + grade * end)
         then = (2.0 * d - 1.0) * (u + ramp * end) - threshold
         if then > MARGIN * abs(threshold):
             now = (2.0 * d - 1.0) * (u + ramp * tau) - numbers[d, LAMBDA] * (g + grade * tau)
-            return min(max(tau - (end - tau) * now / (then - now), tau), end), d
-    return end, -1
+            crossing = min(max(tau - (end - tau) * now / (then - now), tau), end)
+            if lifted < 0 or crossing < first:
+                first, lifted = crossing, d
+    return first, lifted
 
 
 @compile_inline
