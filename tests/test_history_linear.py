@@ -126,6 +126,19 @@ def test_a_peak_between_two_coarse_samples_is_found(model):
 
 
 @pytest.mark.parametrize("model", MODELS)
+def test_a_ramp_of_thousands_of_1_over_p_overflows_nothing(model):
+    # It lifts half-way up a ramp of 1000 s and overturns within seconds: phi = slope/p (sinh pt - pt).
+    block = equivalence("block").positive
+    multiplier = {"linear1": block.lambda_lin, "linear2": block.lambda_}[model]
+    motion = GroundMotion("test", 1000.0, -multiplier * 9.80665 * np.array([0.0, 2.0, 0.0, 0.0]))
+    history = respond(structure("block"), motion, models=(model,), tail=0.0)[model]
+    assert history.uplift_time == pytest.approx(500.0, rel=1e-14)
+    slope = block.phi_cr * 2 / 1000.0
+    t = block.p * (history.overturning_time - 500.0)
+    assert slope / block.p * (np.sinh(t) - t) == pytest.approx(block.phi_cr, rel=1e-9)
+
+
+@pytest.mark.parametrize("model", MODELS)
 def test_overturning_is_certain_only_beyond_the_strongest_acceleration_to_come(model):
     # The same push; a stronger reversal later keeps the outcome open for longer, and the strongest one saves the block.
     block = equivalence("block").positive

@@ -381,3 +381,14 @@ def test_weight_that_is_gone_for_a_while_neither_fails_nor_hangs(model, release,
         assert np.isfinite(history.end_time)
         assert history.outcome in (Outcome.AT_REST, Outcome.OVERTURNED)
         assert np.isfinite(history.impacts).all()
+
+
+@pytest.mark.parametrize("model", ["linear1", "linear2"])
+def test_a_linear_block_that_fell_long_before_its_weight_is_gone_has_fallen(model):
+    # Nothing is certain as long as that is to come, and meanwhile its rotation grows by e^(p t).
+    v = np.zeros(200_000)
+    v[-3] = -2 * G
+    samples = -3.0 * uplift("block", model) * np.concatenate([[0.0], np.ones(100), [0.0]])
+    history = respond(BLOCK, shaken(0.01, samples, 0.01, v), models=(model,))[model]
+    assert history.outcome is Outcome.OVERTURNED
+    assert history.overturning_time < 1.0

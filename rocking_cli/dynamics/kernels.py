@@ -45,6 +45,7 @@ FAINT = 1e-9  # of the rate of rest: what still counts as motion while the groun
 CHATTER = 1000  # impacts in one sample interval that count as rest, however elastic: with dt < 1 s below 1e-6 phi_cr
 IDLE = 10_000  # of these intervals without impact: swinging in a hollow beyond phi_cr, for ever
 LOOPS = 10_000  # events in one sample interval, or a piece of it, before giving up
+STRIDE = 100.0  # of 1/p: the longest step of the closed form, whose cosh would overflow at 700
 SLOW = 0.5  # of 1/p: the interval to go on with after the record
 COINCIDE = 1e-9  # of an interval: samples of two components closer than this are at one moment
 
@@ -365,7 +366,7 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
         if left <= 0:
             return REACHED, end, state, h
         q, w, f = state
-        size = left if law.exact else min(left, h)
+        size = min(left, h)
         if q == 0 and f < 0 and w > 0:  # a hop: it lands after 2 w/-f or so
             size = min(size, -2.05 * w / f)
         whole = size == left
@@ -509,7 +510,7 @@ def follow(
     known = False  # whether f is q.. at (q, w) now
     resting = q == 0.0
     marks[PEAK + d] = q
-    h = dt
+    h = STRIDE / max(numbers[0, P], numbers[1, P]) if exact else dt
     t = 0.0
     k, j = 0, 0
     shaken = True  # whether the record goes on

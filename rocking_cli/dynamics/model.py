@@ -16,6 +16,7 @@ Reals = NDArray[np.float64]
 ModelName = Literal["nonlinear", "linear1", "linear2"]
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
+FALLEN = 1e100  # rad: a linear block has no limit but that of numbers
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 
@@ -138,7 +139,7 @@ def _linear(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equivale
                 block.eta,
                 1.0,
                 REST_RATE * block.p * block.phi_cr,
-                np.inf,
+                FALLEN,
                 1.0,
                 block.p,
                 kappa / gravity,
