@@ -558,8 +558,9 @@ def follow(
                     j += 1
                 g, grade, end = gravity, 0.0, span
                 if j < v_last:
-                    grade = (v[j + 1] - v[j]) * v_factor / v_dt
-                    g += v[j] * v_factor + grade * (t - j * v_dt)
+                    v0, v1 = v[j] * v_factor, v[j + 1] * v_factor
+                    grade = (v1 - v0) / v_dt
+                    g += v0 + grade * (t - j * v_dt)
                     if (j + 1) * v_dt - t < span - COINCIDE * v_dt:
                         end = (j + 1) * v_dt - t
                 else:

@@ -1,0 +1,274 @@
+"""Many histories in one call are what each would be alone, in any order, and cost no memory to speak of."""
+
+from __future__ import annotations
+
+import tracemalloc
+from functools import cache
+
+import numpy as np
+import pytest
+
+from mechanisms.arch import Arch
+from mechanisms.asymmetric_frame import AsymmetricFrame
+from mechanisms.block import Block
+from rocking_cli.dynamics import batch
+from rocking_cli.dynamics.batch import Responses, Runs, respond_many
+from rocking_cli.dynamics.deck import Deck
+from rocking_cli.dynamics.history import Outcome, respond
+from rocking_cli.dynamics.model import MODELS, build_models
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import GroundMotion
+
+FRAME = {"spacing": 8.0, "left_height": 6.0, "right_height": 7.5, "column_width": 1.0, "beam_depth": 1.0, "depth": 1.0}
+MECHANISMS = {
+    "block": lambda k=1.0: Block(width=0.7 * k, height=2.8 * k),
+    "frame": lambda k=1.0: AsymmetricFrame(density=2400.0, **{name: k * length for name, length in FRAME.items()}),
+    "arch": lambda k=1.0: Arch(radius=10.0 * k, thickness=1.5 * k, inclusion_angle_deg=157.5),
+}
+COLUMNS = tuple(Responses.__dataclass_fields__)
+
+
+@cache
+def models(name, k=1.0):
+    return build_models(MECHANISMS[name](k))
+
+
+@cache
+def motions():
+    """Records of several lengths and intervals, level and not."""
+    rng = np.random.default_rng(5)
+    envelope = np.hanning(120)
+    shaking = [3.0 * envelope * rng.normal(size=120), 3.0 * np.sin(np.arange(61) * 0.2)]
+    up = [GroundMotion("up", dt, 4.0 * rng.normal(size=n)) for dt, n in ((0.02, 100), (0.0137, 300))]
+    return [
+        GroundMotion("level", 0.02, shaking[0]),
+        GroundMotion("wave", 0.05, shaking[1]),
+        GroundMotion("both", 0.02, shaking[0], vertical=up[0]),
+        GroundMotion("both, at two intervals", 0.05, shaking[1], vertical=up[1]),
+        GroundMotion("short", 0.01, np.array([0.0, 9.0, 0.0])),
+    ]
+
+
+def same(one, other, rows=slice(None)):
+    for name in COLUMNS:
+        np.testing.assert_array_equal(getattr(one, name)[rows], getattr(other, name), err_msg=name)
+
+
+def mixed(count=600, seed=1):
+    """Any runs of six models and all records."""
+    rng = np.random.default_rng(seed)
+    return [*models("block"), *models("frame")], Runs.of(
+        rng.integers(6, size=count),
+        rng.integers(len(motions()), size=count),
+        scale=rng.uniform(0.2, 2.5, size=count),
+        polarity=rng.choice([1, -1], size=count),
+        eta=rng.choice([np.nan, 0.6, 0.85, 0.95], size=count),
+        size=rng.choice([1.0, 0.3, 2.0], size=count),
+    )
+
+
+# --- one by one
+
+
+@pytest.mark.parametrize("eta", [np.nan, 0.8])
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_every_run_is_the_history_that_respond_gives_to_the_last_bit(name, eta):
+    mechanism = MECHANISMS[name]()
+    scales, polarities = (0.6, 1.0, 2.3), (1, -1)
+    runs = Runs.every(3, len(motions()), scales=scales, polarities=polarities, etas=(eta,))
+    got = respond_many(models(name), motions(), runs)
+    own = mechanism if np.isnan(eta) else mechanism.model_copy(update={"restitution": eta})
+    fallen = 0
+    for r, motion in enumerate(motions()):
+        for scale in scales:
+            for polarity in polarities:
+                histories = respond(own, motion.scaled(scale * polarity), tail=0.0)
+                for m, history in enumerate(histories.values()):
+                    (k,) = np.flatnonzero(
+                        (runs.model == m) & (runs.record == r) & (runs.scale == scale) & (runs.polarity == polarity)
+                    )
+                    fallen += history.overturned
+                    assert got.overturned[k] == history.overturned
+                    assert got.still_rocking[k] == (history.outcome is Outcome.STILL_ROCKING)
+                    assert not got.failed[k]
+                    assert got.fell_to[k] == (history.fell_to or 0)
+                    assert got.impact_count[k] == history.impact_count
+                    for column in (
+                        "peak_positive", "peak_negative", "peak_ratio", "overturning_time", "uplift_time", "end_time"
+                    ):  # fmt: skip
+                        value, expected = getattr(got, column)[k], getattr(history, column)
+                        assert value == expected or (np.isnan(value) and expected is None), column
+    assert 0 < fallen < len(runs)  # there is something to compare
+
+
+@pytest.mark.parametrize("k", [0.3, 4.0])
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_a_size_is_the_structure_with_every_length_so_much_larger(name, k):
+    runs = Runs.every(3, len(motions()), scales=(0.8, 1.6), sizes=(k,))
+    got = respond_many(models(name), motions(), runs)
+    expected = respond_many(models(name, k), motions(), Runs.every(3, len(motions()), scales=(0.8, 1.6)))
+    np.testing.assert_array_equal(got.overturned, expected.overturned)
+    np.testing.assert_array_equal(got.fell_to, expected.fell_to)
+    assert not (got.failed | expected.failed).any()
+    for column in ("peak_positive", "peak_negative", "peak_ratio", "overturning_time", "uplift_time"):
+        np.testing.assert_allclose(getattr(got, column), getattr(expected, column), rtol=1e-10, err_msg=column)
+    # The end is that of a chatter, whose last impact may count or not.
+    np.testing.assert_allclose(got.end_time, expected.end_time, rtol=1e-6)
+    assert abs(got.impact_count - expected.impact_count).max() <= 1
+    changed = respond_many(models(name), motions(), Runs.every(3, len(motions()), scales=(0.8, 1.6)))
+    rocked = (changed.peak_ratio > 0) & (got.peak_ratio > 0)
+    assert np.count_nonzero(rocked) >= 3
+    assert (abs(changed.peak_ratio[rocked] / got.peak_ratio[rocked] - 1) > 1e-3).all()
+
+
+def test_a_run_takes_the_tables_and_the_samples_of_its_own_structure_and_record():
+    every, runs = mixed(120)
+    whole = respond_many(every, motions(), runs)
+    for k in range(0, 120, 7):
+        one = Runs.of(0, 0, **{name: getattr(runs, name)[k] for name in ("scale", "polarity", "eta", "size")})
+        same(whole, respond_many([every[runs.model[k]]], [motions()[runs.record[k]]], one), slice(k, k + 1))
+
+
+# --- order, threads, progress, memory
+
+
+@pytest.mark.parametrize(("threads", "unit"), [(1, 1), (1, 10**6), (2, 7), (5, 64), (None, 256)])
+def test_results_depend_neither_on_threads_nor_on_how_runs_are_dealt_out(monkeypatch, threads, unit):
+    every, runs = mixed()
+    expected = respond_many(every, motions(), runs, threads=1)
+    monkeypatch.setattr(batch, "UNIT", unit)
+    same(respond_many(every, motions(), runs, threads=threads), expected)
+
+
+def test_results_do_not_depend_on_the_order_of_the_runs():
+    every, runs = mixed()
+    expected = respond_many(every, motions(), runs)
+    order = np.random.default_rng(3).permutation(len(runs))
+    shuffled = Runs(*(getattr(runs, name)[order] for name in Runs.__dataclass_fields__))
+    got = respond_many(every, motions(), shuffled)
+    for name in COLUMNS:
+        np.testing.assert_array_equal(getattr(got, name), getattr(expected, name)[order], err_msg=name)
+
+
+@pytest.mark.parametrize("count", [1, 255, 256, 257, 600])
+def test_progress_counts_every_run_once(count):
+    every, runs = mixed(count)
+    seen = []
+    assert len(respond_many(every, motions(), runs, progress=seen.append)) == count
+    assert sum(seen) == count
+    assert all(0 < part <= batch.UNIT for part in seen)
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, RuntimeError])
+def test_an_interruption_in_progress_stops_what_has_not_begun(monkeypatch, error):
+    every, runs = mixed(400)
+    begun = []
+    run = Deck.run
+
+    def counted(self, *args, **options):
+        begun.append(options["first"])
+        return run(self, *args, **options)
+
+    def interrupt(done):
+        raise error
+
+    monkeypatch.setattr(Deck, "run", counted)
+    monkeypatch.setattr(batch, "UNIT", 1)
+    with pytest.raises(error):
+        respond_many(every, motions(), runs, threads=1, progress=interrupt)
+    assert 1 <= len(begun) < 200
+
+
+def test_memory_grows_by_a_few_numbers_a_run_and_not_by_its_samples():
+    long = GroundMotion("long", 0.001, np.zeros(20_000))
+    many = [Runs.of(np.zeros(count), 0) for count in (1, 1000, 11_000)]
+    peaks = []
+    for runs in many:  # the first call loads what is loaded once
+        tracemalloc.start()
+        respond_many(models("block")[:1], [long], runs)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert (peaks[2] - peaks[1]) / 10_000 < 500
+    assert peaks[1] < 10 * long.acceleration.nbytes
+
+
+# --- which runs
+
+
+def test_every_combination_comes_in_the_order_of_the_arguments():
+    runs = Runs.every(2, 2, scales=(0.5, 1.0, 1.5), polarities=(1, -1), etas=(0.8, 0.9), sizes=(1.0, 2.0, 3.0))
+    assert len(runs) == 2 * 2 * 3 * 2 * 2 * 3
+    rows = list(zip(runs.model, runs.record, runs.scale, -runs.polarity, runs.eta, runs.size, strict=True))
+    assert rows == sorted(set(rows))
+
+
+def test_numbers_hold_for_all_runs():
+    runs = Runs.of([0, 1, 2], 1, scale=[1.0, 2.0, 3.0], eta=0.9)
+    assert runs.record.tolist() == [1, 1, 1]
+    assert runs.polarity.tolist() == [1, 1, 1]
+    assert runs.size.tolist() == [1.0, 1.0, 1.0]
+    assert (runs.eta == 0.9).all()
+    assert len(Runs.of(0, 0)) == 1
+    assert np.isnan(Runs.of(0, 0).eta).all()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "what"),
+    [
+        ({"model": -1}, "run 0: model must be a place"),
+        ({"record": [0, 0, -2]}, "run 2: record must be a place"),
+        ({"model": 0.5}, "every model of a run must be a whole number"),
+        ({"record": np.nan}, "every record of a run must be a whole number"),
+        ({"polarity": 1.5}, "every polarity of a run must be a whole number"),
+        ({"polarity": 0}, "run 0: polarity must be 1 or -1, got 0"),
+        ({"polarity": [1, 2]}, "run 1: polarity must be 1 or -1, got 2"),
+        ({"scale": np.inf}, "run 0: scale must be finite"),
+        ({"scale": [1.0, np.nan]}, "run 1: scale must be finite"),
+        ({"eta": 0.0}, r"run 0: eta must be in \(0, 1\], got 0"),
+        ({"eta": -0.5}, "eta must be in"),
+        ({"eta": [0.5, np.nan, 1.01]}, "run 2: eta must be in"),
+        ({"size": 0.0}, "run 0: size must be positive"),
+        ({"size": -1.0}, "size must be positive"),
+        ({"size": np.nan}, "size must be positive"),
+        ({"size": np.inf}, "size must be positive"),
+        ({"model": [0, 1], "scale": [1.0, 2.0, 3.0]}, "differ in length"),
+    ],
+)
+def test_wrong_runs_are_refused(wrong, what):
+    with pytest.raises(InputError, match=what):
+        Runs.of(**{"model": 0, "record": 0, **wrong})
+
+
+def test_a_model_or_a_record_that_is_not_there_is_refused():
+    with pytest.raises(InputError, match="run 1: there is no model 3, only 3"):
+        respond_many(models("block"), motions(), Runs.of([0, 3], 0))
+    with pytest.raises(InputError, match="run 2: there is no record 5, only 5"):
+        respond_many(models("block"), motions(), Runs.of(0, [0, 4, 5]))
+
+
+@pytest.mark.parametrize("threads", [0, -1])
+def test_no_threads_are_refused(threads):
+    with pytest.raises(InputError, match="threads must be 1 or more"):
+        respond_many(models("block"), motions(), Runs.of(0, 0), threads=threads)
+
+
+@pytest.mark.parametrize("rtol", [0.0, 1.0, np.nan])
+def test_a_tolerance_outside_its_range_is_refused(rtol):
+    with pytest.raises(InputError, match="rtol"):
+        respond_many(models("block"), motions(), Runs.of(0, 0), rtol=rtol)
+
+
+def test_every_model_of_a_structure_is_run_and_named_by_its_place():
+    wave = motions()[0]
+    got = respond_many(models("frame"), [wave], Runs.every(3, 1))
+    alone = respond(MECHANISMS["frame"](), wave)
+    assert [alone[name].peak_ratio for name in MODELS] == got.peak_ratio.tolist()
+    assert len(set(got.peak_ratio)) == 3
+
+
+def test_a_run_that_cannot_be_followed_is_said_to_have_failed_and_stops_no_other():
+    runs = Runs.of(0, 2, scale=[1.0, 1e308, 1.0])
+    got = respond_many(models("block"), motions(), runs)
+    assert got.failed.tolist() == [False, True, False]
+    assert not got.overturned[1]
+    assert got.peak_ratio[0] == got.peak_ratio[2]
