@@ -212,6 +212,12 @@ def test_numbers_hold_for_all_runs():
     assert np.isnan(Runs.of(0, 0).eta).all()
 
 
+def test_no_runs_are_no_responses():
+    nothing = Runs.every(0, 0)
+    assert len(respond_many(models("block"), motions(), nothing)) == 0
+    assert len(respond_many([], [], nothing, progress=lambda done: None)) == 0
+
+
 @pytest.mark.parametrize(
     ("wrong", "what"),
     [
@@ -219,6 +225,8 @@ def test_numbers_hold_for_all_runs():
         ({"record": [0, 0, -2]}, "run 2: record must be a place"),
         ({"model": 0.5}, "every model of a run must be a whole number"),
         ({"record": np.nan}, "every record of a run must be a whole number"),
+        ({"model": np.inf}, "every model of a run must be a whole number"),
+        ({"record": 1e30}, "every record of a run must be a whole number"),
         ({"polarity": 1.5}, "every polarity of a run must be a whole number"),
         ({"polarity": 0}, "run 0: polarity must be 1 or -1, got 0"),
         ({"polarity": [1, 2]}, "run 1: polarity must be 1 or -1, got 2"),

@@ -112,7 +112,7 @@ class Runs:
 
 
 def _whole(name: str, values: Reals) -> Integers:
-    if not (values == np.floor(values)).all():
+    if not ((values == np.floor(values)) & (np.abs(values) < 2**53)).all():
         raise InputError(f"every {name} of a run must be a whole number")
     return values.astype(np.int64)
 
@@ -232,7 +232,7 @@ def respond_many(
             except BaseException:  # an interrupt: what has not begun is not begun
                 pool.shutdown(cancel_futures=True)
                 raise
-    phi_cr = np.array([model.phi_cr for model in models])[runs.model]
+    phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
     status = marks[:, kernels.STATUS]
     overturned = status == kernels.OVERTURNED
     fell_to = np.where(overturned, 1 - 2 * marks[:, kernels.SIDE], 0)
