@@ -16,7 +16,7 @@ Reals = NDArray[np.float64]
 ModelName = Literal["nonlinear", "linear1", "linear2"]
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
-FALLEN = 1e100  # rad: a linear block has no limit but that of numbers
+FALLEN = 1e6  # rad: no acceleration turns a linear block back from there; without weight one might, beyond all meaning
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 
