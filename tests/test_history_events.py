@@ -161,6 +161,19 @@ def test_a_hop_a_dip_and_a_rise_between_two_samples_are_told_apart(model, side):
 
 
 @every_model
+@every_side
+def test_a_fall_that_is_halted_by_an_impact_and_goes_on_between_two_samples_is_seen(model, side):
+    # phi.. from -5 to 4, then to -4: it falls at both ends of the second interval, and in it dips below 0 and rises.
+    dt = 0.1 / ONE.p
+    samples = -side * uplift(model) * np.array([-4.0, 5.0, -3.0, 0.0, 0.0])
+    expected = reference(model, dt, samples, 0.0102 * side)
+    assert dt < float(expected.impacts[0][0]) < 1.5 * dt
+    agree(shake(model, dt, samples, release=0.0102 * side), expected)
+    coarse = shake(model, dt, samples, release=0.0102 * side, rtol=1e-3)  # every interval in one step
+    assert coarse.impacts[0, 0] == pytest.approx(float(expected.impacts[0][0]), abs=1e-4 * dt)
+
+
+@every_model
 def test_two_impacts_between_two_samples_are_both_found(model):
     # A slow block sampled every 1.5 s, let go from near the ground: several impacts a sample.
     history = shake(model, 1.5, np.zeros(3), release=0.02)
@@ -452,6 +465,36 @@ def test_a_record_resampled_on_its_own_straight_lines_gives_the_same_motion(mode
     np.testing.assert_allclose(two.impacts[:count, 0], one.impacts[:count, 0], rtol=0, atol=1e-9)
     np.testing.assert_allclose(two.phi[:39:2], one.phi[:20], rtol=0, atol=1e-9)
     assert two.peak_ratio == pytest.approx(one.peak_ratio, rel=1e-8)
+
+
+@every_model
+@pytest.mark.parametrize("release", [None, -0.6])
+def test_samples_after_a_record_are_those_under_a_record_that_goes_on_at_zero(model, release):
+    samples = np.append(1.5 * uplift(model) * np.sin(np.arange(23) * 1.1), 0.0)
+    padded = np.append(samples, np.zeros(400))
+    one = shake(model, 0.0137, samples, release=release, tail=5.0)
+    two = shake(model, 0.0137, padded, release=release, tail=0.0)
+    assert (one.outcome, one.impact_count) == (two.outcome, two.impact_count)
+    count = min(one.phi.size, two.phi.size)
+    assert one.end_time > 1.0
+    assert count > 80
+    fastest = np.nanmax(abs(two.rate))
+    np.testing.assert_allclose(one.phi[:count], two.phi[:count], rtol=0, atol=1e-9 * abs(two.phi).max())
+    apart = abs(np.subtract.outer(one.impacts[:, 0], one.time[:count])).min(axis=0) > 1e-9
+    np.testing.assert_allclose(one.rate[:count][apart], two.rate[:count][apart], rtol=0, atol=1e-8 * fastest)
+
+
+@every_model
+def test_how_many_samples_are_kept_changes_no_motion(model):
+    samples = 1.5 * uplift(model) * np.random.default_rng(4).normal(size=40)
+    none, some, all_of_it = (shake(model, 0.02, samples, tail=tail) for tail in (0.0, 0.5, 30.0))
+    for other in (none, some):
+        assert other.phi.tobytes() == all_of_it.phi[: other.phi.size].tobytes()
+        assert other.rate.tobytes() == all_of_it.rate[: other.rate.size].tobytes()
+        assert other.impacts.tobytes() == all_of_it.impacts.tobytes()
+        for name in ("outcome", "peak_positive", "peak_negative", "peak_ratio", "end_time", "impact_count"):
+            assert getattr(other, name) == getattr(all_of_it, name)
+    assert none.time.size == 40 < some.time.size < all_of_it.time.size
 
 
 # --- anything at all
