@@ -12,7 +12,9 @@ from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.deck import MOST_IMPACTS
-from rocking_cli.dynamics.history import Outcome, respond
+from rocking_cli.dynamics.history import Outcome, follow, respond
+from rocking_cli.dynamics.model import Model, build_models
+from rocking_cli.dynamics.tables import Table
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from tests.reference_history import Linear, Nonlinear
@@ -171,6 +173,33 @@ def test_a_fall_that_is_halted_by_an_impact_and_goes_on_between_two_samples_is_s
     agree(shake(model, dt, samples, release=0.0102 * side), expected)
     coarse = shake(model, dt, samples, release=0.0102 * side, rtol=1e-3)  # every interval in one step
     assert coarse.impacts[0, 0] == pytest.approx(float(expected.impacts[0][0]), abs=1e-4 * dt)
+
+
+@every_model
+@every_side
+@pytest.mark.parametrize("dt", [0.02, 0.2])
+def test_a_motion_that_all_but_touches_the_ground_is_that_of_one_that_just_does(model, side, dt):
+    # A push outwards catches it on its way down; how hard decides whether it comes to an impact.
+    (built,) = build_models(BLOCK, (model,))
+    shape = -side * uplift(model) * np.interp(np.arange(0.0, 0.5, dt), [0.0, 0.2, 0.4], [0.0, 1.0, 0.0])
+
+    def caught(push):
+        return follow(built, GroundMotion("test", dt, push * shape), release=0.03 * side)
+
+    low, high = 1.0, 3.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if caught(middle).impacts[0, 0] < 0.3 else (low, middle)
+    touches, passes = caught(low), caught(high)
+    assert high - low < 1e-14
+    assert passes.impacts[0, 0] > 0.4
+    # Those of the graze are faint, and what follows is all but the same.
+    grazes = np.count_nonzero(touches.impacts[:, 0] < 0.3)
+    assert 1 <= grazes <= 40
+    assert (touches.impacts[:grazes, 2] < 1e-6 * touches.impacts[grazes, 2]).all()
+    np.testing.assert_allclose(touches.impacts[grazes : grazes + 3], passes.impacts[:3], rtol=1e-6, atol=0)
+    for name in ("peak_positive", "peak_negative"):
+        assert getattr(touches, name) == pytest.approx(getattr(passes, name), rel=1e-6)
 
 
 @every_model
@@ -423,6 +452,52 @@ def test_a_faint_elastic_bounce_between_coarse_samples_is_no_failure(model):
     history = shake(model, 0.1, samples, mechanism=elastic)
     assert not history.overturned
     assert 0 < history.peak_ratio < 1e-5
+
+
+@every_model
+def test_impacts_during_the_record_do_not_count_when_it_is_to_be_given_up(model):
+    elastic = Block(width=0.7, height=2.8, restitution=1.0)
+    history = shake(model, 0.5, np.zeros(121), mechanism=elastic, release=5e-5)
+    during = np.count_nonzero(history.impacts[:, 0] < 60.0)
+    assert 2000 < during < MOST_IMPACTS
+    assert MOST_IMPACTS + during < history.impact_count < MOST_IMPACTS + during + 1000
+
+
+# --- a hollow beyond phi_cr
+
+
+def hollow(end):
+    """A mechanism of inertia 1 with G = (1 - q) (2 - q): it comes to a second balance, which holds, at q = 2."""
+    x = np.polynomial.Polynomial([0.0, end])
+    g = 2 - 3 * x + x**2
+    forces, angles = (
+        np.array([[*g.coef, 0.0, 1.0, 0.0, 0.0, 0.0]]),
+        np.array([[0.0, end, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]),
+    )
+    table = Table(forces, angles, np.array([-1.0]), np.array([0.0, end]), end)
+    numbers = [2.0, 1.0, 0.9, 1.0, 1e-6, end, 1 / end, 1.0, 0.0, 1.0]
+    both = (np.stack([part, part], axis=1) for part in (forces, angles, table.certain))
+    return Model("nonlinear", "hollow", (1.0, 1.0), np.array([numbers, numbers]), *both, (table, table))
+
+
+def test_what_swings_in_a_hollow_beyond_phi_cr_is_still_rocking_and_has_not_overturned():
+    motion = GroundMotion("push", 0.1, np.array([0.0, *[-4.8] * 8, *[2.6] * 10, 0.0]))
+    history = follow(hollow(10.0), motion)
+    assert history.outcome is Outcome.STILL_ROCKING
+    assert history.impact_count == 0
+    # V = 2 q - 3 q^2/2 + q^3/3 is kept.
+    q, w = history.phi[20:], history.rate[20:]
+    energy = w**2 / 2 + 2 * q - 1.5 * q**2 + q**3 / 3
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-8)
+    assert 1.0 < q.min() < 2.0 < q.max()
+    assert history.peak_ratio == pytest.approx(q.max(), rel=1e-2)
+
+
+def test_what_is_thrown_out_of_a_hollow_ends_at_its_limit():
+    motion = GroundMotion("push", 0.1, np.array([0.0, *[-8.0] * 30, 0.0]))
+    history = follow(hollow(4.0), motion)
+    assert history.outcome is Outcome.OVERTURNED
+    assert history.overturning_time < history.end_time < 3.0
 
 
 # --- sampling
