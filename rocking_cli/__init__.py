@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.batch import Responses as Responses
     from rocking_cli.dynamics.batch import Runs as Runs
     from rocking_cli.dynamics.batch import respond_many as respond_many
+    from rocking_cli.dynamics.exact import ExactResponse as ExactResponse
+    from rocking_cli.dynamics.exact import exact_response as exact_response
+    from rocking_cli.dynamics.exact_batch import ExactResponses as ExactResponses
+    from rocking_cli.dynamics.exact_batch import exact_many as exact_many
     from rocking_cli.dynamics.history import History as History
     from rocking_cli.dynamics.history import Outcome as Outcome
     from rocking_cli.dynamics.history import respond as respond
@@ -50,6 +54,8 @@ __version__ = "0.1.0"
 _HOME = {
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
     "dynamics.batch": ["Responses", "Runs", "respond_many"],
+    "dynamics.exact": ["ExactResponse", "exact_response"],
+    "dynamics.exact_batch": ["ExactResponses", "exact_many"],
     "dynamics.history": ["History", "Outcome", "respond"],
     "dynamics.model": ["Model", "build_models"],
     "dynamics.pulse_response": ["closed_form", "exact_pulse"],

@@ -1,20 +1,20 @@
-"""Response of the linear rocking block to one full sine pulse: Eqs. 41-42 with their conditions, and exactly.
+"""Response of the linear rocking block to a pulse: a full sine by Eqs. 41-42 with their conditions, any exactly.
 
 Everything is dimensionless [paper, Eq. 40]: rotations x = phi/phi_cr, times tau = p t counted from uplift, pulse
-amplitude a = a_g/(g lambda) and frequency omega = omega_g/p. The pulse lifts the block where a sin = 1.
+amplitude a = a_g/(g lambda) and frequency omega = omega_g/p. A full sine lifts the block where a sin = 1.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
-from math import asin, cosh, exp, inf, log, pi, sin, sinh, sqrt
+from math import asin, exp, log, pi, sqrt
 
-from rocking_cli.errors import InputError, SolverError
+from rocking_cli.dynamics.exact import solve
+from rocking_cli.dynamics.pulse_motion import Side
+from rocking_cli.errors import InputError
 
-EXCURSIONS = 20_000  # inside the pulse; to come to rest a restitution of 0.99 needs 2000
-FAINT = 1e-10  # rate of an impact below which the block rests: it would rock to 5e-21
+# How many cycles they last, and their phase at the start: those of `rocking_cli.excitation.pulses`, without its numpy.
+SHAPES = {"sine": (1.0, 0.0), "cosine": (1.0, pi / 2), "half_sine": (0.5, 0.0), "rectangular": (1.0, pi / 2)}
 LARGEST = 1e6  # a or omega, and 1/omega
 LONG = 690.0  # exp of more, with a factor of omega^2, overflows
 
@@ -140,41 +140,15 @@ def _conditions(uplift: bool, impact_after: bool | None, stays: bool | None) -> 
     return {"uplift": uplift, "first_impact_after_pulse": impact_after, "no_overturning_without_impact": stays}
 
 
-@dataclass(frozen=True)
-class _Flight:
-    """Motion on one side from tau = start: x'' = x - 1 + side a sin(omega tau + phase)."""
-
-    side: int
-    start: float
-    x: float
-    v: float
-    amplitude: float
-    omega: float
-    phase: float
-
-    def at(self, tau: float) -> tuple[float, float, float]:
-        """x, x' and x'' in closed form."""
-        k = self.side * self.amplitude / (1 + self.omega**2)
-        angle, angle0 = self.omega * tau + self.phase, self.omega * self.start + self.phase
-        A = self.x - 1 + k * sin(angle0)
-        B = self.v + k * self.omega * sin(angle0 + pi / 2)
-        s = tau - self.start
-        c, sh = cosh(s), sinh(s)
-        x = 1 - k * sin(angle) + A * c + B * sh
-        return (
-            x,
-            -k * self.omega * sin(angle + pi / 2) + A * sh + B * c,
-            x - 1 + self.side * self.amplitude * sin(angle),
-        )
-
-
-def exact_pulse(a: float, omega: float, eta: float) -> ExactPulse:
-    """Exact response of the linear block to a full sine pulse, any number of impacts.
+def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> ExactPulse:
+    """Exact response of the linear block to a pulse, any number of impacts.
 
     Parameters
     ----------
     a, omega, eta : float
         Dimensionless amplitude and frequency, and coefficient of restitution.
+    shape : {"sine", "cosine", "half_sine", "rectangular"}
+        Of the pulse; omega is 2 pi over its period, see `rocking_cli.excitation.pulses`.
 
     Returns
     -------
@@ -183,126 +157,33 @@ def exact_pulse(a: float, omega: float, eta: float) -> ExactPulse:
     Raises
     ------
     InputError
-        If a or omega is not positive or eta is outside (0, 1].
-
+        If a or omega is not positive, eta is outside (0, 1] or the shape is none of these.
     SolverError
         If the block bounces all through a slow pulse, with a restitution near 1.
 
     Notes
     -----
-    Closed form between impacts; each impact by a root search that looks at every turning point of the motion.
+    The motion of `rocking_cli.dynamics.pulse_motion`, with p, phi_cr and the uplift acceleration one.
     """
     check_pulse(a, omega, eta)
-    if a <= 1:
+    if shape not in SHAPES:
+        raise InputError(f"shape must be one of {', '.join(SHAPES)}, got {shape!r}")
+    cycles, phase = SHAPES[shape]
+    side = Side(1.0, 1.0, 1.0, eta)
+    duration = 2 * pi / omega * cycles
+    # To the left, so that the positive direction is the first.
+    found = solve((side, side), [(0.0, duration, -a, 0.0 if shape == "rectangular" else omega, phase)])
+    uplift = found.uplift_time
+    if uplift is None:
         return ExactPulse(0.0, None, None, False, None, None, False, None, None)
-    phase = asin(1 / a)
-    end = (2 * pi - phase) / omega
-    peaks: list[float] = []
-    first_impact: float | None = None
-    side, tau, x, v = 1, 0.0, 0.0, 0.0
-    resting = False
-    for _ in range(EXCURSIONS):
-        if resting:  # chattered to rest inside the pulse: it lifts again where |a sin| passes 1, if it does
-            lift = _next_lift(tau, omega, phase, end)
-            if lift is None:
-                break
-            tau, side = lift
-            v, resting = 0.0, False
-        tau, x, v, peak = _to_impact(_Flight(side, tau, 0.0, v, a, omega, phase), end)
-        if x > 0:  # in the air after the pulse (or certain to overturn): free motion
-            if x - 1 + v >= 0:
-                return _result(peaks, first_impact, end, phase / omega, overturned=True)
-            energy = v**2 - (1 - x) ** 2  # twice that of the free motion, which is x = 1 - P e^s - Q e^-s
-            peak = max(peak, 1 - sqrt(-energy)) if v > 0 else peak
-            tau += log((1 + sqrt(1 + energy)) / (1 - x - v))
-            v = -sqrt(1 + energy)
-        peaks.append(peak)
-        first_impact = tau if first_impact is None else first_impact
-        v, side = -eta * v, -side  # Eq. 6
-        if tau >= end:  # from here every excursion is free and lower than the one before
-            if v >= 1:
-                return _result(peaks, first_impact, end, phase / omega, overturned=True)
-            peaks.append(1 - sqrt(1 - v * v))
-            break
-        resting = v <= FAINT
-    else:
-        raise SolverError(
-            f"more than {EXCURSIONS} impacts within the pulse: so slow a pulse needs a restitution below 1"
-        )
-    return _result(peaks, first_impact, end, phase / omega, overturned=False)
-
-
-def _result(
-    peaks: list[float], first_impact: float | None, end: float, uplift: float, *, overturned: bool
-) -> ExactPulse:
     return ExactPulse(
-        max_ratio=None if overturned else max(peaks),
-        first_excursion=peaks[0] if peaks else None,
-        first_rebound=peaks[1] if len(peaks) > 1 else None,
-        overturns=overturned,
-        impacts_before_overturning=len(peaks) if overturned else None,
-        first_impact=first_impact,
-        impact_during_pulse=first_impact is not None and first_impact < end,
+        max_ratio=found.peak_ratio,
+        first_excursion=found.first_excursion,
+        first_rebound=found.first_rebound,
+        overturns=found.overturned,
+        impacts_before_overturning=found.impacts_before_overturning,
+        first_impact=None if found.first_impact is None else found.first_impact - uplift,
+        impact_during_pulse=found.first_impact is not None and found.first_impact < duration,
         uplift=uplift,
-        pulse_end=end,
+        pulse_end=duration - uplift,
     )
-
-
-def _to_impact(flight: _Flight, end: float) -> tuple[float, float, float, float]:
-    """Fly to the first impact or the end of the pulse: tau, x (0 at an impact), v, and the peak on the way.
-
-    No turning point can be missed. With g = x'' - x', the growth of g e^tau is side a omega cos e^tau, whose zeros are
-    known, and the growth of x' e^-tau is g e^-tau: g vanishes at most once between zeros of the cosine, and x' at
-    most once between zeros of g.
-    """
-    bends = [(angle - flight.phase) / flight.omega for angle in (pi / 2, 3 * pi / 2)]
-    _, v_lo, force = flight.at(flight.start)
-    g_lo = force - v_lo
-    if flight.v == 0:  # a lift: both grow from zero, whatever rounding says
-        v_lo = g_lo = 1.0
-    lo, peak = flight.start, 0.0
-    while lo < end:
-        hi = min([lo + 1.0, end, *(bend for bend in bends if bend > lo)])
-        x_hi, v_hi, force = flight.at(hi)
-        g_hi = force - v_hi
-        cuts = [lo, hi]
-        if g_lo * g_hi < 0:
-            cuts.insert(1, _root(lambda tau: flight.at(tau)[2] - flight.at(tau)[1], lo, hi))
-        for a, b in pairwise(cuts):
-            v_b = flight.at(b)[1]
-            turn = _root(lambda tau: flight.at(tau)[1], a, b) if v_lo * v_b < 0 else b
-            for start, stop, v in ((a, turn, v_lo), (turn, b, v_b)):
-                x = flight.at(stop)[0]
-                peak = max(peak, x)
-                if v < 0 and x <= 0:
-                    hit = _root(lambda tau: flight.at(tau)[0], start, stop)
-                    return hit, 0.0, min(flight.at(hit)[1], 0.0), peak
-            v_lo = v_b
-        if v_hi >= 0 and x_hi >= 1 + flight.amplitude:
-            return hi, x_hi, v_hi, inf  # no later part of the pulse can bring it back
-        lo, g_lo = hi, g_hi
-    x, v, _ = flight.at(end)
-    return end, x, v, peak
-
-
-def _next_lift(tau: float, omega: float, phase: float, end: float) -> tuple[float, int] | None:
-    """When |a sin| next passes 1 for a block at rest at tau, and to which side; None if not in the pulse."""
-    for angle, side in ((phase, 1), (pi + phase, -1)):
-        until = pi - phase if side > 0 else 2 * pi - phase
-        lift = max((angle - phase) / omega, tau)
-        if lift * omega + phase < until and lift < end:
-            return lift, side
-    return None
-
-
-def _root(f: Callable[[float], float], low: float, high: float) -> float:
-    """Bisection to the last bit between points where f differs in sign."""
-    positive = f(high) > 0
-    while True:
-        middle = (low + high) / 2
-        if not low < middle < high:
-            return middle
-        if (f(middle) > 0) == positive:
-            high = middle
-        else:
-            low = middle
