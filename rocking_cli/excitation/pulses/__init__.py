@@ -8,6 +8,7 @@ from dataclasses import fields
 
 from rocking_cli import plugins
 from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses.base import Pulse, Segment
 from rocking_cli.excitation.records.units import UNITS
 from rocking_cli.plugins import did_you_mean
@@ -52,6 +53,8 @@ class PulseShapes(Mapping[str, type[Pulse]]):
             raise MechanismError(
                 f"{plugins.origin(point)} is no pulse shape: it must derive from Pulse and be complete"
             )
+        if getattr(shape, "name", None) != name or not isinstance(getattr(shape, "title", None), str):
+            raise MechanismError(f"{plugins.origin(point)} is no pulse shape: it needs name = {name!r} and a title")
         return shape
 
 
@@ -62,7 +65,8 @@ def parse_pulse(text: str) -> Pulse:
     ----------
     text : str
         Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2 or gal), period with its unit (s or ms; a frequency in Hz
-        will do), and what the shape takes besides: for `mavroeidis` the phase in deg and the number of cycles.
+        will do), and what the shape takes besides, as numbers or with their unit: for `mavroeidis` the phase in deg
+        and the number of cycles.
 
     Raises
     ------
@@ -72,7 +76,7 @@ def parse_pulse(text: str) -> Pulse:
     name, *words = (word.strip() for word in text.split(":"))
     shape = PulseShapes()[name]
     further = fields(shape)[2:]
-    form = f"expected {name}:{shape.form}, such as {name}:0.6g:0.8s"
+    form = f"expected {name}:{shape.form}, such as {shape(0.6 * STANDARD_GRAVITY, 0.8)}"
     if not 2 <= len(words) <= 2 + len(further):
         raise InputError(f"malformed pulse '{text}': {form}")
     amplitude, unit = _quantity(text, words[0], "amplitude", form, tuple(UNITS))
@@ -82,7 +86,7 @@ def parse_pulse(text: str) -> Pulse:
     seconds = 1 / period if time == "Hz" else period * _TIMES[time]
     rest = {}
     for field, word in zip(further, words[2:], strict=False):
-        rest[field.name], _ = _quantity(text, word.removesuffix("deg"), field.name, form, ("",))
+        rest[field.name], _ = _quantity(text, word, field.name, form, ("", field.metadata.get("unit", "")))
     return shape(amplitude * UNITS[unit], seconds, **rest)
 
 
@@ -92,6 +96,7 @@ def _quantity(text: str, word: str, what: str, form: str, units: tuple[str, ...]
         raise InputError(f"pulse '{text}': '{word}' is no {what}: {form}")
     unit = next((each for each in units if each.lower() == (match[2] or "").strip().lower()), None)
     if unit is None:
-        found = f"has the unknown unit '{match[2].strip()}'" if match[2] else "has no unit"
-        raise InputError(f"pulse '{text}': the {what} {found}, give one of {', '.join(filter(None, units))}: {form}")
+        found = f"unknown unit '{match[2].strip()}'" if match[2] else "no unit"
+        known = ", ".join(filter(None, units))
+        raise InputError(f"pulse '{text}': {found} of {what}, {f'give {known}' if known else 'it takes none'}: {form}")
     return float(match[1]), unit

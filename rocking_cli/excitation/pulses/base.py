@@ -15,6 +15,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 
 Reals = NDArray[np.float64]
 SAMPLES = 400  # to a period of the sampled motion: chords of a sine are then off by 3e-5 of its amplitude
+NODES = 48  # of Gauss's rule for the velocity
 
 
 class Segment(NamedTuple):
@@ -41,10 +42,12 @@ class Segment(NamedTuple):
 
 @dataclass(frozen=True)
 class Pulse(ABC):
-    """A pulse of the ground acceleration, positive to the right at first or at its peak.
+    """A pulse of the ground acceleration, positive to the right.
 
     A shape is a subclass, found by its entry point in `rocking.pulses`, that gives `span` and `shape`, and `segments`
-    if it is made of sines and constants. Parameters beyond amplitude and period are further fields with defaults.
+    if it is made of sines and constants. Parameters beyond amplitude and period are further fields with defaults, a
+    frozen dataclass then; the metadata of a field may name its "unit". Its sign is that of its source: the first of
+    its large lobes is positive, or the only one, except where a phase turns it.
 
     Parameters
     ----------
@@ -90,6 +93,16 @@ class Pulse(ABC):
         """The pieces it is made of, one after the other; empty if it is no chain of sines and constants."""
         return ()
 
+    def velocity_shape(self, x: Reals) -> Reals:
+        """Velocity over amplitude times period at times x in [0, span] in periods, from zero.
+
+        By Gauss's rule, exact to rounding for a smooth shape of a few cycles; a subclass may give its closed form.
+        """
+        nodes, weights = np.polynomial.legendre.leggauss(NODES)
+        half = np.asarray(x, dtype=np.float64)[..., None] / 2
+        velocity: Reals = (self.shape(half * (1 + nodes)) * half) @ weights
+        return velocity
+
     @property
     def duration(self) -> float:
         """How long it lasts [s]."""
@@ -100,6 +113,11 @@ class Pulse(ABC):
         x = np.asarray(t, dtype=np.float64) / self.period
         inside = (x >= 0) & (x <= self.span)
         return self.amplitude * np.where(inside, self.shape(np.clip(x, 0.0, self.span)), 0.0)
+
+    def velocity(self, t: Reals) -> Reals:
+        """Ground velocity [m/s] at times t [s], any shape; after the pulse it stays what it is at its end."""
+        x = np.clip(np.asarray(t, dtype=np.float64) / self.period, 0.0, self.span)
+        return self.amplitude * self.period * self.velocity_shape(x)
 
     def sampled(self, per_period: int = SAMPLES) -> GroundMotion:
         """The pulse as a ground motion with straight lines between samples, zero after the last.

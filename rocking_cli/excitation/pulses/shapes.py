@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from math import isfinite, pi
+from math import ceil, isfinite, pi
 from typing import ClassVar
 
 import numpy as np
@@ -24,6 +24,11 @@ class Sine(Pulse):
     def shape(self, x: Reals) -> Reals:
         """See `Pulse.shape`."""
         return np.sin(2 * pi * x)
+
+    def velocity_shape(self, x: Reals) -> Reals:
+        """See `Pulse.velocity_shape`."""
+        curve: Reals = (1 - np.cos(2 * pi * x)) / (2 * pi)
+        return curve
 
     def segments(self) -> tuple[Segment, ...]:
         """See `Pulse.segments`."""
@@ -82,7 +87,10 @@ class Rectangular(Pulse):
 
 
 class Ricker(Pulse):
-    """The symmetric Ricker wavelet, second derivative of a Gaussian, where it is above 1e-5 of its peak."""
+    """The symmetric Ricker wavelet, less the second derivative of a Gaussian; cut off below 1e-5 of its peak.
+
+    Its period is that of the peak of its Fourier spectrum.
+    """
 
     name = "ricker"
     title = "symmetric Ricker wavelet"
@@ -95,9 +103,19 @@ class Ricker(Pulse):
         curve: Reals = (1 - z) * np.exp(-z / 2)
         return curve
 
+    def velocity_shape(self, x: Reals) -> Reals:
+        """See `Pulse.velocity_shape`."""
+        middle = self.span / 2
+        from_middle = np.asarray(x) - middle
+        curve: Reals = from_middle * np.exp(-((pi * from_middle) ** 2)) + middle * np.exp(-((pi * middle) ** 2))
+        return curve
+
 
 class AntisymmetricRicker(Pulse):
-    """The antisymmetric Ricker wavelet, third derivative of a Gaussian, where it is above 1e-5 of its peak."""
+    """The antisymmetric Ricker wavelet, less the third derivative of a Gaussian; cut off below 1e-5 of its peak.
+
+    Its period is that of the peak of its Fourier spectrum. Of its two large lobes the first is positive.
+    """
 
     name = "ricker_antisymmetric"
     title = "antisymmetric Ricker wavelet"
@@ -108,7 +126,7 @@ class AntisymmetricRicker(Pulse):
     def shape(self, x: Reals) -> Reals:
         """See `Pulse.shape`."""
         z = 2 * pi / np.sqrt(3) * (x - self.span / 2)
-        curve: Reals = (3 - z**2) * z * np.exp(-(z**2) / 2) / self.PEAK
+        curve: Reals = (z**2 - 3) * z * np.exp(-(z**2) / 2) / self.PEAK
         return curve
 
 
@@ -119,17 +137,18 @@ class MavroeidisPapageorgiou(Pulse):
     Parameters
     ----------
     phase : float
-        [deg]: 0 gives a velocity symmetric about the middle, 90 an antisymmetric one.
+        nu [deg]: 0 gives a velocity symmetric about the middle and positive there, 90 an antisymmetric one that is
+        negative after the middle.
     cycles : float
         Length of the bell in periods, gamma > 1 in the source.
     """
 
-    phase: float = 0.0
+    phase: float = field(default=0.0, metadata={"unit": "deg"})
     cycles: float = 2.0
 
     name = "mavroeidis"
     title = "Mavroeidis and Papageorgiou's near-fault pulse"
-    form = "AMPLITUDE:PERIOD[:PHASE:CYCLES], such as mavroeidis:0.6g:0.8s:90deg:2"
+    form = "AMPLITUDE:PERIOD[:PHASE[:CYCLES]]"
     source = "Mavroeidis and Papageorgiou (2003), Eq. 3"
 
     def __post_init__(self) -> None:
@@ -146,23 +165,38 @@ class MavroeidisPapageorgiou(Pulse):
         """See `Pulse.span`."""
         return self.cycles
 
+    @property
+    def velocity_amplitude(self) -> float:
+        """A of the source, half the height of the bell [m/s]."""
+        return self.amplitude * self.period / (pi * self.peak)
+
     def shape(self, x: Reals) -> Reals:
         """See `Pulse.shape`."""
-        return self._raw(x) / self._peak
+        return self._raw(x) / self.peak
+
+    def velocity_shape(self, x: Reals) -> Reals:
+        """See `Pulse.velocity_shape`."""
+        z = 2 * pi * (x - self.span / 2)
+        curve: Reals = (1 + np.cos(z / self.cycles)) * np.cos(z + np.radians(self.phase)) / (2 * pi * self.peak)
+        return curve
 
     def _raw(self, x: Reals) -> Reals:
-        """The acceleration over pi A/T, A the amplitude of the velocity."""
+        """The acceleration over pi A/T."""
         z, nu, gamma = 2 * pi * (x - self.span / 2), np.radians(self.phase), self.cycles
         bell = z / gamma
         curve: Reals = -(np.sin(bell) * np.cos(z + nu) + gamma * np.sin(z + nu) * (1 + np.cos(bell))) / gamma
         return curve
 
     @cached_property
-    def _peak(self) -> float:
-        """Largest size of the raw shape, sought on a fine grid and made exact by a parabola through its best points."""
-        y = np.abs(self._raw(np.linspace(0.0, self.span, 20_001)))
-        k = min(max(int(y.argmax()), 1), y.size - 2)
-        a, b, c = y[k - 1 : k + 2].tolist()
+    def peak(self) -> float:
+        """Largest acceleration over pi A/T: sought on a grid, then on finer ones, and at last by a parabola."""
+        grid = np.linspace(0.0, self.span, ceil(100 * self.span) + 1)
+        coarse = np.abs(self._raw(grid))
+        # A point of the grid is within 1/200 period of the peak, and so within 0.2 % of it: any of these may be it.
+        near = grid[coarse > 0.995 * coarse.max(), None]
+        y = np.abs(self._raw(near + grid[1] * np.linspace(-1.0, 1.0, 41)))
+        row, k = np.unravel_index(int(y[:, 1:-1].argmax()), (len(near), 39))
+        a, b, c = y[row, k : k + 3].tolist()
         return float(b + (a - c) ** 2 / (8 * (2 * b - a - c)))
 
     def __str__(self) -> str:
