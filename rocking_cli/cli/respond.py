@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.history import History
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.base import GroundMotion
+    from rocking_cli.excitation.measures import Measures
+    from rocking_cli.excitation.pulses import Pulse
 
 # The names of the models stand here again so that `--help` needs no numpy.
 NAMES = ("nonlinear", "linear1", "linear2")
@@ -53,6 +55,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 @click.command(short_help="Response to a ground motion: nonlinear and linear histories.")
 @click.argument("file", required=False, type=click.Path())
 @click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format.")
+@click.option("--pulse", metavar="PULSE", help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD.")
 @options.reading
 @click.option("--vertical", type=click.Path(), metavar="FILE", help="Its vertical component: g becomes g + v_g''.")
 @click.option(
@@ -105,6 +108,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 def command(
     file: str | None,
     record: str | None,
+    pulse: str | None,
     units: str | None,
     dt: float | None,
     channel: str | None,
@@ -137,22 +141,28 @@ def command(
       rocking respond frame.yaml --record accel.csv --plot response.png
       rocking respond --record accel.txt --dt 0.01 --units g --target-pga 0.4 --polarity both
       rocking respond arch.yaml --release 0.5
+      rocking respond frame.yaml --pulse ricker:0.4g:1.2s --polarity both
     """
-    if record is None and release is None:
-        raise click.UsageError("Nothing to respond to: give --record FILE, or --release RATIO, or both.")
-    if record is None and (units is not None or dt is not None):
+    if record is not None and pulse is not None:
+        raise click.UsageError("--record and --pulse exclude each other.")
+    shaken = record is not None or pulse is not None
+    if not shaken and release is None:
+        raise click.UsageError(
+            "Nothing to respond to: give --record FILE or --pulse PULSE, or --release RATIO, or both."
+        )
+    if not shaken and vertical is not None:
+        raise click.UsageError("--vertical goes with a horizontal component: give --record FILE or --pulse PULSE.")
+    if record is None and vertical is None and (units is not None or dt is not None):
         raise click.UsageError("--units and --dt describe a record: give --record FILE.")
     if record is None and channel is not None:
         raise click.UsageError("--channel is one of a record: give --record FILE.")
-    if record is None and vertical is not None:
-        raise click.UsageError("--vertical goes with a horizontal component: give --record FILE.")
     if vertical is None and (vertical_dt is not None or vertical_channel is not None):
         raise click.UsageError("--vertical-dt and --vertical-channel describe one: give --vertical FILE.")
     motions.check_scaling(scale, target_pga, target_pgv)
     scaled = any(value is not None for value in (scale, target_pga, target_pgv))
-    if record is None and (scaled or polarity != "1"):
+    if not shaken and (scaled or polarity != "1"):
         raise click.UsageError(
-            "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE."
+            "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE or --pulse PULSE."
         )
     from rocking_cli.cli import responses, structures
     from rocking_cli.dynamics.vertical import vertical_notes
@@ -165,9 +175,12 @@ def command(
         check_parquet(out)
     mechanism = structures.load([file] if file else [])[0]
     equivalence = _equivalence(mechanism)
-    as_read, factor = None, 1.0
+    as_read, factor, shape = None, 1.0, None
     if record is not None:
         as_read = _read("record", record, dt, units, channel)
+    elif pulse is not None:
+        shape, as_read = _make(pulse)
+    if as_read is not None:
         if vertical is not None:
             own = dt if vertical_dt is None else vertical_dt
             as_read = replace(as_read, vertical=_read("vertical", vertical, own, units, vertical_channel))
@@ -178,18 +191,18 @@ def command(
         sign: _respond(mechanism, motion, cast("tuple[ModelName, ...]", models), release, tail, rtol)
         for sign, motion in shaking.items()
     }
-    shaken = shaking[signs[0]]
+    first = shaking[signs[0]]
     if out is not None:
-        _write(out, runs, shaken)
+        _write(out, runs, first)
     if plot is not None:
-        _draw(plot, runs, shaken, structures.label(mechanism))
+        _draw(plot, runs, first, structures.label(mechanism))
     etas = equivalence if impacts else None
-    notes = vertical_notes(shaken, mechanism.gravity) if shaken is not None else []
+    notes = vertical_notes(first, mechanism.gravity) if first is not None else []
     if as_json:
         terminal.print_json(
             {
                 "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
-                "record": responses.record_json(as_read, factor, polarity) if as_read is not None else None,
+                "record": responses.record_json(as_read, factor, polarity, shape) if as_read is not None else None,
                 "release": release,
                 **responses.runs_json(runs, etas),
                 "notes": notes,
@@ -222,6 +235,16 @@ def _read(what: str, file: str, dt: float | None, units: str | None, channel: st
     return motion
 
 
+def _make(specification: str) -> tuple[Pulse, GroundMotion]:
+    from rocking_cli.excitation.base import STANDARD_GRAVITY
+    from rocking_cli.excitation.pulses import parse_pulse
+
+    pulse = parse_pulse(specification)
+    amplitude = pulse.amplitude / STANDARD_GRAVITY
+    terminal.note(f"pulse: {pulse.title}, {amplitude:.4g} g, period {pulse.period:.4g} s, lasts {pulse.duration:.4g} s")
+    return pulse, pulse.sampled()
+
+
 def _judge(
     motion: GroundMotion,
     equivalence: Equivalence,
@@ -229,14 +252,13 @@ def _judge(
     target_pga: float | None,
     target_pgv: float | None,
 ) -> float:
-    """The factor on the record, after saying what is doubtful about it, for this structure too."""
-    from rocking_cli.excitation.doubts import coarse_for, doubts
+    """The factor on the motion, after saying what is doubtful about a record, for this structure too."""
+    from rocking_cli.excitation.doubts import doubts
     from rocking_cli.excitation.measures import measure
 
     measured = measure(motion)
-    motions.warn(
-        motion, doubts(motion, measured) + coarse_for(motion, max(equivalence.positive.p, equivalence.negative.p))
-    )
+    if motion.format != "pulse":  # what a formula leaves the ground with is meant
+        _warn(motion, measured, equivalence)
     if motion.vertical is not None:
         motions.warn(motion.vertical, doubts(motion.vertical, measure(motion.vertical)))
     factor = motions.factor(motion, measured, scale, target_pga, target_pgv)
@@ -244,6 +266,13 @@ def _judge(
         pga, pgv = abs(factor) * measured.pga, abs(factor) * measured.pgv
         terminal.note(f"scaled by {factor:.6g}: PGA = {pga:.4g} g, PGV = {pgv:.4g} m/s")
     return factor
+
+
+def _warn(motion: GroundMotion, measured: Measures, equivalence: Equivalence) -> None:
+    from rocking_cli.excitation.doubts import coarse_for, doubts
+
+    p = max(equivalence.positive.p, equivalence.negative.p)
+    motions.warn(motion, doubts(motion, measured) + coarse_for(motion, p))
 
 
 def _respond(

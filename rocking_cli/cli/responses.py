@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from math import degrees, isclose
 from typing import Any
 
@@ -11,7 +12,8 @@ from rocking_cli.core import Direction, Equivalence
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import SENSE, verdict
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.pulses import Pulse
 
 Histories = Mapping[ModelName, History]
 Runs = Mapping[int, Histories]
@@ -21,13 +23,26 @@ FIRST = 12  # impacts of a model in its table; --json has all
 ALIKE = 1e-6  # relative difference below which neither polarity governs
 
 
-def record_json(motion: GroundMotion, factor: float, polarity: str) -> dict[str, Any]:
-    """The record as read, and what was done to it."""
+def record_json(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
+    """The record as read, or the pulse as given, and what was done to it."""
     return {
         **_motion_json(motion),
+        **({"pulse": pulse_json(pulse)} if pulse is not None else {}),
         "vertical": _motion_json(motion.vertical) if motion.vertical is not None else None,
         "scale": factor,
         "polarity": polarity if polarity == "both" else int(polarity),
+    }
+
+
+def pulse_json(pulse: Pulse) -> dict[str, Any]:
+    """A pulse: its shape, amplitude [g], period and duration [s], and what else its shape has."""
+    return {
+        "shape": pulse.name,
+        "specification": str(pulse),
+        "amplitude": pulse.amplitude / STANDARD_GRAVITY,
+        "period": pulse.period,
+        "duration": pulse.duration,
+        **{field.name: getattr(pulse, field.name) for field in fields(pulse)[2:]},
     }
 
 
