@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.doubts import Doubt
     from rocking_cli.excitation.measures import Measures
+    from rocking_cli.excitation.pulse_fit import PulseFit
 
 HEADING = 14  # characters of a record's name in a line above its column
 LEFT = 26  # characters that labels and units take of a table
@@ -24,7 +25,7 @@ BESIDE = 3  # blanks between columns
 
 
 class Shown(NamedTuple):
-    """A record as read, the factor on it, the measures with that factor, what is doubtful, and p dt of a structure."""
+    """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses."""
 
     file: str
     motion: GroundMotion
@@ -32,6 +33,7 @@ class Shown(NamedTuple):
     measures: Measures
     doubts: list[Doubt]
     p_dt: float | None
+    pulses: list[PulseFit]
 
 
 @click.command(short_help="What records are, how strong, and what is doubtful about them.")
@@ -40,6 +42,9 @@ class Shown(NamedTuple):
 @options.scaling("1", "-1")
 @click.option(
     "--structure", type=click.Path(), metavar="FILE.yaml", help="Check the sample interval against this structure."
+)
+@click.option(
+    "--pulse", is_flag=True, help="Fit a sine, a Ricker and a near-fault pulse to each; --plot draws the best."
 )
 @click.option(
     "--to", type=click.Choice(["csv"]), help="Write each as a clean file of t and a, NAME.csv in this folder."
@@ -63,6 +68,7 @@ def command(
     target_pgv: float | None,
     polarity: str,
     structure: str | None,
+    pulse: bool,
     to: str | None,
     plot: Path | None,
     as_json: bool,
@@ -79,6 +85,7 @@ def command(
       rocking record accel.csv --plot record.png
       rocking record north.AT2 east.AT2 --target-pga 0.4
       rocking record station.V2 --channel 2 --to csv
+      rocking record accel.csv --pulse --plot pulse.png
     """
     motions.check_scaling(scale, target_pga, target_pgv)
     if plot is not None and len(files) > 1:
@@ -96,11 +103,11 @@ def command(
             from rocking_cli.excitation.records import read_record
 
             motion = read_record(file, dt=dt, units=units, channel=channel)
-            one, scaled = _examine(file, motion, (scale, target_pga, target_pgv), int(polarity), p)
+            one, scaled = _examine(file, motion, (scale, target_pga, target_pgv), int(polarity), p, pulse)
             if to:
                 _write(clean[file], scaled)
             if plot is not None:
-                _draw(plot, scaled, one.measures)
+                _draw(plot, scaled, one)
         except InputError as error:
             terminal.error(str(error))
             continue
@@ -151,6 +158,7 @@ def _examine(
     asked: tuple[float | None, float | None, float | None],
     polarity: int,
     p: float | None,
+    pulse: bool,
 ) -> tuple[Shown, GroundMotion]:
     """The record and its scaled motion; what is doubtful is looked for in the record as read."""
     from rocking_cli.excitation.doubts import coarse_for, doubts
@@ -160,7 +168,12 @@ def _examine(
     found = doubts(motion, own) + (coarse_for(motion, p) if p is not None else [])
     factor = polarity * motions.factor(motion, own, *asked)
     scaled = motion.scaled(factor)
-    return Shown(file, motion, factor, measure(scaled), found, p * motion.dt if p is not None else None), scaled
+    fits: list[PulseFit] = []
+    if pulse:
+        from rocking_cli.cli import pulse_fits
+
+        fits = pulse_fits.find(scaled)
+    return Shown(file, motion, factor, measure(scaled), found, p * motion.dt if p is not None else None, fits), scaled
 
 
 def _write(path: Path, motion: GroundMotion) -> None:
@@ -171,14 +184,25 @@ def _write(path: Path, motion: GroundMotion) -> None:
     terminal.note(f"wrote {path.resolve()}")
 
 
-def _draw(path: Path, motion: GroundMotion, measures: Measures) -> None:
+def _draw(path: Path, motion: GroundMotion, shown: Shown) -> None:
     os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
     from rocking_cli.files import write_whole
+    from rocking_cli.plotting.pulse_fit import draw_pulses
     from rocking_cli.plotting.record import draw_record
 
-    figure = draw_record(motion, measures)
+    if shown.pulses:
+        end = shown.measures.t_95 or motion.duration
+        figure = draw_pulses(motion, _best(shown.pulses), end)
+    else:
+        figure = draw_record(motion, shown.measures)
     write_whole(path, lambda stream: figure.savefig(stream, format=path.suffix[1:].lower()))
     terminal.note(f"wrote {path}")
+
+
+def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:
+    """Of the pulses fitted by each criterion the one that captures most, velocity first."""
+    by_criterion = {fit.criterion: fit for fit in sorted(fits, key=lambda fit: fit.captured)}
+    return [by_criterion["velocity"], by_criterion["acceleration"]]
 
 
 def _channel(record: Shown) -> str | None:
@@ -188,7 +212,7 @@ def _channel(record: Shown) -> str | None:
 
 def _as_json(record: Shown) -> dict[str, Any]:
     motion, measures = record.motion, record.measures
-    return {
+    found: dict[str, Any] = {
         "file": record.file,
         "name": motion.name,
         "format": motion.format,
@@ -211,6 +235,11 @@ def _as_json(record: Shown) -> dict[str, Any]:
         "p_dt": record.p_dt,
         "warnings": [doubt._asdict() for doubt in record.doubts],
     }
+    if record.pulses:
+        from rocking_cli.cli.pulse_fits import fits_json
+
+        found["pulses"] = fits_json(record.pulses)
+    return found
 
 
 def _rows(records: Sequence[Shown]) -> list[list[str]]:
@@ -252,6 +281,11 @@ def _print_tables(records: Sequence[Shown]) -> None:
         cells = [[row[0], *row[1:-1][part], row[-1]] for row in rows]
         title, headings = (names[0], ["value"]) if len(records) == 1 else ("", names[part])
         terminal.table(title, ["", *headings, "unit"], cells, numbers=range(1, len(headings) + 1))
+    for record in records:
+        if record.pulses:
+            from rocking_cli.cli import pulse_fits
+
+            pulse_fits.print_tables(record.motion.name, record.pulses)
 
 
 def _folded(name: str) -> str:

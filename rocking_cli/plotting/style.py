@@ -13,6 +13,12 @@ LINES = {
     "linear1": {"color": "#e08a00", "linestyle": "--", "linewidth": 1.3},
     "linear2": {"color": "#1f77b4", "linestyle": "-.", "linewidth": 0.9},
 }
+RECORD = "#8a8a8a"  # what something bold is drawn over
+PULSES = (
+    {"color": "#111111", "linestyle": "-", "linewidth": 2.4},
+    {"color": "#e08a00", "linestyle": "--", "linewidth": 2.0},
+    {"color": "#1f77b4", "linestyle": "-.", "linewidth": 1.6},
+)
 LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2": r"linear, $\kappa_2$"}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import lru_cache
 from math import ceil, isfinite, pi
 from typing import ClassVar
 
@@ -172,7 +172,7 @@ class MavroeidisPapageorgiou(Pulse):
 
     def shape(self, x: Reals) -> Reals:
         """See `Pulse.shape`."""
-        return self._raw(x) / self.peak
+        return _raw(x - self.span / 2, self.phase, self.cycles) / self.peak
 
     def velocity_shape(self, x: Reals) -> Reals:
         """See `Pulse.velocity_shape`."""
@@ -180,24 +180,31 @@ class MavroeidisPapageorgiou(Pulse):
         curve: Reals = (1 + np.cos(z / self.cycles)) * np.cos(z + np.radians(self.phase)) / (2 * pi * self.peak)
         return curve
 
-    def _raw(self, x: Reals) -> Reals:
-        """The acceleration over pi A/T."""
-        z, nu, gamma = 2 * pi * (x - self.span / 2), np.radians(self.phase), self.cycles
-        bell = z / gamma
-        curve: Reals = -(np.sin(bell) * np.cos(z + nu) + gamma * np.sin(z + nu) * (1 + np.cos(bell))) / gamma
-        return curve
-
-    @cached_property
+    @property
     def peak(self) -> float:
-        """Largest acceleration over pi A/T: sought on a grid, then on finer ones, and at last by a parabola."""
-        grid = np.linspace(0.0, self.span, ceil(100 * self.span) + 1)
-        coarse = np.abs(self._raw(grid))
-        # A point of the grid is within 1/200 period of the peak, and so within 0.2 % of it: any of these may be it.
-        near = grid[coarse > 0.995 * coarse.max(), None]
-        y = np.abs(self._raw(near + grid[1] * np.linspace(-1.0, 1.0, 41)))
-        row, k = np.unravel_index(int(y[:, 1:-1].argmax()), (len(near), 39))
-        a, b, c = y[row, k : k + 3].tolist()
-        return float(b + (a - c) ** 2 / (8 * (2 * b - a - c)))
+        """Largest acceleration over pi A/T."""
+        return _peak(self.phase, self.cycles)
 
     def __str__(self) -> str:
         return f"{super().__str__()}:{self.phase:.6g}deg:{self.cycles:.6g}"
+
+
+def _raw(x: Reals, phase: float, cycles: float) -> Reals:
+    """Acceleration of a near-fault pulse over pi A/T at times x from its middle, in periods."""
+    z, nu = 2 * pi * x, np.radians(phase)
+    bell = z / cycles
+    curve: Reals = -(np.sin(bell) * np.cos(z + nu) / cycles + np.sin(z + nu) * (1 + np.cos(bell)))
+    return curve
+
+
+@lru_cache(maxsize=256)
+def _peak(phase: float, cycles: float) -> float:
+    """Its largest size: sought on a grid, then on finer ones, and at last by a parabola."""
+    grid = np.linspace(-cycles / 2, cycles / 2, ceil(100 * cycles) + 1)
+    coarse = np.abs(_raw(grid, phase, cycles))
+    # A point of the grid is within 1/200 period of the peak, and so within 0.2 % of it: any of these may be it.
+    near = grid[coarse > 0.995 * coarse.max(), None]
+    y = np.abs(_raw(near + (grid[1] - grid[0]) * np.linspace(-1.0, 1.0, 41), phase, cycles))
+    row, k = np.unravel_index(int(y[:, 1:-1].argmax()), (len(near), 39))
+    a, b, c = y[row, k : k + 3].tolist()
+    return float(b + (a - c) ** 2 / (8 * (2 * b - a - c)))

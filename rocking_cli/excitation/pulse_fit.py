@@ -1,0 +1,274 @@
+"""The pulse in a record: which sine, Ricker or near-fault pulse captures most of its energy.
+
+A pulse s is fitted to a record r, both in acceleration or both in velocity, by least squares: what is maximised is the
+share of the energy of the record that it captures, 1 - sum (r - s)^2 / sum r^2 over the samples. For a start and a
+period the best amplitude is linear least squares, and so is the phase of a near-fault pulse, which is a sum of its
+phases 0 and 90. What remains is sought on a grid, by cross-correlation, and refined from the best places by a simplex.
+The ground is at rest before the record and after it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import ceil, floor, hypot, log
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.measures import velocity
+from rocking_cli.excitation.pulses.base import Pulse
+from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
+from rocking_cli.excitation.simplex import maximise
+
+Reals = NDArray[np.float64]
+Criterion = Literal["acceleration", "velocity"]
+
+CRITERIA: tuple[Criterion, ...] = ("acceleration", "velocity")
+FITTED: dict[str, type[Pulse]] = {"sine": Sine, "ricker": Ricker, "mavroeidis": MavroeidisPapageorgiou}
+SHORTEST = 10  # samples to a period; the longest period is that of the record
+PER_OCTAVE = 10  # periods tried: 7 % apart
+CYCLES = (1.25, 1.7, 2.3, 3.1, 4.2)  # tried, of a near-fault pulse
+RANGE = (1.01, 6.0)  # of the cycles: with one the source has no pulse
+APART = 0.25  # of a period: places further apart than this are refined each for itself
+PLACES = 4  # refined
+ROUGH, FINE = 2e-2, 1e-6  # how exactly each place, and the best of them, is found, over a step of the grid
+ENOUGH = (10, 40, 500)  # samples to a period that are looked at: on the grid, of each place, and of the best
+
+
+@dataclass(frozen=True)
+class PulseFit:
+    """A pulse as fitted to a record.
+
+    Parameters
+    ----------
+    pulse : Pulse
+        Its shape, amplitude [m/s2] and period [s]; the phase of a near-fault pulse is above -90 and at most 90 degrees.
+    start : float
+        When it starts [s] from the first sample of the record; it may start before, and end after, the record.
+    sign : int
+        1 as it is, -1 reversed.
+    criterion : {"acceleration", "velocity"}
+        In what it was fitted.
+    captured : float
+        Share of the energy of the record that it captures, 1 - sum (r - s)^2 / sum r^2.
+    """
+
+    pulse: Pulse
+    start: float
+    sign: int
+    criterion: Criterion
+    captured: float
+
+    @property
+    def centre(self) -> float:
+        """The middle of the pulse [s] from the first sample of the record."""
+        return self.start + self.pulse.duration / 2
+
+    def acceleration(self, t: Reals) -> Reals:
+        """Ground acceleration of the pulse [m/s2] at times t [s] of the record."""
+        return self.sign * self.pulse.acceleration(t - self.start)
+
+    def velocity(self, t: Reals) -> Reals:
+        """Ground velocity of the pulse [m/s] at times t [s] of the record."""
+        return self.sign * self.pulse.velocity(t - self.start)
+
+    def alone(self, motion: GroundMotion) -> GroundMotion:
+        """The pulse without its record, on the samples of the record, without a vertical component."""
+        name = f"{self.pulse} of {motion.name}"
+        a = self.acceleration(np.arange(motion.npts, dtype=np.float64) * motion.dt)
+        return replace(motion, name=name, acceleration=a, format="pulse", vertical=None)
+
+
+def fit_pulse(motion: GroundMotion, shape: str, criterion: Criterion) -> PulseFit:
+    """The pulse of a shape that captures most energy of a record.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The record.
+    shape : {"sine", "ricker", "mavroeidis"}
+        The family of pulses: any amplitude, sign, start, and period from ten samples to the length of the record; for
+        `mavroeidis` any phase, and 1.01 to 6 cycles.
+    criterion : {"acceleration", "velocity"}
+        Whether the energy is that of the acceleration or that of the velocity. The velocity of a record starts from
+        zero; where it drifts, the drift is fitted.
+
+    Returns
+    -------
+    PulseFit
+
+    Raises
+    ------
+    InputError
+        If the record is zero throughout, or shorter than the shortest pulse.
+    """
+    return next(fit_pulses(motion, (shape,), (criterion,)))
+
+
+def fit_pulses(
+    motion: GroundMotion,
+    shapes: Sequence[str] = tuple(FITTED),
+    criteria: Sequence[Criterion] = CRITERIA,
+) -> Iterator[PulseFit]:
+    """The best pulse by each criterion and of each shape, one after the other as they are found.
+
+    `fit_pulse` says what the arguments are.
+    """
+    for criterion in criteria:
+        values = velocity(motion) if criterion == "velocity" else motion.acceleration
+        peak = float(np.abs(values).max())
+        if peak == 0:
+            raise InputError(Problem("the record is zero throughout: there is no pulse in it", motion.name))
+        if motion.npts <= 2 * SHORTEST:
+            raise InputError(Problem(f"{motion.npts} samples are too few to find a pulse in", motion.name))
+        search = _Search(values / peak, motion.dt, criterion == "velocity")
+        for shape in shapes:
+            place = search.best(shape)
+            captured, weights = search.fit(shape, place)
+            pulse, sign = _as_pulse(shape, place, peak * weights)
+            yield PulseFit(pulse, place.start, sign, criterion, captured)
+
+
+class _Place(NamedTuple):
+    """Where and how long a pulse is: start and period [s], cycles of a near-fault pulse."""
+
+    start: float
+    period: float
+    cycles: float
+
+
+def _parts(shape: str, period: float, cycles: float) -> list[Pulse]:
+    """Pulses that a pulse of the shape is a sum of."""
+    if shape == "mavroeidis":
+        return [MavroeidisPapageorgiou(1.0, period, phase, cycles) for phase in (0.0, 90.0)]
+    return [FITTED[shape](1.0, period)]
+
+
+def _as_pulse(shape: str, place: _Place, weights: Reals) -> tuple[Pulse, int]:
+    """The pulse that is the sum of its parts, of positive amplitude, and its sign."""
+    if shape != "mavroeidis":
+        return FITTED[shape](abs(float(weights[0])), place.period), 1 if weights[0] > 0 else -1
+    even, odd = (
+        float(weight) / MavroeidisPapageorgiou(1.0, place.period, phase, place.cycles).peak
+        for weight, phase in zip(weights, (0.0, 90.0), strict=True)
+    )
+    sign = 1 if even > 0 or (even == 0 and odd > 0) else -1
+    phase = float(np.degrees(np.arctan2(sign * odd, sign * even)))
+    amplitude = hypot(even, odd) * MavroeidisPapageorgiou(1.0, place.period, phase, place.cycles).peak
+    return MavroeidisPapageorgiou(amplitude, place.period, phase, place.cycles), sign
+
+
+class _Search:
+    """A record to find pulses in.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Acceleration or velocity of the record over its peak.
+    dt : float
+        [s].
+    as_velocity : bool
+        Whether it is the velocity.
+    """
+
+    def __init__(self, values: Reals, dt: float, as_velocity: bool) -> None:
+        self.dt, self.as_velocity = dt, as_velocity
+        self.energy = float(values @ values)
+        self.shortest, self.longest = SHORTEST * dt, (values.size - 1) * dt
+        self.levels = [values]  # each with every second sample of the one before, smoothed
+        while self.levels[-1].size > 2 * SHORTEST:
+            self.levels.append(np.convolve(self.levels[-1], [0.25, 0.5, 0.25])[1:-1:2])
+
+    def level(self, period: float, enough: int) -> int:
+        """The coarsest level with enough samples to a period."""
+        return min(max(floor(log(period / self.dt / enough, 2) + 1e-9), 0), len(self.levels) - 1)
+
+    def curve(self, pulse: Pulse, x: Reals) -> Reals:
+        """What is fitted, of a pulse of unit amplitude, at times x in periods."""
+        return pulse.period * pulse.velocity_shape(x) if self.as_velocity else pulse.shape(x)
+
+    def fit(self, shape: str, place: _Place, level: int = 0) -> tuple[float, Reals]:
+        """Share of the energy captured at a place, and the amplitudes of the parts, over the peak of the record."""
+        values, dt = self.levels[level], self.dt * 2**level
+        parts = _parts(shape, place.period, place.cycles)
+        first, last = ceil(place.start / dt), floor((place.start + parts[0].duration) / dt)
+        x: Reals = (np.arange(first, last + 1, dtype=np.float64) * dt - place.start) / place.period
+        curves: Reals = np.stack([self.curve(part, np.clip(x, 0.0, parts[0].span)) for part in parts])
+        inside = slice(max(-first, 0), max(values.size - first, 0))
+        seen: Reals = curves[:, inside] @ values[max(first, 0) : max(last + 1, 0)]
+        weights = np.linalg.solve(curves @ curves.T, seen).astype(np.float64)
+        return float(seen @ weights) * 2**level / self.energy, weights
+
+    def best(self, shape: str) -> _Place:
+        """The place where most energy is captured."""
+        _, place = max(self._refine(shape, place, 1.0, ROUGH, ENOUGH[1]) for place in self._places(shape))
+        return self._refine(shape, place, ROUGH, FINE, ENOUGH[2])[1]
+
+    def _refine(self, shape: str, place: _Place, size: float, within: float, enough: int) -> tuple[float, _Place]:
+        """The best place near one: the middle is moved, and the logarithms of the period and of the cycles.
+
+        `size` is that of the first simplex and `within` that of the last, over a step of the grid.
+        """
+        steps = size * np.array([1 / ENOUGH[0] / 2, log(2) / PER_OCTAVE, 0.15])[: 3 if shape == "mavroeidis" else 2]
+        middle = _middle(shape, place)
+        level = self.level(place.period, enough)
+
+        def there(u: Reals) -> _Place:
+            period, cycles = place.period * float(np.exp(u[1])), place.cycles * float(np.exp(u[2:].sum()))
+            start = middle + float(u[0]) * place.period - _span(shape, cycles) * period / 2
+            return _Place(start, period, cycles)
+
+        def captured(u: Reals) -> float:
+            here = there(u)
+            near = abs(u[1]) <= 1 and 0 <= _middle(shape, here) <= self.longest  # a pulse of the record, and resolved
+            if not (near and self.shortest <= here.period <= self.longest and RANGE[0] <= here.cycles <= RANGE[1]):
+                return -np.inf
+            return self.fit(shape, here, level)[0]
+
+        most, u = maximise(captured, np.zeros(steps.size), steps.tolist(), within=within / size)
+        return most, there(u)
+
+    def _places(self, shape: str) -> list[_Place]:
+        """The most promising places of a grid, not near one another."""
+        periods = self.shortest * 2 ** np.arange(0.0, log(self.longest / self.shortest, 2), 1 / PER_OCTAVE)
+        tried = CYCLES if shape == "mavroeidis" else (2.0,)
+        grid = [self._best_start(shape, period, cycles) for period in periods.tolist() for cycles in tried]
+        chosen: list[_Place] = []
+        for _, place in sorted(grid, reverse=True):
+            if len(chosen) < PLACES and not any(_near(shape, place, other) for other in chosen):
+                chosen.append(place)
+        return chosen
+
+    def _best_start(self, shape: str, period: float, cycles: float) -> tuple[float, _Place]:
+        """Share of the energy captured, about, and the place: of the pulses of one length the best."""
+        level = self.level(period, ENOUGH[0])
+        values, dt = self.levels[level], self.dt * 2**level
+        parts = _parts(shape, period, cycles)
+        half = floor(parts[0].duration / 2 / dt)
+        x = parts[0].span / 2 + np.arange(-half, half + 1, dtype=np.float64) * (dt / period)
+        captured = np.zeros(values.size)
+        for part in parts:  # one even, one odd: orthogonal
+            curve = self.curve(part, x)
+            captured += np.correlate(values, curve, "full")[half:-half] ** 2 / (curve @ curve)
+        k = int(captured.argmax())  # of the sample in the middle
+        return float(captured[k]) * dt, _Place(k * dt - parts[0].duration / 2, period, cycles)
+
+
+def _span(shape: str, cycles: float) -> float:
+    """How long a pulse is, in periods."""
+    return cycles if shape == "mavroeidis" else _parts(shape, 1.0, cycles)[0].span
+
+
+def _middle(shape: str, place: _Place) -> float:
+    """The middle of a pulse [s]."""
+    return place.start + _span(shape, place.cycles) * place.period / 2
+
+
+def _near(shape: str, one: _Place, other: _Place) -> bool:
+    """Whether two places may be of one maximum."""
+    between = abs(_middle(shape, one) - _middle(shape, other))
+    return abs(log(one.period / other.period)) < APART and between < APART * max(one.period, other.period)

@@ -1,0 +1,59 @@
+"""A ground motion with the pulse in it: bold over the thin record, in acceleration and in velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from textwrap import shorten
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.measures import velocity
+from rocking_cli.excitation.pulse_fit import PulseFit
+from rocking_cli.plotting import style
+from rocking_cli.plotting.thinning import visible
+
+LONGEST = 95  # characters of a heading
+AROUND = 2.0  # durations of the pulse that are shown after it, at least
+POINTS = 2000  # of a pulse
+
+
+def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> Figure:
+    """Draw a record, and over it the pulses.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The record that they were fitted to.
+    fits : sequence of PulseFit
+        At most three; each is drawn in both panels, whatever it was fitted in.
+    end : float
+        Up to when the record is shown [s], or longer where a pulse needs it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(4.8)
+    above, below = figure.subplots(2, 1, sharex=True)
+    heading = shorten(motion.name, LONGEST, placeholder=" ...")
+    above.set_title(heading, loc="left", fontsize=10, color=style.INK, parse_math=False)
+    for axes, values in ((above, motion.acceleration / STANDARD_GRAVITY), (below, velocity(motion))):
+        shown = visible(values)
+        axes.plot(shown * motion.dt, values[shown], color=style.RECORD, linewidth=0.8)
+        axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
+        style.tidy(axes)
+    for fit, look in zip(fits, style.PULSES, strict=False):
+        t = fit.start + np.linspace(0.0, fit.pulse.duration, POINTS)
+        label = f"{fit.pulse.title}, fitted in {fit.criterion}: {100 * fit.captured:.0f} % of its energy"
+        above.plot(t, fit.acceleration(t) / STANDARD_GRAVITY, label=label, **look)
+        below.plot(t, fit.velocity(t), **look)
+        end = max(end, fit.start + (1 + AROUND) * fit.pulse.duration)
+    above.set_ylabel("acceleration [g]", fontsize=9)
+    below.set_ylabel("velocity [m/s]", fontsize=9)
+    below.set_xlabel("time [s]", fontsize=9)
+    below.set_xlim(min([0.0, *(fit.start for fit in fits)]), min(end, motion.duration))
+    figure.legend(loc="outside lower center", ncols=1, fontsize=8, frameon=False)
+    figure.align_ylabels()
+    return figure
