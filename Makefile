@@ -7,7 +7,7 @@ BIN := $(VENV)/Scripts
 endif
 STAMP := $(VENV)/.installed
 
-.PHONY: setup demo test lint type contracts check bench clean
+.PHONY: setup demo test lint type contracts check bench validation clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -41,6 +41,9 @@ check: lint type contracts test
 bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for a record of your own
 	-$(BIN)/python -m pip install --quiet ".[bench]"
 	$(BIN)/python benchmarks/histories.py $(RECORD)
+
+validation: setup  ## Write docs/validation.md anew
+	$(BIN)/python docs/make_validation.py
 
 clean:
 	$(PYTHON) -c "import shutil; [shutil.rmtree(p, ignore_errors=True) for p in ('$(VENV)', 'out', '.mypy_cache', '.ruff_cache', '.pytest_cache')]"

@@ -21,7 +21,12 @@ NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13")
 @click.argument("number", type=click.Choice([*NUMBERS, "all"]))
 @click.option("--folder", type=click.Path(file_okay=False), default=".", show_default="this one", help="Where to.")
 @click.option(
-    "--format", "suffix", type=click.Choice(["png", "svg", "pdf"]), default="png", show_default=True, help="Of pictures."
+    "--format",
+    "suffix",
+    type=click.Choice(["png", "svg", "pdf"]),
+    default="png",
+    show_default=True,
+    help="Of pictures.",
 )
 @options.as_json
 def command(number: str, folder: str, suffix: str, as_json: bool) -> None:
@@ -40,17 +45,17 @@ def command(number: str, folder: str, suffix: str, as_json: bool) -> None:
     wanted = [int(each) for each in (NUMBERS if number == "all" else [number])]
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
-    made = []
-    with terminal.progress("figures", len(wanted)) as advance:
+    made: list[tuple[int, list[str]]] = []
+    with terminal.progress(len(wanted), "figures") as advance:
         for each in wanted:
-            files = _write(paper_figure(each), place, suffix)
-            made.append({"figure": each, "files": [str(file) for file in files]})
+            written = _write(paper_figure(each), place, suffix)
+            made.append((each, [str(file) for file in written]))
             advance(1)
     if as_json:
-        terminal.print_json({"figures": made})
+        terminal.print_json({"figures": [{"figure": each, "files": files} for each, files in made]})
         return
-    for row in made:
-        terminal.result(f"figure {row['figure']}: {', '.join(row['files'])}")
+    for each, files in made:
+        terminal.result(f"figure {each}: {', '.join(files)}")
 
 
 def _write(paper: PaperFigure, folder: Path, suffix: str) -> list[Path]:

@@ -1,0 +1,198 @@
+"""Writes docs/validation.md: what is checked, against what, how close it is, and the test that holds it.
+
+    python docs/make_validation.py            # make validation
+    python docs/make_validation.py --check    # fails when the page is stale
+
+Differences are given as the power of ten they stay below, 1e-10 at least: the page is the same on every machine.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import acosh, ceil, cos, exp, inf, log, log10, pi, sin, sqrt, tan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking_cli import (
+    Direction,
+    GroundMotion,
+    Mechanism,
+    Registry,
+    closed_form,
+    equivalent_block,
+    exact_pulse,
+    load_structure,
+    respond,
+)
+from rocking_cli.studies.linearisation import linearisation
+
+DOCS = Path(__file__).resolve().parent
+PAGE = DOCS / "validation.md"
+EXAMPLES = DOCS.parent / "examples"
+FLOOR = -10  # what is below differs from machine to machine
+G = 9.80665
+
+
+@dataclass(frozen=True)
+class Check:
+    """A quantity, where its reference value comes from, both values, and the test that holds it."""
+
+    quantity: str
+    reference: str
+    expected: float
+    ours: float
+    test: str
+
+    @property
+    def below(self) -> str:
+        """The power of ten below which the relative difference stays; the absolute one where zero is expected."""
+        difference = abs(self.ours - self.expected) / (abs(self.expected) or 1.0)
+        if difference == 0:
+            return f"< 1e{FLOOR}"
+        power = max(FLOOR, ceil(log10(difference)))
+        return f"< 1e{power}"
+
+    def row(self) -> str:
+        """A line of the table."""
+        values = " | ".join(f"{value:.5g}" for value in (self.expected, self.ours))
+        return f"| {self.quantity} | {self.reference} | {values} | {self.below} | `{self.test}` |"
+
+
+def make(name: str, **values: Any) -> Mechanism:
+    """A mechanism by name."""
+    return Registry()[name](**values)
+
+
+def one_body() -> Iterator[Check]:
+    """Section 2 and Table I."""
+    b, h = 0.35, 1.4
+    R, alpha = sqrt(b * b + h * h), np.arctan2(b, h)
+    block = equivalent_block(make("block", width=2 * b, height=2 * h)).positive
+    test = "test_closed_forms.py"
+    yield Check("block 0.7 m x 2.8 m: p [rad/s]", "Eq. 3: sqrt(3g/4R)", sqrt(3 * G / (4 * R)), block.p, test)
+    yield Check("its uplift acceleration/g", "tan(alpha)", b / h, block.lambda_, test)
+    yield Check("its critical rotation [rad]", "alpha", float(alpha), block.phi_cr, test)
+    yield Check("its restitution", "Housner 1963", 1 - 1.5 * sin(alpha) ** 2, block.eta, "test_restitution.py")
+    strut = equivalent_block(make("point_mass", base_width=0.7, height=2.8)).positive
+    R = sqrt(0.35**2 + 2.8**2)
+    yield Check("point mass on a strut: p [rad/s]", "Table I: sqrt(g/R)", sqrt(G / R), strut.p, test)
+    cone = equivalent_block(make("cone", base_radius=0.5, height=3.0, kind="solid")).positive
+    p2 = 5 * G * sqrt(9 + 16 * 0.25) / (2 * 9 + 23 * 0.25)
+    yield Check("solid cone: p [rad/s]", "Table I", sqrt(p2), cone.p, test)
+    yield Check("its uplift acceleration/g", "Table I: 4r/h", 4 * 0.5 / 3.0, cone.lambda_, test)
+
+
+def more_bodies() -> Iterator[Check]:
+    """Sections 4 and 5."""
+    alpha = 0.2
+    wall = equivalent_block(make("wall", thickness=2 * sin(alpha), height=4 * cos(alpha))).positive
+    yield Check(
+        "wall, alpha 0.2: uplift acceleration/g",
+        "Eq. 22: 2 tan(alpha)",
+        2 * tan(alpha),
+        wall.lambda_,
+        "test_closed_forms.py",
+    )
+    yield Check("its kappa1", "Section 4: 1/2", 0.5, wall.kappa1, "test_closed_forms.py")
+    yield Check("its p [rad/s]", "Eq. 23: sqrt(3g/2R)", sqrt(1.5 * G), wall.p, "test_closed_forms.py")
+    b, H, H1, L, h = 0.8, 3.5, 5.0, 10.0, 0.75
+    frame = equivalent_block(load_structure(EXAMPLES / "frame.yaml"))
+    left, beam, right = (2500.0 * 2 * area for area in (2 * b * 2 * H, (L + 2 * b) * 2 * h, 2 * b * 2 * H1))
+    for direction, s in ((Direction.POSITIVE, 1), (Direction.NEGATIVE, -1)):
+        expected = (b / H) * (left + (1 + H / H1 - s * (2 * b / L) * (1 - H / H1)) * beam + (H / H1) * right)
+        expected /= left + 2 * (1 + s * (b * h / (L * H)) * (1 - H / H1)) * beam + right
+        yield Check(f"asymmetric frame, {direction.label}: uplift acceleration/g", "Eq. 33, corrected", expected,
+                    frame[direction].lambda_, "test_asymmetric_frame.py")  # fmt: skip
+    arch = equivalent_block(load_structure(EXAMPLES / "arch.yaml")).positive
+    yield Check("Oppenheim's arch: uplift acceleration/g", "Oppenheim 1992: 0.37", 0.37, arch.lambda_, "test_arch.py")
+
+
+def errors() -> Iterator[Check]:
+    """Section 4: Eqs. 24 and 25, and the integrals they are compared with."""
+    test = "test_linearisation.py"
+    for file in ("block", "wall", "frame", "arch"):
+        mechanism = load_structure(EXAMPLES / f"{file}.yaml")
+        found = linearisation(mechanism, Direction.POSITIVE, 0.5, 2.0)
+        free = respond(mechanism, release=0.5, models=("nonlinear",))["nonlinear"]
+        yield Check(f"{file}: free period from phi_cr/2 [s]", "integrated motion", 4 * float(free.impacts[0, 0]),
+                    float(found.period[0]), test)  # fmt: skip
+        push = GroundMotion("constant", 0.01, np.full(3000, -2 * found.block.lambda_ * mechanism.gravity))
+        fall = respond(mechanism, push, models=("nonlinear",))["nonlinear"]
+        yield Check(f"{file}: time to overturn at 2 lambda [s]", "integrated motion", fall.overturning_time or inf,
+                    float(found.overturning[0]), test)  # fmt: skip
+
+
+def histories() -> Iterator[Check]:
+    """Limit cases of the engine."""
+    mechanism = make("block", width=0.7, height=2.8)
+    block = equivalent_block(mechanism).positive
+    free = respond(mechanism, release=0.4, models=("linear2",))["linear2"]
+    yield Check("linear block let go at 0.4: first impact [s]", "acosh(1/0.6)/p", acosh(1 / 0.6) / block.p,
+                float(free.impacts[0, 0]), "test_history_events.py")  # fmt: skip
+    rate = block.p * block.phi_cr * sqrt(1 - 0.36)
+    yield Check("its rate there [rad/s]", "energy", rate, float(free.impacts[0, 2]), "test_history_events.py")
+    t = 0.4
+    above = GroundMotion("step", t, np.array([-2 * block.lambda_ * G] * 2))
+    held = respond(mechanism, above, models=("linear2",))["linear2"]
+    yield Check("linear block pushed at 2 lambda for 0.4 s: phi/phi_cr", "cosh(pt) - 1", cosh_minus_one(block.p * t),
+                float(held.ratio[1]), "test_history_linear.py")  # fmt: skip
+
+
+def cosh_minus_one(y: float) -> float:
+    """The rise under twice the uplift acceleration, over phi_cr."""
+    return (exp(y / 2) - exp(-y / 2)) ** 2 / 2
+
+
+def pulses() -> Iterator[Check]:
+    """Section 6.2."""
+    a, omega, eta = 4.0, 6.0, 0.9
+    exact, form = exact_pulse(a, omega, eta), closed_form(a, omega, eta)
+    yield Check("full sine a = 4, omega = 6: first rebound", "Eqs. 41-42", form.max_ratio or inf,
+                exact.first_rebound or inf, "test_pulse.py")  # fmt: skip
+    low, high = 1e-3, 20.0
+    for _ in range(60):  # the length of a rectangle that just overturns a block, as omega = 2 pi/(p T)
+        middle = sqrt(low * high)
+        low, high = (middle, high) if exact_pulse(2.0, middle, eta, shape="rectangular").overturns else (low, middle)
+    yield Check("rectangular pulse a = 2: p T that just overturns", "ln(a/(a - 1)), without impact", log(2.0),
+                2 * pi / high, "test_exact_pulse.py")  # fmt: skip
+
+
+SECTIONS: dict[str, Callable[[], Iterator[Check]]] = {
+    "One rigid body": one_body,
+    "Walls, frames and arches": more_bodies,
+    "Histories": histories,
+    "The error of the equivalence": errors,
+    "Pulses": pulses,
+}
+
+
+def page() -> str:
+    """The page as it should be."""
+    parts = [(DOCS / "validation_head.md").read_text(encoding="utf-8").rstrip()]
+    for title, checks in SECTIONS.items():
+        rows = "\n".join(check.row() for check in checks())
+        parts.append(
+            f"## {title}\n\n| quantity | reference | its value | ours | difference | held by |\n"
+            f"|---|---|---|---|---|---|\n{rows}"
+        )
+    parts.append((DOCS / "corrections.md").read_text(encoding="utf-8").rstrip())
+    return "\n\n".join(parts) + "\n"
+
+
+def main() -> int:
+    """Write the page, or say whether it is stale."""
+    if "--check" in sys.argv[1:]:
+        if PAGE.read_text(encoding="utf-8") != page():
+            print("docs/validation.md is stale: run make validation", file=sys.stderr)
+            return 1
+        return 0
+    PAGE.write_text(page(), encoding="utf-8", newline="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

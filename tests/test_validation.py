@@ -1,0 +1,20 @@
+"""docs/validation.md is what the code gives, and the tests it names are there."""
+
+from __future__ import annotations
+
+import re
+import runpy
+
+from tests.conftest import PROJECT
+
+
+def test_the_page_is_not_stale():
+    page = runpy.run_path(str(PROJECT / "docs" / "make_validation.py"))["page"]()
+    assert page == (PROJECT / "docs" / "validation.md").read_text(encoding="utf-8"), "run make validation"
+
+
+def test_the_tests_it_names_are_there():
+    page = (PROJECT / "docs" / "validation.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"`(test_\w+\.py)`", page))
+    assert len(named) > 5
+    assert all((PROJECT / "tests" / name).exists() for name in named)
