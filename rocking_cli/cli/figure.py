@@ -11,14 +11,19 @@ import click
 from rocking_cli.cli import options, terminal
 
 if TYPE_CHECKING:
+    from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.studies.paper_figures import PaperFigure
 
 # The numbers stand here again so that `--help` needs no numpy; a test holds them together.
-NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13")
+NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
 
 
 @click.command(short_help="The paper's figures, computed anew: picture and data.")
 @click.argument("number", type=click.Choice([*NUMBERS, "all"]))
+@click.option(
+    "--record", type=click.Path(), metavar="FILE", help="For Figure 14; else the shipped example, a synthetic motion."
+)
+@options.reading
 @click.option("--folder", type=click.Path(file_okay=False), default=".", show_default="this one", help="Where to.")
 @click.option(
     "--format",
@@ -29,26 +34,37 @@ NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13")
     help="Of pictures.",
 )
 @options.as_json
-def command(number: str, folder: str, suffix: str, as_json: bool) -> None:
+def command(
+    number: str,
+    record: str | None,
+    units: str | None,
+    dt: float | None,
+    channel: str | None,
+    folder: str,
+    suffix: str,
+    as_json: bool,
+) -> None:
     """Compute a figure of the paper anew, or all of them: figureN.png and its data, figureN.csv.
 
     \b
     Example:
       rocking figure 3
+      rocking figure 14 --record accel.csv
       rocking figure all --folder figures --format svg
 
     Source: DeJong and Dimitrakopoulos (2014). Geometries that the scan has lost are our choice; the captions say so.
     """
     os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
-    from rocking_cli.studies.paper_figures import paper_figure
-
+    if number not in ("14", "all") and record is not None:
+        raise click.UsageError("--record is for Figure 14.")
+    motion = _motion(record, dt, units, channel) if number in ("14", "all") else None
     wanted = [int(each) for each in (NUMBERS if number == "all" else [number])]
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     made: list[tuple[int, list[str]]] = []
     with terminal.progress(len(wanted), "figures") as advance:
         for each in wanted:
-            written = _write(paper_figure(each), place, suffix)
+            written = _write(_compute(each, motion), place, suffix)
             made.append((each, [str(file) for file in written]))
             advance(1)
     if as_json:
@@ -56,6 +72,27 @@ def command(number: str, folder: str, suffix: str, as_json: bool) -> None:
         return
     for each, files in made:
         terminal.result(f"figure {each}: {', '.join(files)}")
+
+
+def _motion(record: str | None, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
+    """The record of Figure 14: the user's, or the shipped example, which a wheel has and a checkout has elsewhere."""
+    from rocking_cli.excitation.records import read_record
+
+    if record is not None:
+        return read_record(record, dt=dt, units=units, channel=channel)
+    package = Path(__file__).parents[1]
+    shipped = package / "data" / "accel.csv"
+    return read_record(shipped if shipped.exists() else package.parent / "examples" / "accel.csv")
+
+
+def _compute(number: int, motion: GroundMotion | None) -> PaperFigure:
+    from rocking_cli.studies.paper_figures import paper_figure
+    from rocking_cli.studies.paper_responses import equivalent_vulnerability, record_response
+
+    if number == 14:
+        assert motion is not None
+        return record_response(motion)
+    return equivalent_vulnerability() if number == 15 else paper_figure(number)
 
 
 def _write(paper: PaperFigure, folder: Path, suffix: str) -> list[Path]:

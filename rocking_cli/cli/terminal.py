@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from time import monotonic
 from typing import Any
 
 import click
 
 ABSENT = "-"
+PATIENCE = 1.0  # s of work before it is shown
 NARROW = 76  # columns below which a table's explanations are left out: they would break into syllables
 
 
@@ -42,6 +45,42 @@ def width() -> int:
     from rich.console import Console
 
     return Console().width
+
+
+@contextmanager
+def progress(total: int, what: str) -> Iterator[Callable[[int], None]]:
+    """A bar of work that takes more than a second, on standard error if that is a terminal.
+
+    Parameters
+    ----------
+    total : int
+        How many pieces of work there are.
+    what : str
+        What they are.
+
+    Yields
+    ------
+    callable
+        To be called with the number of pieces done since the last call.
+    """
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    console = Console(stderr=True)
+    bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
+    task = bar.add_task(what, total=total)
+    began = monotonic()
+
+    def advance(count: int) -> None:
+        bar.advance(task, count)
+        if not bar.live.is_started and monotonic() - began > PATIENCE:
+            bar.start()
+
+    try:
+        yield advance
+    finally:
+        bar.stop()
 
 
 def table(

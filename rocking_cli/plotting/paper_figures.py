@@ -39,9 +39,8 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
     axes = figure.subplots(rows, columns, squeeze=False)
     for panel, each in zip((p for row in paper.panels for p in row), axes.flat, strict=True):
         for k, curve in enumerate(panel.curves):
-            each.plot(
-                curve.x, curve.y, label=curve.label, color=COLOURS[k], linestyle=DASHES[k], linewidth=1.6 - 0.15 * k
-            )
+            width = 0.7 if curve.thin else 1.6 - 0.15 * k
+            each.plot(curve.x, curve.y, label=curve.label, color=COLOURS[k], linestyle=DASHES[k], linewidth=width)
         if panel.log:
             each.set_xscale("log")
             each.set_xticks([1, 2, 5, 10])
@@ -60,6 +59,10 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
         each.set_xlabel(panel.xlabel, fontsize=8)
         each.set_ylabel(panel.ylabel, fontsize=8)
         style.tidy(each)
-    axes.flat[0].legend(fontsize=7, frameon=True, framealpha=0.9, edgecolor="none")
+    labels: list[str] = []
+    for panel, each in zip((p for row in paper.panels for p in row), axes.flat, strict=True):
+        if [curve.label for curve in panel.curves] != labels and len(panel.curves) > 1:  # a legend where it changes
+            labels = [curve.label for curve in panel.curves]
+            each.legend(fontsize=7, frameon=True, framealpha=0.9, edgecolor="none")
     figure.supxlabel(caption, fontsize=7, x=0.01, ha="left", color=style.INK)
     return figure

@@ -40,14 +40,14 @@ class Curve:
         What tells it from the others of the panel.
     x, y : ndarray
         Its points.
-    negative : bool
-        Whether it is of the negative direction, where both are in the panel.
+    thin : bool
+        Whether it is drawn as a background to the others.
     """
 
     label: str
     x: Reals
     y: Reals
-    negative: bool = False
+    thin: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +105,7 @@ def paper_figure(number: int) -> PaperFigure:
     Parameters
     ----------
     number : int
-        One of `NUMBERS`.
+        One of `NUMBERS`; Figures 14 and 15 are in `paper_responses`.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def wall_errors() -> PaperFigure:
     period = Panel("free rocking period", OVER_AMPLITUDE, "$T_{r,block}/T_{r,wall}$")
     over = [_overturning(f"overturning time, $\\kappa_{k}$", "wall") for k in (1, 2)]
     for alpha in SLENDERNESS:
-        wall = _make("wall", thickness=2 * sin(alpha), height=4 * cos(alpha))
+        wall = make("wall", thickness=2 * sin(alpha), height=4 * cos(alpha))
         found = linearisation(wall, Direction.POSITIVE, AMPLITUDES, ACCELERATIONS)
         label = rf"$\alpha$ = {alpha:g}"
         period.curves.append(Curve(label, AMPLITUDES, found.period_ratio))
@@ -146,7 +146,7 @@ class _FrameShape:
     def frame(self, ratio: float) -> Mechanism:
         """The frame with H1/H = ratio; its size changes nothing that is shown."""
         left = 8.0
-        return _make(
+        return make(
             "asymmetric_frame",
             column_width=left * tan(self.slenderness),
             left_height=left,
@@ -190,7 +190,7 @@ def frame_parameters() -> PaperFigure:
                 [block.lambda_lin / block.lambda_ for block in each],
             )
             for panel, values in zip(column, series, strict=True):
-                panel.curves.append(Curve(direction.label, ratios, np.array(values), direction < 0))
+                panel.curves.append(Curve(direction.label, ratios, np.array(values)))
         columns.append(column)
     caption = "Parameters of the equivalent block of the asymmetric frame, in both directions. " + FRAMES
     panels = [list(row) for row in zip(*columns, strict=True)]
@@ -291,7 +291,8 @@ def _overturning(title: str, structure: str) -> Panel:
     return Panel(title, OVER_ACCELERATION, f"$t_{{over,block}}/t_{{over,{structure}}}$", log=True)
 
 
-def _make(name: str, **values: Any) -> Mechanism:
+def make(name: str, **values: Any) -> Mechanism:
+    """A mechanism of the registry by name, with its fields."""
     mechanism: Mechanism = Registry()[name](**values)
     return mechanism
 
@@ -299,7 +300,7 @@ def _make(name: str, **values: Any) -> Mechanism:
 def _arch(thickness: float, angle: float) -> Mechanism | None:
     """An arch of radius 10 m, or None if it does not stand or does not collapse on four hinges."""
     try:
-        arch = _make("arch", radius=10.0, thickness=10.0 * thickness, inclusion_angle_deg=angle)
+        arch = make("arch", radius=10.0, thickness=10.0 * thickness, inclusion_angle_deg=angle)
         equivalent_block(arch)
     except (MechanismError, ValueError):
         return None

@@ -1,0 +1,98 @@
+"""The paper's figures: their data say what the text says, and the command writes pictures and data."""
+
+from __future__ import annotations
+
+import csv
+import json
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from rocking_cli.cli.figure import NUMBERS
+from rocking_cli.excitation.records import read_record
+from rocking_cli.studies.paper_figures import NUMBERS as COMPUTED
+from rocking_cli.studies.paper_figures import paper_figure
+from rocking_cli.studies.paper_responses import equivalent_vulnerability, record_response
+from tests.conftest import EXAMPLES
+from tests.test_cli import run
+
+
+def curves(figure, row, column):
+    return {curve.label: curve.y for curve in figure.panels[row][column].curves}
+
+
+def test_every_number_is_computed():
+    assert sorted(int(number) for number in NUMBERS) == sorted([*COMPUTED, 14, 15])
+
+
+def test_figure_3_errors_grow_with_slenderness_and_vanish_towards_phi_cr():
+    figure = paper_figure(3)
+    period = list(curves(figure, 0, 0).values())
+    assert all((np.diff(each) > 0).all() and each[-1] < 1 for each in period)
+    assert all((one > other).all() for one, other in pairwise(period))
+    assert len(figure.panels) == 2 and len(figure.panels[0]) == 2
+
+
+def test_figure_5_the_right_column_has_the_larger_error_of_the_linearised_uplift():
+    figure = paper_figure(5)
+    worst = [max(np.abs(y - 1).max() for y in curves(figure, 3, column).values()) for column in (0, 1)]
+    assert worst[1] > 2 * worst[0]
+    for row in range(4):
+        for column in (0, 1):
+            one, other = curves(figure, row, column).values()
+            assert one[0] == pytest.approx(other[0], rel=1e-9)  # symmetric at H1 = H
+            assert np.abs(one - other)[-1] > np.abs(one - other)[1]
+
+
+def test_figures_12_and_13_kappa2_is_the_better_for_arches():
+    first, second = paper_figure(12), paper_figure(13)
+    for row in range(2):
+        for column in range(2):
+            pairs = zip(curves(first, row, column).values(), curves(second, row, column).values(), strict=True)
+            assert all(np.abs(two - 1).max() < np.abs(one - 1).max() for one, two in pairs)
+
+
+def test_figure_10_wider_and_thinner_arches_are_the_more_slender():
+    figure = paper_figure(10)
+    for column in (0, 1):
+        by_thickness = list(curves(figure, 0, column).values())
+        assert all((np.diff(y) < 0).all() for y in by_thickness)
+
+
+def test_figure_14_the_linear_response_follows_the_nonlinear_one_through_the_pulse():
+    figure = record_response(read_record(EXAMPLES / "accel.csv"))
+    assert [len(row[0].curves) for row in figure.panels] == [2, 2, 2]
+    for row in (1, 2):
+        nonlinear, linear = (np.abs(y).max() for y in curves(figure, row, 0).values())
+        assert linear == pytest.approx(nonlinear, rel=0.15)
+    assert "0.197 g positive" in figure.caption
+
+
+def test_figure_15_block_and_symmetric_frame_do_the_same_and_the_others_nearly():
+    figure = equivalent_vulnerability()
+    peaks = {curve.label: np.abs(curve.y).max() for curve in figure.panels[1][0].curves}
+    assert peaks["symmetric frame"] == pytest.approx(peaks["block"], rel=1e-6)
+    assert peaks["wall"] == pytest.approx(peaks["block"], rel=0.3)
+    assert peaks["arch"] == pytest.approx(peaks["block"], rel=0.5)
+    assert len({round(float(curve.x[-1]), 6) for curve in figure.panels[0][0].curves}) == 4  # four different pulses
+
+
+def test_the_command_writes_a_picture_and_the_data(tmp_path):
+    result = run("figure", "3", "--folder", tmp_path / "new", "--format", "svg", "--json")
+    (made,) = json.loads(result.stdout)["figures"]
+    assert made["figure"] == 3
+    assert (tmp_path / "new" / "figure3.svg").read_text(encoding="utf-8").startswith("<?xml")
+    with (tmp_path / "new" / "figure3.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    expected = paper_figure(3)
+    assert len(rows) == sum(curve.x.size for row in expected.panels for panel in row for curve in panel.curves)
+    assert float(rows[0]["y"]) == pytest.approx(expected.panels[0][0].curves[0].y[0], rel=1e-8)
+
+
+def test_figure_14_takes_a_record_and_no_other_does(tmp_path):
+    run("figure", "14", "--record", EXAMPLES / "accel.csv", "--folder", tmp_path)
+    assert (tmp_path / "figure14.png").stat().st_size > 20_000
+    assert "Figure 14" in run("figure", "3", "--record", EXAMPLES / "accel.csv", code=2).stderr
+    assert "no such file" in run("figure", "14", "--record", tmp_path / "none", code=2).stderr
+    assert "4" in run("figure", "4", code=2).stderr
