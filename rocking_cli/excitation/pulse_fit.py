@@ -130,7 +130,7 @@ def fit_pulses(
             place = search.best(shape)
             captured, weights = search.fit(shape, place)
             pulse, sign = _as_pulse(shape, place, peak * weights)
-            yield PulseFit(pulse, place.start, sign, criterion, captured)
+            yield PulseFit(pulse, place.start, sign, criterion, min(captured, 1.0))  # rounding apart
 
 
 class _Place(NamedTuple):
