@@ -45,6 +45,10 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion as GroundMotion
     from rocking_cli.excitation.measures import Measures as Measures
     from rocking_cli.excitation.measures import measure as measure
+    from rocking_cli.excitation.pulse_fit import PulseFit as PulseFit
+    from rocking_cli.excitation.pulse_fit import fit_pulse as fit_pulse
+    from rocking_cli.excitation.pulses import Pulse as Pulse
+    from rocking_cli.excitation.pulses import parse_pulse as parse_pulse
     from rocking_cli.excitation.records import read_record as read_record
     from rocking_cli.registry import Registry as Registry
     from rocking_cli.structure import load_structure as load_structure
@@ -62,6 +66,8 @@ _HOME = {
     "errors": ["InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
     "excitation.base": ["GroundMotion"],
     "excitation.measures": ["Measures", "measure"],
+    "excitation.pulse_fit": ["PulseFit", "fit_pulse"],
+    "excitation.pulses": ["Pulse", "parse_pulse"],
     "excitation.records": ["read_record"],
     "registry": ["Registry"],
     "structure": ["load_structure"],

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import csv
+import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from rocking_cli.cli import respond as respond_command
+from rocking_cli.cli.main import main
 from rocking_cli.dynamics.history import respond
+from rocking_cli.excitation.pulse_fit import FITTED, fit_pulse
 from rocking_cli.excitation.pulses import PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
+from rocking_cli.plotting.history import draw_history
+from rocking_cli.plotting.pulse_fit import draw_pulses
 from rocking_cli.structure import load_structure
 from tests.test_cli import ACCEL, FRAME, run, run_json
 
@@ -80,3 +88,150 @@ class TestInPlaceOfARecord:
     )
     def test_what_does_not_fit_is_refused(self, options, words):
         assert words in run("respond", *options, code=2).stderr
+
+
+KEYS = ["criterion", "captured", "start", "centre", "sign", "shape", "specification", "amplitude", "period", "duration"]
+
+
+@pytest.fixture
+def made(tmp_path):
+    """A record that is a reversed sine of 0.4 g and 0.8 s from 2 s on, and a little besides."""
+    t = 0.01 * np.arange(1000)
+    a = -parse_pulse("sine:0.4g:0.8s").acceleration(t - 2.0) / 9.80665 + 0.01 * np.sin(40 * t) * (t < 8)
+    path = tmp_path / "made.csv"
+    path.write_text("t,accel_g\n" + "".join(f"{x:.2f},{y:.9f}\n" for x, y in zip(t, a, strict=True)), encoding="utf-8")
+    return path
+
+
+class TestInARecord:
+    def test_json_has_every_shape_by_both_criteria(self, made):
+        data = run_json("record", made, "--pulse", "--scale", "2")
+        assert list(data)[-2:] == ["warnings", "pulses"] and "pulses" not in run_json("record", made)
+        assert list(data["pulses"]) == ["acceleration", "velocity"]
+        motion = read_record(made).scaled(2)
+        for criterion, fits in data["pulses"].items():
+            assert list(fits) == ["sine", "ricker", "mavroeidis"] == list(FITTED)
+            for shape, found in fits.items():
+                assert list(found) == KEYS + (["phase", "cycles"] if shape == "mavroeidis" else [])
+                fit = fit_pulse(motion, shape, criterion)
+                assert (found["criterion"], found["shape"]) == (criterion, shape)
+                assert (found["captured"], found["start"], found["centre"]) == (fit.captured, fit.start, fit.centre)
+                assert parse_pulse(found["specification"]).period == pytest.approx(found["period"], rel=1e-5)
+            sine = fits["sine"]
+            assert (sine["sign"], sine["amplitude"]) == (-1, pytest.approx(0.8, rel=0.03))
+            assert (sine["start"], sine["period"]) == (pytest.approx(2, abs=0.03), pytest.approx(0.8, rel=0.03))
+
+    @pytest.mark.parametrize("width", [40, 60, 80, 200])
+    def test_the_tables_fit_the_terminal_and_say_what_is_maximised(self, width, made, monkeypatch):
+        monkeypatch.setenv("COLUMNS", str(width))
+        text = run("record", made, "--pulse").stdout
+        rows = [line for line in text.splitlines() if not line.startswith("Energy captured")]
+        assert max(map(len, rows)) <= max(width, 55)
+        assert "fitted in acceleration" in " ".join(text.split()) and "fitted in velocity" in " ".join(text.split())
+        assert "1 - sum (r - s)^2 / sum r^2" in text
+        for fits in run_json("record", made, "--pulse")["pulses"].values():
+            for found in fits.values():
+                assert f"{100 * found['captured']:.1f}" in text
+                assert all(f"{found[key]:.4g}" in text for key in ("amplitude", "period", "start", "centre"))
+                assert all(f"{found[key]:.4g}" in text for key in ("phase", "cycles") if key in found)
+
+    def test_several_files_and_one_without_a_pulse(self, made, tmp_path):
+        (tmp_path / "zero.csv").write_text("t,accel_g\n" + "".join(f"{k},0\n" for k in range(40)), encoding="utf-8")
+        result = CliRunner().invoke(main, ["record", "zero.csv", str(made), "--pulse", "--json"])
+        assert result.exit_code == 2 and "zero throughout" in result.stderr
+        assert json.loads(result.stdout)["pulses"]["velocity"]["sine"]["sign"] == -1
+
+    def test_a_long_search_says_how_far_it_is(self, made, monkeypatch):
+        monkeypatch.setattr("rocking_cli.cli.pulse_fits.PATIENCE", float("inf"))
+        assert "fitted" not in run("record", made, "--pulse").stderr
+        monkeypatch.setattr("rocking_cli.cli.pulse_fits.PATIENCE", 0.0)
+        assert "made.csv: 3 of 6 pulses fitted" in run("record", made, "--pulse").stderr
+
+    def test_the_picture_shows_the_best_of_each_criterion(self, made, tmp_path):
+        run("record", made, "--pulse", "--plot", "plot.png")
+        assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
+        motion = read_record(made)
+        fits = [fit_pulse(motion, "sine", "velocity"), fit_pulse(motion, "ricker", "acceleration")]
+        above, below = draw_pulses(motion, fits, 9.0).axes
+        for axes, of in ((above, "acceleration"), (below, "velocity")):
+            thin, _, *bold = axes.get_lines()
+            assert [line.get_linewidth() > 2 * thin.get_linewidth() for line in bold] == [True, True]
+            assert len({line.get_linestyle() for line in bold}) == 2
+            for line, fit in zip(bold, fits, strict=True):
+                unit = 9.80665 if of == "acceleration" else 1.0
+                np.testing.assert_allclose(line.get_ydata() * unit, getattr(fit, of)(line.get_xdata()))
+        assert "fitted in velocity: " in above.get_figure().legends[0].get_texts()[0].get_text()
+        assert above.get_xlim() == (0, 9)
+
+
+class TestWithPulse:
+    def test_json_has_the_pulse_and_the_responses_to_it_alone(self, made):
+        data = run_json("respond", FRAME, "--record", made, "--with-pulse", "sine", "--polarity", "-1")
+        assert list(data) == ["structure", "record", "release", "responses", "pulse", "pulse_responses", "notes"]
+        assert list(data["pulse"]) == KEYS and data["pulse"]["sign"] == 1
+        motion = read_record(made).scaled(-1)
+        alone = fit_pulse(motion, "sine", "velocity").alone(motion)
+        for name, motion_of in (("responses", motion), ("pulse_responses", alone)):
+            history = respond(load_structure(FRAME), motion_of)
+            assert list(data[name]) == list(history)
+            assert [each["peak_ratio"] for each in data[name].values()] == [
+                run.peak_ratio for run in history.values()
+            ]  # fmt: skip
+        plain = run_json("respond", FRAME, "--record", made)
+        assert "pulse" not in plain and "pulse_responses" not in plain
+
+    def test_without_a_value_the_best_is_taken(self, made):
+        data = run_json("respond", "--record", made, "--model", "linear1", "--with-pulse")
+        fits = run_json("record", made, "--pulse")["pulses"]["velocity"]
+        assert data["pulse"] == max(fits.values(), key=lambda fit: fit["captured"])
+        assert list(data["pulse_responses"]) == ["linear1"]
+
+    def test_tables_stand_one_after_the_other_and_say_what_share_is_the_pulse_s(self, made):
+        result = run("respond", FRAME, "--record", made, "--with-pulse", "sine", "--impacts")
+        words = " ".join(result.stdout.split())
+        assert (
+            words.index("under the record")
+            < words.index("under its pulse alone")
+            < words.index("the pulse alone rocks")
+        )
+        assert "pulse: full sine" in result.stderr and "of the energy of the velocity" in result.stderr
+        data = run_json("respond", FRAME, "--record", made, "--with-pulse", "sine")
+        peaks = [data[name]["nonlinear"]["peak_ratio"] for name in ("responses", "pulse_responses")]
+        assert f"rocks it to {100 * peaks[1] / peaks[0]:.3g} % of the peak" in words
+        over = run("respond", FRAME, "--record", made, "--with-pulse", "sine", "--scale", "4").stdout
+        assert "it overturns under the record; under its pulse alone it overturns" in over
+        rest = run("respond", FRAME, "--record", made, "--with-pulse", "sine", "--scale", "0.1").stdout
+        assert "does not rock under the record" in rest
+
+    def test_files_and_pictures_have_both(self, made, tmp_path):
+        run("respond", FRAME, "--record", made, "--with-pulse", "--out", "out.csv", "--plot", "plot.png")
+        with (tmp_path / "out.csv").open(encoding="utf-8") as stream:
+            columns = next(csv.reader(stream))
+        assert "nonlinear phi [rad]" in columns and "pulse nonlinear phi [rad]" in columns
+        assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
+        motion = read_record(made)
+        fit = fit_pulse(motion, "sine", "velocity")
+        structure = load_structure(FRAME)
+        whole, alone = respond(structure, motion), respond(structure, fit.alone(motion))
+        above, record, pulse = draw_history(whole, motion, "a frame", None, (fit, alone)).axes
+        thin, bold = above.get_lines()
+        assert bold.get_linewidth() > 3 * thin.get_linewidth() and bold.get_color() != thin.get_color()
+        np.testing.assert_allclose(bold.get_ydata() * 9.80665, fit.acceleration(bold.get_xdata()))
+        for axes, title, runs in ((record, "record", whole), (pulse, "its pulse alone", alone)):
+            assert axes.get_legend().get_title().get_text() == title
+            np.testing.assert_array_equal(axes.get_lines()[0].get_ydata(), runs["nonlinear"].ratio)
+
+    @pytest.mark.parametrize(
+        ("options", "words"),
+        [
+            (["--pulse", SINE, "--with-pulse"], "give --record FILE"),
+            (["--release", "0.5", "--with-pulse"], "give --record FILE"),
+            (["--record", ACCEL, "--polarity", "both", "--with-pulse"], "exclude each other"),
+            (["--record", ACCEL, "--with-pulse", "cosine"], "'best', 'sine', 'ricker', 'mavroeidis'"),
+        ],
+    )
+    def test_what_does_not_fit_is_refused(self, options, words):
+        assert words in run("respond", *options, code=2).stderr
+
+    def test_the_shapes_of_the_help_are_those_of_the_library(self):
+        assert tuple(FITTED) == respond_command.FITTED

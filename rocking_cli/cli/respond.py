@@ -18,10 +18,13 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.measures import Measures
+    from rocking_cli.excitation.pulse_fit import PulseFit
     from rocking_cli.excitation.pulses import Pulse
 
-# The names of the models stand here again so that `--help` needs no numpy.
+# The names of the models and of the pulses that are fitted stand here again so that `--help` needs no numpy.
 NAMES = ("nonlinear", "linear1", "linear2")
+FITTED = ("sine", "ricker", "mavroeidis")
+BEST = "best"
 
 
 def _models(ctx: click.Context, param: click.Parameter, value: str) -> tuple[str, ...]:
@@ -63,6 +66,13 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 )
 @click.option("--vertical-channel", metavar="CHANNEL", help="Which of several it is in its file.")
 @options.scaling("1", "-1", "both")
+@click.option(
+    "--with-pulse",
+    type=click.Choice((BEST, *FITTED)),
+    is_flag=False,
+    flag_value=BEST,
+    help="Also the response to the pulse in the record alone, of this shape or (with no value) the best.",
+)
 @click.option(
     "--release",
     type=options.Finite(),
@@ -119,6 +129,7 @@ def command(
     target_pga: float | None,
     target_pgv: float | None,
     polarity: str,
+    with_pulse: str | None,
     release: float | None,
     models: tuple[str, ...],
     tail: float,
@@ -142,6 +153,7 @@ def command(
       rocking respond --record accel.txt --dt 0.01 --units g --target-pga 0.4 --polarity both
       rocking respond arch.yaml --release 0.5
       rocking respond frame.yaml --pulse ricker:0.4g:1.2s --polarity both
+      rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
     """
     if record is not None and pulse is not None:
         raise click.UsageError("--record and --pulse exclude each other.")
@@ -164,6 +176,10 @@ def command(
         raise click.UsageError(
             "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE or --pulse PULSE."
         )
+    if with_pulse is not None and record is None:
+        raise click.UsageError("--with-pulse finds the pulse in a record: give --record FILE.")
+    if with_pulse is not None and polarity == "both":
+        raise click.UsageError("--with-pulse and --polarity both exclude each other: ask for one after the other.")
     from rocking_cli.cli import responses, structures
     from rocking_cli.dynamics.vertical import vertical_notes
     from rocking_cli.files import keep_apart
@@ -187,31 +203,43 @@ def command(
         factor = _judge(as_read, equivalence, scale, target_pga, target_pgv)
     signs = (1, -1) if polarity == "both" else (int(polarity),)
     shaking = {sign: as_read.scaled(sign * factor) if as_read is not None else None for sign in signs}
-    runs = {
-        sign: _respond(mechanism, motion, cast("tuple[ModelName, ...]", models), release, tail, rtol)
-        for sign, motion in shaking.items()
-    }
     first = shaking[signs[0]]
+    fit, alone = None, None
+    if with_pulse is not None and first is not None:
+        fit = _find(first, with_pulse)
+        alone = fit.alone(first)
+    chosen = cast("tuple[ModelName, ...]", models)
+    runs = {sign: _respond(mechanism, motion, chosen, release, tail, rtol) for sign, motion in shaking.items()}
+    pulse_run = _respond(mechanism, alone, chosen, release, tail, rtol) if alone is not None else None
     if out is not None:
-        _write(out, runs, first)
+        _write(out, runs, pulse_run, first)
+    title = structures.label(mechanism)
     if plot is not None:
-        _draw(plot, runs, first, structures.label(mechanism))
+        _draw(plot, runs, first, title, (fit, pulse_run) if fit is not None and pulse_run is not None else None)
     etas = equivalence if impacts else None
     notes = vertical_notes(first, mechanism.gravity) if first is not None else []
     if as_json:
-        terminal.print_json(
-            {
-                "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
-                "record": responses.record_json(as_read, factor, polarity, shape) if as_read is not None else None,
-                "release": release,
-                **responses.runs_json(runs, etas),
-                "notes": notes,
-            }
-        )
+        found = {
+            "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
+            "record": responses.record_json(as_read, factor, polarity, shape) if as_read is not None else None,
+            "release": release,
+            **responses.runs_json(runs, etas),
+        }
+        if fit is not None and pulse_run is not None:
+            from rocking_cli.cli.pulse_fits import fit_json
+
+            found |= {"pulse": fit_json(fit), "pulse_responses": responses.histories_json(pulse_run, etas)}
+        terminal.print_json({**found, "notes": notes})
+        return
+    if pulse_run is None:
+        responses.print_tables(title, runs, etas)
     else:
-        responses.print_tables(structures.label(mechanism), runs, etas)
-        for note in notes:
-            terminal.result(note)
+        responses.print_tables(f"{title}, under the record", runs, etas)
+        terminal.result()
+        responses.print_tables(f"{title}, under its pulse alone", {1: pulse_run}, etas)
+        terminal.result(responses.share_of_pulse(runs[signs[0]], pulse_run))
+    for note in notes:
+        terminal.result(note)
 
 
 def _equivalence(mechanism: Mechanism) -> Equivalence:
@@ -243,6 +271,21 @@ def _make(specification: str) -> tuple[Pulse, GroundMotion]:
     amplitude = pulse.amplitude / STANDARD_GRAVITY
     terminal.note(f"pulse: {pulse.title}, {amplitude:.4g} g, period {pulse.period:.4g} s, lasts {pulse.duration:.4g} s")
     return pulse, pulse.sampled()
+
+
+def _find(motion: GroundMotion, shape: str) -> PulseFit:
+    """The pulse of a shape, or of the best, that captures most energy of the velocity of a motion."""
+    from rocking_cli.excitation.base import STANDARD_GRAVITY
+    from rocking_cli.excitation.pulse_fit import fit_pulses
+
+    fits = fit_pulses(motion, FITTED if shape == BEST else (shape,), ("velocity",))
+    fit = max(fits, key=lambda each: each.captured)
+    terminal.note(
+        f"pulse: {fit.pulse.title}, a_p = {fit.pulse.amplitude / STANDARD_GRAVITY:.4g} g, "
+        f"T_p = {fit.pulse.period:.4g} s, from {fit.start:.4g} s, sign {fit.sign:+d}: "
+        f"{100 * fit.captured:.0f} % of the energy of the velocity"
+    )
+    return fit
 
 
 def _judge(
@@ -295,8 +338,8 @@ def _respond(
         raise MechanismError(f"{mechanism.name}: {error}") from error
 
 
-def _write(path: Path, runs: Runs, motion: GroundMotion | None) -> None:
-    """Write the histories; those of the second polarity stand after the first, under names that say so."""
+def _write(path: Path, runs: Runs, pulse_run: dict[ModelName, History] | None, motion: GroundMotion | None) -> None:
+    """Write the histories; those of the second polarity, or to the pulse alone, stand last, under names that say so."""
     from rocking_cli.files import write_whole
     from rocking_cli.history_csv import write_history_csv
     from rocking_cli.history_parquet import write_history_parquet
@@ -304,16 +347,23 @@ def _write(path: Path, runs: Runs, motion: GroundMotion | None) -> None:
     first, *others = runs.values()
     columns: dict[str, History] = dict(first.items())
     columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
+    columns |= {f"pulse {name}": run for name, run in (pulse_run or {}).items()}
     write = write_history_parquet if path.suffix.lower() == ".parquet" else write_history_csv
     write_whole(path, lambda stream: write(stream, columns, motion))
     terminal.note(f"wrote {path}")
 
 
-def _draw(path: Path, runs: Runs, motion: GroundMotion | None, title: str) -> None:
+def _draw(
+    path: Path,
+    runs: Runs,
+    motion: GroundMotion | None,
+    title: str,
+    pulse: tuple[PulseFit, dict[ModelName, History]] | None,
+) -> None:
     os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
     from rocking_cli.files import write_whole
     from rocking_cli.plotting.history import draw_history
 
-    figure = draw_history(runs[next(iter(runs))], motion, title, runs[-1] if len(runs) > 1 else None)
+    figure = draw_history(runs[next(iter(runs))], motion, title, runs[-1] if len(runs) > 1 else None, pulse)
     write_whole(path, lambda stream: figure.savefig(stream, format=path.suffix[1:].lower()))
     terminal.note(f"wrote {path}")

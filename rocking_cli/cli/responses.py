@@ -59,11 +59,13 @@ def _motion_json(motion: GroundMotion) -> dict[str, Any]:
 
 def runs_json(runs: Runs, etas: Equivalence | None) -> dict[str, Any]:
     """The responses, under their polarities if there are two; with the impacts if there are `etas`."""
-    each = {
-        str(polarity): {"responses": {name: _history_json(run, etas) for name, run in histories.items()}}
-        for polarity, histories in runs.items()
-    }
+    each = {str(polarity): {"responses": histories_json(histories, etas)} for polarity, histories in runs.items()}
     return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": _governs(runs)[0]}
+
+
+def histories_json(histories: Histories, etas: Equivalence | None) -> dict[str, Any]:
+    """The response of each model; with the impacts if there are `etas`."""
+    return {name: _history_json(run, etas) for name, run in histories.items()}
 
 
 def _history_json(history: History, etas: Equivalence | None) -> dict[str, Any]:
@@ -158,6 +160,19 @@ def _governs(runs: Runs) -> tuple[int | None, str]:
         worse = max(sizes, key=sizes.__getitem__)
         said = f"it rocks to {sizes[worse]:.4g} of the critical rotation, the other to {sizes[-worse]:.4g}"
     return worse, f"Polarity {worse} governs {by_model}: {said}."
+
+
+def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
+    """A sentence on how much of the response to a record is that to its pulse, by the best model."""
+    model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
+    whole, alone = histories[model], to_pulse[model]
+    if whole.overturned or alone.overturned:
+        fates = ["overturns" if run.overturned else "does not" for run in (whole, alone)]
+        return f"By the {model} model it {fates[0]} under the record; under its pulse alone it {fates[1]}."
+    if not whole.peak_ratio:
+        return f"By the {model} model it does not rock under the record."
+    share = 100 * (alone.peak_ratio or 0.0) / whole.peak_ratio
+    return f"By the {model} model the pulse alone rocks it to {share:.3g} % of the peak under the record."
 
 
 def _size(history: History) -> float:

@@ -13,6 +13,7 @@ from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.plotting.thinning import visible
 
@@ -21,6 +22,7 @@ FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a c
 FELT = 0.02  # of the strongest impact: weaker ones, of a chatter to rest, are not marked
 LONGEST = 95  # characters of a heading
 SHORTEST = 0.1  # s of the time axis
+POINTS = 1000  # of a pulse
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
 
 
@@ -29,6 +31,7 @@ def draw_history(
     motion: GroundMotion | None,
     title: str,
     reversed_histories: Mapping[ModelName, History] | None = None,
+    pulse: tuple[PulseFit, Mapping[ModelName, History]] | None = None,
 ) -> Figure:
     """Draw histories over time.
 
@@ -42,6 +45,8 @@ def draw_history(
         Heading.
     reversed_histories : mapping of str to History, optional
         The responses to the reversed motion, drawn in a panel of their own.
+    pulse : PulseFit and mapping of str to History, optional
+        The pulse in the motion, drawn bold over it, and the responses to it alone, in a panel of their own.
 
     Returns
     -------
@@ -50,6 +55,8 @@ def draw_history(
     responses = {"": histories}
     if reversed_histories is not None:
         responses = {"polarity 1": histories, "polarity -1": reversed_histories}
+    if pulse is not None:
+        responses = {"record": histories, "its pulse alone": pulse[1]}
     shaken = motion is not None
     figure = style.new_figure(1.4 * shaken + 3.4 * len(responses))
     panels = list(
@@ -62,7 +69,7 @@ def draw_history(
     runs = [run for each in responses.values() for run in each.values()]
     end = max(SHORTEST, *(1.1 * run.end_time if run.overturned else float(run.time[-1]) for run in runs))
     if motion is not None:
-        _draw_motion(panels[0], motion, end)
+        _draw_motion(panels[0], motion, end, pulse[0] if pulse is not None else None)
     reach = max(float(np.nanmax(np.abs(run.ratio))) for run in runs)
     tall = min(max(1.1 * reach, 1e-3), TALLEST)
     for axes, (what, each) in zip(panels[shaken:], responses.items(), strict=True):
@@ -73,13 +80,19 @@ def draw_history(
     return figure
 
 
-def _draw_motion(axes: Axes, motion: GroundMotion, end: float) -> None:
-    """Draw what there is of the record up to the end of the picture [s]."""
+def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit | None) -> None:
+    """Draw what there is of the record up to the end of the picture [s], and the pulse over it."""
     ground = motion.acceleration[: int(min(end, motion.duration) / motion.dt) + 2] / STANDARD_GRAVITY
     shown = visible(ground)
-    axes.plot(shown * motion.dt, ground[shown], color=style.INK, linewidth=0.7)
+    color = style.INK if pulse is None else style.RECORD
+    axes.plot(shown * motion.dt, ground[shown], color=color, linewidth=0.7)
+    if pulse is not None:
+        t = pulse.start + np.linspace(0.0, pulse.pulse.duration, POINTS)
+        axes.plot(t, pulse.acceleration(t) / STANDARD_GRAVITY, **style.PULSES[0])
     axes.set_ylabel("ground [g]", fontsize=9)
     named = f"{motion.name}, PGA {motion.pga:.3g} g"
+    if pulse is not None:
+        named += f"; bold: its {pulse.pulse.name} pulse, {pulse.pulse.amplitude / STANDARD_GRAVITY:.3g} g"
     if motion.vertical is not None:
         up = motion.vertical
         part = up.acceleration[: int(min(end, up.duration) / up.dt) + 2] / STANDARD_GRAVITY

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -14,7 +16,7 @@ LINES = {
     "linear2": {"color": "#1f77b4", "linestyle": "-.", "linewidth": 0.9},
 }
 RECORD = "#8a8a8a"  # what something bold is drawn over
-PULSES = (
+PULSES: tuple[dict[str, Any], ...] = (
     {"color": "#111111", "linestyle": "-", "linewidth": 2.4},
     {"color": "#e08a00", "linestyle": "--", "linewidth": 2.0},
     {"color": "#1f77b4", "linestyle": "-.", "linewidth": 1.6},
