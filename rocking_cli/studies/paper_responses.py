@@ -40,7 +40,7 @@ def record_response(motion: GroundMotion) -> PaperFigure:
     )
     fit = fit_pulse(motion, "sine", "acceleration")
     alone = fit.alone(motion)
-    time: Reals = np.arange(motion.npts) * motion.dt
+    time = np.arange(motion.npts, dtype=np.float64) * motion.dt
     ground = Panel("ground motion", "time [s]", r"$\ddot u_g$ [g]")
     ground.curves.append(Curve(motion.name, time, motion.acceleration / STANDARD_GRAVITY, thin=True))
     ground.curves.append(Curve("sine pulse in it", time, alone.acceleration / STANDARD_GRAVITY))
@@ -90,7 +90,7 @@ def equivalent_vulnerability() -> PaperFigure:
         block = equivalent_block(structure).positive
         pulse = Sine(A * block.lambda_ * structure.gravity, 2 * pi / (OMEGA * block.p))
         motion = pulse.sampled()
-        time: Reals = np.arange(motion.npts) * motion.dt
+        time = np.arange(motion.npts, dtype=np.float64) * motion.dt
         pulses.curves.append(Curve(name, time, motion.acceleration / STANDARD_GRAVITY))
         run = respond(structure, motion, models=("nonlinear",), tail=SHOWN / block.p)["nonlinear"]
         curve = _followed(name, run, block.p)
