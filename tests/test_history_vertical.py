@@ -94,6 +94,7 @@ CASES = {
     "same dt": ((0.1, 20, 3, 1.5), (1.0, 20, 0.5), None),
     "finer": ((0.15, 12, 2, 1.8), (0.25, 45, 0.4), None),
     "coarser": ((0.06, 30, 5, 1.5), (3.0, 9, 0.5), 0.3),
+    "all but the same dt": ((0.15, 16, 3, 1.5), (1.0004, 16, 0.5), None),
     "incommensurate": ((0.1, 16, 5, 1.5), (0.37, 43, 0.4), None),
     "incommensurate and coarser": ((0.1, 16, 5, 1.5), (1.7, 10, 0.4), -0.4),
     "longer than the horizontal": ((0.1, 8, 5, 1.8), (0.7, 40, 0.3), None),

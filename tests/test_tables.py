@@ -40,6 +40,24 @@ def test_tables_reproduce_the_coefficients_between_their_nodes(file, direction):
 
 
 @every_direction
+@pytest.mark.parametrize("file", ["frame.yaml", "arch.yaml", "wall.yaml"])
+def test_tables_hold_up_to_where_a_linkage_locks(file, direction):
+    # The inertia grows without bound there, phi over q stands all but still.
+    mechanism = load_structure(EXAMPLES / file)
+    table = tabulate(mechanism)[0 if direction > 0 else 1]
+    q = np.random.default_rng(1).uniform(0.5 * table.end, table.end, 2000)
+    phi, rate = interpolate(table.angles, table.cell, q)
+    assert phi.max() < END * mechanism.limit(direction)
+    at = mechanism.coefficients(phi, direction)
+    for got, expected in zip(
+        (rate, *interpolate(table.forces, table.cell, q)),
+        (at.I**-0.5, at.G * at.I**-0.5, at.B * at.I**-0.5),
+        strict=True,
+    ):
+        assert abs(got - expected).max() < 2e-11 * abs(expected).max()
+
+
+@every_direction
 @pytest.mark.parametrize("file", FILES)
 def test_q_is_the_integral_of_the_root_of_the_inertia(file, direction):
     mechanism = load_structure(EXAMPLES / file)
