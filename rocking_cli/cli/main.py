@@ -13,7 +13,7 @@ from rocking_cli import __version__
 from rocking_cli.cli import terminal
 from rocking_cli.errors import RockingError
 
-COMMANDS = ("equiv", "error", "record", "respond", "pulse", "figure", "mechanisms", "new")
+COMMANDS = ("equiv", "error", "record", "respond", "pulse", "overturning", "equivalent", "figure", "mechanisms", "new")
 
 
 class LazyGroup(click.Group):

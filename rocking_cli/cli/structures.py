@@ -47,6 +47,15 @@ def _unnamed() -> Mechanism:
     return parse_structure(DEFAULT, "default block", "default block")
 
 
+def told_apart(mechanisms: Sequence[Mechanism], files: Sequence[str]) -> list[Mechanism]:
+    """The structures, those that share a name called after their files too."""
+    names = [each.name for each in mechanisms]
+    return [
+        each.model_copy(update={"name": f"{each.name} ({Path(file).name})"}) if names.count(each.name) > 1 else each
+        for each, file in zip(mechanisms, files, strict=True)
+    ]
+
+
 def label(mechanism: Mechanism) -> str:
     """A structure's name and kind, for a heading."""
     return f"{mechanism.name}: {mechanism.title}"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking_cli.dynamics.deck import lay_out
+from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out
 from rocking_cli.dynamics.history import RTOL, check_rtol
 from rocking_cli.dynamics.model import Model
 from rocking_cli.errors import InputError
@@ -18,6 +18,8 @@ from rocking_cli.excitation.base import GroundMotion
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
+# Impacts after the record: one ends the motion under way, two a free excursion to either side; later ones only weaken.
+DECISIVE = 3
 UNIT = 256  # histories a thread takes at a time: some 50 ms of work, against 20 us for handing them out
 
 
@@ -162,6 +164,7 @@ def respond_many(
     *,
     threads: int | None = None,
     rtol: float = RTOL,
+    only_peaks: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Responses:
     """Run many histories, each the same to the last bit as `respond` would run it alone.
@@ -178,6 +181,9 @@ def respond_many(
         How many at a time; without it, one for each processor.
     rtol : float
         Relative local error of a step of the nonlinear motions.
+    only_peaks : bool
+        Whether to leave a motion, as still rocking, some impacts after its record: by then its peaks are final and it
+        is clear that it does not overturn; `impact_count` and `end_time` are those of that moment.
     progress : callable, optional
         Called with the number of histories finished since the last call.
 
@@ -219,9 +225,18 @@ def respond_many(
     marks = np.empty((len(runs), kernels.MARKS))
     if len(runs):
         deck = lay_out(models, motions)
+        most = DECISIVE - 1 if only_peaks else MOST_IMPACTS  # it is left after more than these
         with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
             units = {
-                pool.submit(deck.run, rows, marks, first=first, stop=min(first + UNIT, len(runs)), rtol=rtol): first
+                pool.submit(
+                    deck.run,
+                    rows,
+                    marks,
+                    first=first,
+                    stop=min(first + UNIT, len(runs)),
+                    rtol=rtol,
+                    most_impacts=most,
+                ): first
                 for first in range(0, len(runs), UNIT)
             }
             try:

@@ -98,7 +98,9 @@ def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) ->
                 )
             )
     return [
-        _nonlinear(label, mechanism, blocks) if name == "nonlinear" else _linear(label, name, blocks, mechanism.gravity)
+        _nonlinear(label, mechanism, blocks)
+        if name == "nonlinear"
+        else linear_model(label, name, blocks, mechanism.gravity)
         for name in names
     ]
 
@@ -127,8 +129,21 @@ def _nonlinear(label: str, mechanism: Mechanism, blocks: tuple[EquivalentBlock, 
     return Model("nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables)
 
 
-def _linear(label: str, name: ModelName, blocks: tuple[EquivalentBlock, EquivalentBlock], gravity: float) -> Model:
-    """q = phi here; one cell holds the straight line and the constant that are all of its forces."""
+def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, EquivalentBlock], gravity: float) -> Model:
+    """Prepare equivalent blocks.
+
+    Parameters
+    ----------
+    label : str
+        What to call the structure.
+    name : {"linear1", "linear2"}
+        Which kappa.
+    blocks : tuple of EquivalentBlock
+        Of the positive and the negative direction.
+    gravity : float
+        [m/s2].
+    """
+    # q = phi here; one cell holds the straight line and the constant that are all of its forces.
     numbers, forces = [], np.zeros((1, 2, 8))
     for d, block in enumerate(blocks):
         kappa = block.kappa1 if name == "linear1" else block.kappa2

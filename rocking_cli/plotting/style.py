@@ -23,6 +23,22 @@ PULSES: tuple[dict[str, Any], ...] = (
 )
 LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2": r"linear, $\kappa_2$"}
 
+# For any number of curves: dash and mark tell them apart in grey, and where they lie on one another.
+_DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (3, 1)))
+_HUES = ("#111111", "#d98200", "#1f77b4", "#8a3b62", "#3c7d3c", "#777777")
+_MARKS = ("o", "s", "^", "D", "v", "P")
+
+
+def distinct(k: int) -> dict[str, Any]:
+    """The look of the curve number k of several."""
+    return {
+        "color": _HUES[k % len(_HUES)],
+        "linestyle": _DASHES[k % len(_DASHES)],
+        "marker": _MARKS[k % len(_MARKS)],
+        "markersize": 4.5,
+        "linewidth": 1.5,
+    }
+
 
 def new_figure(height: float) -> Figure:
     """An empty figure of the common width; `height` in inches."""

@@ -1,0 +1,202 @@
+"""`rocking overturning`: what pulses of every amplitude and period do, and which of several structures goes first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rocking_cli.cli import options
+from rocking_cli.cli.quantities import Range
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.shaken import Reals, Shaken
+
+MODELS = ("linear2", "linear1", "nonlinear")
+POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
+PLANE, CURVE = 256, 60  # points, of each side of a map and of a curve
+ETA = 0.9
+OMEGAS, AMPLITUDES = (0.5, 10.0), (0.5, 10.0)  # shown unless asked otherwise
+SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
+
+
+def _eta(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not 0 < value <= 1:
+        raise click.BadParameter(f"{value:g} is not a coefficient of restitution: it is above 0 and at most 1.")
+    return value
+
+
+@click.command(short_help="Which pulses overturn a structure; which of several goes first.")
+@click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
+@click.option("--compare", is_flag=True, help="The least overturning amplitude of several FILEs, in one picture.")
+@click.option("--pulse", default="sine", show_default=True, metavar="SHAPE", help="Shape of the pulses.")
+@click.option("--model", type=click.Choice(MODELS), help="[default: linear2; nonlinear with --compare]")
+@click.option(
+    "--eta", type=options.Finite(), callback=_eta, help="Restitution.  [default: the structure's; 0.9 without FILE]"
+)
+@click.option(
+    "--polarity",
+    type=click.Choice(list(POLARITIES)),
+    default="1",
+    show_default=True,
+    help="-1 reverses the pulse. both: the worse of the two.",
+)
+@click.option("--dimensionless", is_flag=True, help="Over omega and a, also with FILE.")
+@click.option("--periods", type=Range("period"), metavar="LOW:HIGH", help="Periods in s, such as 0.2:4.")
+@click.option(
+    "--accelerations", type=Range("acceleration"), metavar="LOW:HIGH", help="Amplitudes with units, such as 0.1g:2g."
+)
+@click.option("--omega", type=Range("number"), metavar="LOW:HIGH", help="Dimensionless frequencies.  [default: 0.5:10]")
+@click.option("--a", type=Range("number"), metavar="LOW:HIGH", help="Dimensionless amplitudes.  [default: 0.5:10]")
+@click.option(
+    "--points",
+    type=click.IntRange(2, 1000),
+    metavar="N",
+    help=f"Points of each side of the map, or periods compared.  [default: {PLANE}, {CURVE}]",
+)
+@click.option(
+    "--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the map, a line a point, or curves."
+)
+@click.option(
+    "--plot",
+    callback=options.output_path(".png", ".svg", ".pdf"),
+    metavar="FILE.png",
+    help="Draw it (.png, .svg or .pdf).",
+)
+@options.as_json
+def command(
+    files: tuple[str, ...],
+    compare: bool,
+    pulse: str,
+    model: str | None,
+    eta: float | None,
+    polarity: str,
+    dimensionless: bool,
+    periods: tuple[float, float] | None,
+    accelerations: tuple[float, float] | None,
+    omega: tuple[float, float] | None,
+    a: tuple[float, float] | None,
+    points: int | None,
+    out: Path | None,
+    plot: Path | None,
+    as_json: bool,
+) -> None:
+    """Which pulses overturn a structure: a map over their periods and amplitudes.
+
+    Each point of the map is a motion followed until it is decided: no uplift, rocking, or overturning after some
+    impacts or without any. Without FILE it is that of the linear block over omega = omega_g/p and a = a_g/(g lambda).
+
+    With --compare, the least amplitude that overturns each FILE, over the period: which of them goes first.
+
+    \b
+    Example:
+      rocking overturning --plot map.png
+      rocking overturning block.yaml --model nonlinear --accelerations 0.1g:2g --plot map.png
+      rocking overturning --compare block.yaml frame.yaml wall.yaml --periods 0.2:4 --plot curves.png
+
+    Source: DeJong and Dimitrakopoulos (2014), Section 6; Zhang and Makris (2001).
+    """
+    given = {"periods": periods, "accelerations": accelerations, "omega": omega, "a": a}
+    _check(files, compare, model, dimensionless, given)
+    from rocking_cli.cli import overturning_results as results
+    from rocking_cli.cli import structures, work
+    from rocking_cli.files import keep_apart
+    from rocking_cli.studies import overturning as study
+    from rocking_cli.studies.shaken import linear_block, parse_shape, shaken
+
+    keep_apart([("--out", out), ("--plot", plot)], files)
+    shape, polarities = parse_shape(pulse), POLARITIES[polarity]
+    chosen = model or ("nonlinear" if compare else "linear2")
+    mechanisms = structures.told_apart(structures.load(files), files) if files else []
+    subjects = [shaken(each, chosen, shape, polarities, eta) for each in mechanisms]  # type: ignore[arg-type]
+    if compare:
+        spread, top = _curves(subjects, points or CURVE, periods, accelerations)
+        with work.histories(study.work(subjects, spread.size * study.SCAN * study.PASSES, polarities)) as progress:
+            compared = study.compare(subjects, shape, spread, top, polarities=polarities, progress=progress)
+        results.give_comparison(compared, mechanisms, out, plot, as_json=as_json)
+        return
+    subject = subjects[0] if subjects else linear_block(ETA if eta is None else eta)
+    dimensionless = dimensionless or not files
+    omegas, amplitudes = _plane(subject, points or PLANE, omega, a, periods, accelerations, dimensionless=dimensionless)
+    with work.histories(study.work([subject], omegas.size * amplitudes.size, polarities)) as progress:
+        found = study.overturning_map(subject, shape, omegas, amplitudes, polarities=polarities, progress=progress)
+    mechanism = mechanisms[0] if mechanisms else None
+    results.give_map(found, mechanism, out, plot, dimensionless=dimensionless, as_json=as_json)
+
+
+def _check(
+    files: tuple[str, ...], compare: bool, model: str | None, dimensionless: bool, given: Mapping[str, object]
+) -> None:
+    """Refuse options that do not go together, before anything is read."""
+    if compare and len(files) < 2:
+        raise click.UsageError("--compare needs two structures or more: give their FILEs.")
+    if not compare and len(files) > 1:
+        raise click.UsageError("A map is of one structure: give one FILE, or --compare for the curves of several.")
+    if not files and model not in (None, "linear2"):
+        raise click.UsageError(
+            f"--model {model} is of a structure: give FILE. Without it the map is of a linear block."
+        )
+    if compare and dimensionless:
+        raise click.UsageError("--compare is over the period in s: leave --dimensionless out.")
+    scaled = dimensionless or not files
+    wrong, right = (("periods", "accelerations"), ("omega", "a"))[:: 1 if scaled else -1]
+    for option in wrong:
+        if given[option] is not None:
+            instead = f"--{right[wrong.index(option)]}"
+            why = "without FILE" if not files else "with --dimensionless" if scaled else "with FILE"
+            more = "" if scaled or compare else ", or add --dimensionless"
+            raise click.UsageError(f"--{option} has no meaning {why}: give {instead}{more}.")
+
+
+def _plane(
+    subject: Shaken,
+    points: int,
+    omega: tuple[float, float] | None,
+    a: tuple[float, float] | None,
+    periods: tuple[float, float] | None,
+    accelerations: tuple[float, float] | None,
+    *,
+    dimensionless: bool,
+) -> tuple[Reals, Reals]:
+    """omega and a of the columns and rows, even over what the map is drawn over."""
+    import numpy as np
+
+    from rocking_cli.excitation.base import STANDARD_GRAVITY
+
+    if dimensionless:
+        return np.linspace(*(omega or OMEGAS), points), np.linspace(*(a or AMPLITUDES), points)
+    spread = np.linspace(*(periods or _usual_periods([subject])), points)
+    unit = subject.unit / STANDARD_GRAVITY
+    low, high = accelerations or (_round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit))
+    amplitudes = np.linspace(low, high, points)
+    return subject.period(spread), amplitudes / unit
+
+
+def _curves(
+    subjects: list[Shaken],
+    points: int,
+    periods: tuple[float, float] | None,
+    accelerations: tuple[float, float] | None,
+) -> tuple[Reals, float]:
+    """Periods [s], and the largest amplitude to try [g]."""
+    import numpy as np
+
+    from rocking_cli.excitation.base import STANDARD_GRAVITY
+
+    strongest = max(each.unit for each in subjects) / STANDARD_GRAVITY
+    top = accelerations[1] if accelerations else _round(AMPLITUDES[1] * strongest)
+    return np.linspace(*(periods or _usual_periods(subjects)), points), top
+
+
+def _usual_periods(subjects: list[Shaken]) -> tuple[float, float]:
+    """From the shortest at the largest p to the longest at the smallest [s]."""
+    from math import pi
+
+    p = [each.p for each in subjects]
+    return _round(2 * pi / (OMEGAS[1] * max(p))), _round(2 * pi / (SLOWEST * min(p)))
+
+
+def _round(value: float) -> float:
+    return float(f"{value:.2g}")

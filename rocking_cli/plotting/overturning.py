@@ -1,0 +1,158 @@
+"""The plane of pulses, by what they do; and the least pulses that overturn several structures."""
+
+from __future__ import annotations
+
+from textwrap import shorten
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from numpy.typing import NDArray
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
+
+Reals = NDArray[np.float64]
+LONGEST = 95  # characters of a heading
+FINE = 500  # points along either axis of the grid on which boundaries are traced
+PEAKS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr of the contour lines
+PEAK_INK = "#2b5d86"
+# From white to dark, so that the order is seen in grey; blue to orange to brown for the colour-blind.
+FILLS = {
+    "no uplift": "#ffffff",
+    "rocks": "#d6e6f2",
+    "overturns after one impact": "#f2b04a",
+    "overturns after two or more": "#c46a1b",
+    "overturns without impact": "#5b3a55",
+}
+BOUNDARIES = {
+    "uplift": {"color": "#222222", "linestyle": "-", "linewidth": 1.0},
+    "without_impact": {"color": "#000000", "linestyle": "-", "linewidth": 2.0},
+    "after_one_impact": {"color": "#000000", "linestyle": (0, (4, 1.5)), "linewidth": 1.6},
+    "impact_at_end": {"color": "#000000", "linestyle": (0, (1, 1.5)), "linewidth": 1.3},
+}
+
+
+def draw_map(found: OverturningMap, title: str, *, dimensionless: bool) -> Figure:
+    """Draw a map, with contours of the peak and the boundaries that are known in closed form.
+
+    Parameters
+    ----------
+    found : OverturningMap
+        What to draw.
+    title : str
+        Heading.
+    dimensionless : bool
+        Over omega and a, or over the period [s] and the amplitude [g].
+    """
+    figure = style.new_figure(6.0)
+    axes = figure.subplots()
+    axes.set_title(shorten(title, LONGEST, placeholder=" ..."), loc="left", fontsize=10, parse_math=False)
+    across, up = (found.omega, found.a) if dimensionless else (found.periods, found.accelerations)
+    kinds = _kinds(found)
+    axes.pcolormesh(
+        across, up, kinds, cmap=ListedColormap(list(FILLS.values())), vmin=-0.5, vmax=len(FILLS) - 0.5,
+        shading="nearest", rasterized=True,
+    )  # fmt: skip
+    contours = _draw_peaks(axes, across, up, found.peak_ratio)
+    handles: list[Line2D | Patch] = [
+        Patch(facecolor=fill, edgecolor=style.FAINT, label=label)
+        for k, (label, fill) in enumerate(FILLS.items())
+        if (kinds == k).any()
+    ]
+    handles += contours
+    handles += _draw_boundaries(axes, found, dimensionless=dimensionless)
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8, frameon=False)
+    if dimensionless:
+        axes.set_xlabel(r"frequency $\omega_g/p$", fontsize=9)
+        axes.set_ylabel(r"amplitude $a_g/(g\lambda)$", fontsize=9)
+    else:
+        axes.set_xlabel("period of the pulse [s]", fontsize=9)
+        axes.set_ylabel("amplitude of the pulse [g]", fontsize=9)
+    style.tidy(axes)
+    axes.grid(False)
+    return figure
+
+
+def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line2D]:
+    """Draw the longest contour of each level: the many short ones are islands beside overturning, of a point or two."""
+    if not (peaks > PEAKS[0]).any():
+        return []
+    traced = axes.contour(across, up, np.ma.masked_invalid(peaks), levels=PEAKS, linewidths=0)
+    pieces = [[piece for piece in each if len(piece) > 1] for each in traced.allsegs]
+    traced.remove()
+    for level, each in zip(PEAKS, pieces, strict=True):
+        if not each:
+            continue
+        line = max(each, key=len)
+        axes.plot(*line.T, color=PEAK_INK, linewidth=0.7)
+        # Where it has half of its height: there the lines are apart.
+        place = line[np.abs(line[:, 1] - line[:, 1].mean()).argmin()]
+        axes.annotate(
+            f"{level:g}", place, ha="center", va="center", fontsize=7, color=PEAK_INK,
+            bbox={"facecolor": FILLS["rocks"], "edgecolor": "none", "pad": 0.5},
+        )  # fmt: skip
+    return [Line2D([], [], color=PEAK_INK, linewidth=0.7, label=r"peak $\phi/\phi_{cr}$")]
+
+
+def _kinds(found: OverturningMap) -> NDArray[np.int64]:
+    """For each point the place of its fill."""
+    kinds = found.regions + (found.regions == Region.WITHOUT_IMPACT)
+    return np.where((found.regions == Region.AFTER_IMPACT) & (found.impacts > 1), 3, kinds)
+
+
+def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) -> list[Line2D]:
+    omega = np.linspace(found.omega.min(), found.omega.max(), FINE)
+    a = np.linspace(found.a.min(), found.a.max(), FINE)
+    if not dimensionless:  # evenly over the axis that is drawn
+        omega = 2 * np.pi / np.linspace(2 * np.pi / omega[-1], 2 * np.pi / omega[0], FINE)
+    across, up = np.meshgrid(omega, a)
+    drawn = []
+    for boundary in found.boundaries:
+        level = boundary.level(across, up)
+        finite = level[np.isfinite(level)]
+        if not finite.size or finite.min() >= 0 or finite.max() <= 0:
+            continue
+        scale_x = omega if dimensionless else found.structure.period(omega)
+        scale_y = a if dimensionless else a * found.accelerations[0] / found.a[0]
+        look = BOUNDARIES[boundary.name]
+        axes.contour(
+            scale_x, scale_y, np.ma.masked_invalid(level), levels=[0.0],
+            colors=look["color"], linestyles=[look["linestyle"]], linewidths=look["linewidth"],
+        )  # fmt: skip
+        drawn.append(Line2D([], [], label=f"{boundary.title} (closed form)", **look))  # type: ignore[arg-type]
+    return drawn
+
+
+def draw_comparison(found: Comparison, title: str) -> Figure:
+    """Draw the least amplitude that overturns each structure over the period of the pulse.
+
+    Parameters
+    ----------
+    found : Comparison
+        What to draw.
+    title : str
+        Heading.
+    """
+    figure = style.new_figure(4.6)
+    axes = figure.subplots()
+    heading = shorten(f"{title}, up to {found.top:.4g} g", LONGEST, placeholder=" ...")
+    axes.set_title(heading, loc="left", fontsize=10, parse_math=False)
+    every = max(1, found.periods.size // 8)
+    for k, (structure, least) in enumerate(zip(found.structures, found.least, strict=True)):
+        name = structure.name.replace("$", r"\$")
+        axes.plot(found.periods, least, label=name, markevery=(k * every // 4, every), **style.distinct(k))
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
+    axes.set_xlabel("period of the pulse [s]", fontsize=9)
+    axes.set_ylabel("least amplitude that overturns [g]", fontsize=9)
+    axes.legend(fontsize=8, frameon=True, framealpha=0.9, edgecolor="none", handlelength=4)
+    style.tidy(axes)
+    return figure

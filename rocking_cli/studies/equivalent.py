@@ -1,0 +1,282 @@
+"""Pulses to which different structures are equivalently vulnerable [paper, Fig. 15]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.dynamics.exact import exact_response
+from rocking_cli.dynamics.history import History, follow
+from rocking_cli.dynamics.model import ModelName, build_model, linear_model
+from rocking_cli.dynamics.verdict import CLOSE
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.studies.shaken import check_eta, uplift, weakest
+
+Reals = NDArray[np.float64]
+AFTER = 12.0  # p t shown after the pulse
+MOST_PERIODS = 1000  # of the pulse shown at most: a pulse far shorter than the motion
+NEAR, FAR = 0.05, 0.2  # spread over the linear peak up to which structures are equivalent, and so approximately
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """One structure under its own pulse.
+
+    Parameters
+    ----------
+    name, mechanism : str
+        What it is.
+    block : EquivalentBlock
+        Of the direction that the pulse lifts first.
+    pulse : Pulse
+        Its own pulse.
+    eta : float
+        Restitution of the impact that ends the first motion, as used.
+    own_eta : float
+        The structure's own.
+    history : History
+        Its nonlinear response.
+    """
+
+    name: str
+    mechanism: str
+    block: EquivalentBlock
+    pulse: Pulse
+    eta: float
+    own_eta: float
+    history: History
+
+    @property
+    def amplitude(self) -> float:
+        """Of its pulse [standard gravity]."""
+        return self.pulse.amplitude / STANDARD_GRAVITY
+
+
+@dataclass(frozen=True, eq=False)
+class EquivalentResponses:
+    """Structures, each under the pulse that has the same a and omega for it.
+
+    Parameters
+    ----------
+    members : tuple of Member
+        The structures; the pulse was given for the first.
+    a, omega : float
+        Dimensionless amplitude and frequency of every pulse [paper, Eq. 40].
+    kappa : {1, 2}
+        The scaling: which uplift acceleration a is over.
+    polarity : int
+        1, or -1 for reversed pulses.
+    direction : Direction
+        The direction that the pulse lifts first.
+    linear_peak : float or None
+        Largest phi/phi_cr of the linear block that all share; None if it overturns.
+    linear : History
+        The motion of that block, under the first structure's pulse.
+    tau : ndarray
+        p t of the samples: the same for all.
+    """
+
+    members: tuple[Member, ...]
+    a: float
+    omega: float
+    kappa: Literal[1, 2]
+    polarity: int
+    direction: Direction
+    linear_peak: float | None
+    linear: History
+    tau: Reals
+
+    @property
+    def spread(self) -> float | None:
+        """Largest minus smallest phi/phi_cr; None if any structure overturns."""
+        peaks = [each.history.peak_ratio for each in self.members]
+        known = [peak for peak in peaks if peak is not None]
+        return max(known) - min(known) if len(known) == len(peaks) else None
+
+    @property
+    def relative_spread(self) -> float | None:
+        """The spread over the linear peak; None if anything overturns."""
+        return self.spread / self.linear_peak if self.spread is not None and self.linear_peak else None
+
+    @property
+    def one_eta(self) -> bool:
+        """Whether all impacts have the same restitution, as the equivalence needs."""
+        etas = [each.eta for each in self.members]
+        return max(etas) - min(etas) < 1e-9
+
+    @property
+    def pulse_end(self) -> float:
+        """p t at the end of every pulse."""
+        return self.members[0].block.p * self.members[0].pulse.duration
+
+    def turned(self, history: History) -> Reals:
+        """phi/phi_cr of a history, positive in the direction that the pulse lifts first."""
+        return int(self.direction) * history.ratio
+
+
+def equivalent(
+    mechanisms: Sequence[Mechanism],
+    pulse: Pulse,
+    *,
+    polarity: int = 1,
+    kappa: Literal[1, 2] = 2,
+    eta: float | Literal["first", "own"] = "first",
+) -> EquivalentResponses:
+    """Shake structures with pulses of the same a and omega, each measured by its own block.
+
+    Parameters
+    ----------
+    mechanisms : sequence of Mechanism
+        The structures.
+    pulse : Pulse
+        The pulse on the first one.
+    polarity : int
+        1, or -1 for reversed pulses.
+    kappa : {1, 2}
+        Whether a is over lambda_lin or over lambda.
+    eta : float, "first" or "own"
+        Restitution of all impacts: a number, that of the first structure, or each its own.
+
+    Raises
+    ------
+    InputError
+        If the pulse does not lift the first structure, or a restitution cannot be used.
+    """
+    first = _equivalence(mechanisms[0])
+    ground = pulse.sampled().scaled(polarity)
+    direction = _lifted_first(first, pulse, ground, polarity, mechanisms[0].gravity)
+    block = first[direction]
+    scaling: ModelName = "linear1" if kappa == 1 else "linear2"
+    a = pulse.amplitude / (mechanisms[0].gravity * uplift(block, scaling))  # Eq. 40
+    omega = 2 * pi / (pulse.period * block.p)  # Eq. 40
+    if a <= 1:
+        least = mechanisms[0].gravity * uplift(block, scaling) / STANDARD_GRAVITY
+        raise InputError(
+            Problem(
+                f"the pulse does not lift {_name(mechanisms[0])}: a = {a:.4g}, and uplift needs a > 1",
+                hint=f"give an amplitude above {least:.4g} g",
+            )
+        )
+    shared = _shared_eta(eta, block, mechanisms[0])
+    members = [_member(each, pulse, a, omega, direction, polarity, scaling, shared) for each in mechanisms]
+    both = replace(block, eta=members[0].eta)
+    linear = linear_model("linear block", scaling, (both, both), mechanisms[0].gravity)
+    history = follow(linear, ground, tail=_tail(pulse, block.p))
+    peak = history.peak_ratio
+    if pulse.segments():  # exact, where the history is that of the sampled pulse
+        answer = exact_response(
+            Equivalence(both, both), pulse, kappa=kappa, gravity=mechanisms[0].gravity, polarity=polarity
+        )
+        peak = answer.peak_ratio
+    longest = max(len(run.time) for run in [history, *(each.history for each in members)])
+    tau = ground.dt * block.p * np.arange(longest, dtype=np.float64)
+    return EquivalentResponses(tuple(members), a, omega, kappa, polarity, direction, peak, history, tau)
+
+
+def _name(mechanism: Mechanism) -> str:
+    return mechanism.name or mechanism.mechanism
+
+
+def _equivalence(mechanism: Mechanism) -> Equivalence:
+    try:
+        return equivalent_block(mechanism)
+    except MechanismError as error:
+        raise MechanismError(f"{_name(mechanism)}: {error}") from error
+
+
+def _lifted_first(
+    equivalence: Equivalence, pulse: Pulse, ground: GroundMotion, polarity: int, gravity: float
+) -> Direction:
+    """The direction that the pulse lifts first; if none, the one that a stronger pulse would."""
+    lifts = {d: -d * ground.acceleration > equivalence[d].lambda_ * gravity for d in Direction}
+    lifted = [d for d in Direction if lifts[d].any()]
+    return min(lifted, key=lambda d: int(lifts[d].argmax())) if lifted else weakest(equivalence, pulse, (polarity,))
+
+
+def _shared_eta(eta: float | Literal["first", "own"], block: EquivalentBlock, first: Mechanism) -> float | None:
+    if eta == "own":
+        return None
+    if eta != "first":
+        check_eta(float(eta))
+        return float(eta)
+    if not 0 < block.eta <= 1:
+        raise InputError(
+            Problem(
+                f"{_name(first)}: the kinematics give a restitution of {block.eta:.4g}, which cannot be that of all",
+                hint="give one in (0, 1] for all with --eta, or a measured one in its file",
+            )
+        )
+    return block.eta
+
+
+def _member(
+    mechanism: Mechanism,
+    pulse: Pulse,
+    a: float,
+    omega: float,
+    direction: Direction,
+    polarity: int,
+    scaling: ModelName,
+    eta: float | None,
+) -> Member:
+    block = _equivalence(mechanism)[direction]
+    own = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
+    shaken = mechanism if eta is None else mechanism.model_copy(update={"restitution": eta})
+    try:
+        history = follow(build_model(shaken, "nonlinear"), own.sampled().scaled(polarity), tail=_tail(own, block.p))
+    except MechanismError as error:
+        raise MechanismError(f"{_name(mechanism)}: {error}") from error
+    return Member(
+        _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history
+    )
+
+
+def _tail(pulse: Pulse, p: float) -> float:
+    return min(AFTER / p, MOST_PERIODS * pulse.period)
+
+
+def judge(found: EquivalentResponses) -> list[str]:
+    """Whether the structures are equivalently vulnerable, in a few sentences.
+
+    Parameters
+    ----------
+    found : EquivalentResponses
+        The responses.
+    """
+    said = []
+    fallen = [each for each in found.members if each.history.overturned]
+    peaks = {each.name: each.history.peak_ratio or 0.0 for each in found.members if not each.history.overturned}
+    linear = "overturns" if found.linear_peak is None else f"rocks to {found.linear_peak:.4g}"
+    if not peaks:
+        said.append(f"All overturn; the linear block {linear}.")
+    elif fallen:
+        who = ", ".join(each.name for each in fallen)
+        said.append(
+            f"Here the equivalence breaks: {who} overturn{'s' if len(fallen) == 1 else ''}, the rest not; "
+            f"the linear block {linear}."
+        )
+    elif found.spread is not None:
+        part = "" if found.relative_spread is None else f", {100 * found.relative_spread:.2g} % of it"
+        said.append(f"The linear block {linear}; the structures differ by {found.spread:.3g}{part}.")
+        if found.relative_spread is None:
+            said.append("The linear block overturns and none of the structures does: here the equivalence breaks.")
+        elif found.relative_spread > FAR:
+            middle = found.linear_peak or 0.0
+            far = max(peaks, key=lambda name: abs(peaks[name] - middle))
+            said.append(f"Here the equivalence breaks: {far} is the farthest from the linear block.")
+        else:
+            how = "" if found.relative_spread <= NEAR else "approximately "
+            said.append(f"They are {how}equivalently vulnerable to these pulses.")
+    if peaks and max(peaks.values()) > CLOSE:
+        said.append(f"Beyond {CLOSE:g} of the critical rotation small differences decide: do not rely on it there.")
+    if not found.one_eta:
+        said.append("The restitutions differ, and equivalence needs one for all: --eta sets it.")
+    return said

@@ -1,0 +1,279 @@
+"""What pulses of every amplitude and period do to a structure: a map, and the least amplitude that overturns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from itertools import count
+
+import numpy as np
+
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.studies.boundaries import UPLIFT, Boundary, boundaries
+from rocking_cli.studies.shaken import Integers, Progress, Reals, Shaken, outcomes
+
+SCAN = 200  # amplitudes tried at a time: overturning has islands below larger amplitudes that do not overturn
+NEAREST = 1e-3  # a - 1 of the first of them
+BELOW = 4  # from this part of the least a - 1 on they are tried anew: islands crowd just below it
+HALVINGS = 25  # of the interval that the scan leaves, some thousandths of a - 1
+PASSES = 2  # of the scan, in most cases
+
+
+class Region(IntEnum):
+    """What a pulse does."""
+
+    NO_UPLIFT = 0
+    ROCKS = 1
+    AFTER_IMPACT = 2
+    WITHOUT_IMPACT = 3
+
+    @property
+    def label(self) -> str:
+        """In words."""
+        return ("no uplift", "rocks", "overturns after impact", "overturns without impact")[self]
+
+
+@dataclass(frozen=True, eq=False)
+class OverturningMap:
+    """What a plane of pulses does to a structure: rows of one amplitude, columns of one period.
+
+    Parameters
+    ----------
+    structure : Shaken
+        What is shaken.
+    shape : Pulse
+        The shape of the pulses.
+    polarities : tuple of int
+        Of 1 and -1; with both, the worse counts.
+    omega : ndarray, shape (n,)
+        omega_g/p of the columns.
+    a : ndarray, shape (m,)
+        a_g/(g lambda) of the rows.
+    peak_ratio : ndarray, shape (m, n)
+        Largest rotation over the critical one; 0 without uplift, NaN if it overturns.
+    impacts : ndarray of int, shape (m, n)
+        Number of impacts before it overturns; -1 if it does not.
+    """
+
+    structure: Shaken
+    shape: Pulse
+    polarities: tuple[int, ...]
+    omega: Reals
+    a: Reals
+    peak_ratio: Reals
+    impacts: Integers
+
+    @property
+    def periods(self) -> Reals:
+        """Periods of the columns [s]; for the dimensionless block, p times them."""
+        return self.structure.period(self.omega)
+
+    @property
+    def accelerations(self) -> Reals:
+        """Amplitudes of the rows [standard gravity]."""
+        return self.a * self.structure.unit / STANDARD_GRAVITY
+
+    @property
+    def regions(self) -> Integers:
+        """The `Region` of each point, shape (m, n)."""
+        stays = np.where(self.peak_ratio > 0, Region.ROCKS, Region.NO_UPLIFT)
+        falls = np.where(self.impacts == 0, Region.WITHOUT_IMPACT, Region.AFTER_IMPACT)
+        return np.where(self.impacts < 0, stays, falls)
+
+    @property
+    def shares(self) -> dict[Region, float]:
+        """The part of the points in each region; together 1."""
+        counts = np.bincount(self.regions.ravel(), minlength=len(Region))
+        return {region: float(counts[region] / self.regions.size) for region in Region}
+
+    def least(self, *regions: Region) -> Reals:
+        """The least a of the rows in one of these regions, for each column; NaN if there is none."""
+        found = np.isin(self.regions, regions)
+        return np.where(found.any(axis=0), self.a[found.argmax(axis=0)], np.nan)
+
+    @property
+    def safe_again(self) -> Reals:
+        """The largest a that does not overturn above one that does, for each column; NaN if there is none."""
+        falls = self.impacts >= 0
+        above = np.maximum.accumulate(falls, axis=0) & ~falls
+        last = len(self.a) - 1 - above[::-1].argmax(axis=0)
+        return np.where(above.any(axis=0), self.a[last], np.nan)
+
+    @property
+    def boundaries(self) -> list[Boundary]:
+        """The boundaries known in closed form: uplift, and for a symmetric linear model what its pulse has."""
+        if self.structure.model.is_linear and self.structure.symmetric:
+            return boundaries(self.shape, self.structure.eta)
+        return [UPLIFT]
+
+
+def overturning_map(
+    structure: Shaken,
+    shape: Pulse,
+    omega: Reals,
+    a: Reals,
+    *,
+    polarities: Sequence[int] = (1,),
+    progress: Progress | None = None,
+) -> OverturningMap:
+    """Shake a structure with pulses of every omega and a.
+
+    Parameters
+    ----------
+    structure : Shaken
+        What is shaken; see `linear_block` and `shaken`.
+    shape : Pulse
+        The shape of the pulses; see `parse_shape`.
+    omega, a : ndarray
+        Dimensionless frequencies and amplitudes [paper, Eq. 40], a ascending.
+    polarities : sequence of int
+        Of 1 and -1; with both, the worse counts.
+    progress : callable, optional
+        Called with the number of histories done since the last call, of `work(...)`.
+
+    Raises
+    ------
+    InputError
+        If no pulse lifts the structure, or a number is not positive.
+    """
+    if not ((omega > 0).all() and (a > 0).all()):
+        raise InputError("omega and a must be positive")
+    if a.max() <= 1:
+        raise InputError(
+            f"no pulse of the map lifts the structure: the largest has a = {a.max():.4g}, and uplift needs a > 1"
+        )
+    periods, amplitudes = (each.ravel() for each in np.meshgrid(structure.period(omega), a * structure.unit))
+    found = outcomes(structure, shape, periods, amplitudes, polarities=polarities, progress=progress)
+    plane = a.size, omega.size
+    return OverturningMap(
+        structure,
+        shape,
+        tuple(polarities),
+        omega,
+        a,
+        found.peak_ratio.reshape(plane),
+        found.impacts.reshape(plane),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """The least pulse that overturns each of several structures.
+
+    Parameters
+    ----------
+    structures : tuple of Shaken
+        What is shaken.
+    shape : Pulse
+        The shape of the pulses.
+    polarities : tuple of int
+        Of 1 and -1; with both, either may overturn.
+    periods : ndarray, shape (n,)
+        [s].
+    least : ndarray, shape (k, n)
+        The least amplitude that overturns each structure [standard gravity]; NaN if it is above `top`.
+    top : float
+        The largest amplitude tried [standard gravity].
+    """
+
+    structures: tuple[Shaken, ...]
+    shape: Pulse
+    polarities: tuple[int, ...]
+    periods: Reals
+    least: Reals
+    top: float
+
+    @property
+    def first(self) -> Integers:
+        """For each period the place of the structure that goes first; -1 if none overturns."""
+        least = np.where(np.isnan(self.least), np.inf, self.least)
+        return np.where(np.isinf(least.min(axis=0)), -1, least.argmin(axis=0))
+
+
+def compare(
+    structures: Sequence[Shaken],
+    shape: Pulse,
+    periods: Reals,
+    top: float,
+    *,
+    polarities: Sequence[int] = (1,),
+    progress: Progress | None = None,
+) -> Comparison:
+    """Find the least amplitude that overturns each structure, for each period.
+
+    Parameters
+    ----------
+    structures : sequence of Shaken
+        What is shaken.
+    shape : Pulse
+        The shape of the pulses.
+    periods : ndarray
+        [s].
+    top : float
+        The largest amplitude to try [standard gravity].
+    polarities : sequence of int
+        Of 1 and -1.
+    progress : callable, optional
+        Called with the number of histories done since the last call, of `work(...)`.
+
+    Notes
+    -----
+    Amplitudes from uplift to the largest are tried, at equal ratios of a - 1; then as many just below the least that
+    overturns, until nothing lower is found; the interval that is left is halved. An island of overturning narrower
+    than a step, 0.7 % of a - 1, may be missed.
+
+    Raises
+    ------
+    InputError
+        If not even the largest amplitude lifts any of the structures.
+    """
+    if top * STANDARD_GRAVITY <= min(each.unit for each in structures):
+        raise InputError(f"no pulse up to {top:g} g lifts any of the structures: take larger accelerations")
+    least = np.array([_least(each, shape, periods, top, polarities, progress) for each in structures])
+    return Comparison(tuple(structures), shape, tuple(polarities), periods, least / STANDARD_GRAVITY, top)
+
+
+def _least(
+    structure: Shaken, shape: Pulse, periods: Reals, top: float, polarities: Sequence[int], progress: Progress | None
+) -> Reals:
+    """The least amplitude that overturns a structure, for each period [m/s2]."""
+    beyond = np.full(periods.size, top * STANDARD_GRAVITY / structure.unit - 1)  # a - 1 up to which to look
+    low, high = np.zeros(periods.size), np.full(periods.size, np.nan)
+    left = np.flatnonzero(beyond > 0)
+    for turn in count():
+        if not left.size:
+            break
+        start = (np.minimum(NEAREST, beyond[left] / BELOW) if turn == 0 else beyond[left] / BELOW)[:, None]
+        scan = start * (beyond[left, None] / start) ** np.linspace(0, 1, SCAN)
+        found = outcomes(
+            structure,
+            shape,
+            np.repeat(periods[left], SCAN),
+            (1 + scan.ravel()) * structure.unit,
+            polarities=polarities,
+            progress=progress if turn < PASSES else None,
+        )
+        falls = (found.impacts >= 0).reshape(scan.shape)
+        falls[:, -1] |= np.isfinite(high[left])  # the least so far
+        some = falls.any(axis=1)
+        left, scan, first = left[some], scan[some], falls[some].argmax(axis=1)
+        each = np.arange(left.size)
+        low[left] = np.where(first > 0, scan[each, np.maximum(first - 1, 0)], 0.0)
+        high[left] = beyond[left] = scan[each, first]
+        left = left[first < SCAN - 1]
+    some = np.isfinite(high)
+    for _ in range(HALVINGS if some.any() else 0):
+        middle = (low + high) / 2
+        fell = np.zeros(periods.size, dtype=np.bool_)
+        amplitudes = (1 + middle[some]) * structure.unit
+        fell[some] = outcomes(structure, shape, periods[some], amplitudes, polarities=polarities).impacts >= 0
+        high, low = np.where(fell, middle, high), np.where(fell, low, middle)
+    return (1 + high) * structure.unit
+
+
+def work(structures: Sequence[Shaken], pulses: int, polarities: Sequence[int]) -> int:
+    """How many histories `pulses` pulses on each structure take."""
+    return pulses * sum(1 if each.symmetric else len(polarities) for each in structures)

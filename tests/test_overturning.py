@@ -1,0 +1,432 @@
+"""Maps and curves of overturning against single responses and closed forms."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from math import asin, exp, log, pi, sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from mechanisms.block import Block
+from rocking_cli.cli.main import main
+from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.exact import exact_response
+from rocking_cli.dynamics.history import respond
+from rocking_cli.dynamics.model import build_models
+from rocking_cli.dynamics.pulse_response import closed_form, exact_pulse
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.plotting.overturning import draw_comparison, draw_map
+from rocking_cli.structure import load_structure
+from rocking_cli.studies.boundaries import boundaries
+from rocking_cli.studies.overturning import SCAN, Region, compare, overturning_map
+from rocking_cli.studies.shaken import linear_block, outcomes, parse_shape, shaken, weakest
+from tests.conftest import EXAMPLES
+
+SINE = parse_shape("sine")
+BLOCK = Block(width=0.7, height=2.8)
+FRAME = str(EXAMPLES / "frame.yaml")
+FILES = [str(EXAMPLES / f"{name}.yaml") for name in ("block", "frame", "wall")]
+
+
+@pytest.fixture(scope="module")
+def plane():
+    return overturning_map(linear_block(0.9), SINE, np.linspace(0.5, 10, 60), np.linspace(0.5, 10, 61))
+
+
+@pytest.fixture(scope="module")
+def curves():
+    structures = [shaken(load_structure(file), "linear2", SINE) for file in FILES]
+    return compare(structures, SINE, np.linspace(0.3, 3, 12), 3.0)
+
+
+def run(*arguments, code=0):
+    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    if code:
+        assert result.stdout == "" and "Traceback" not in result.stderr
+    return result
+
+
+class TestMap:
+    def test_every_point_is_the_single_response(self, plane):
+        rng = np.random.default_rng(5)
+        for row, column in zip(rng.integers(61, size=300), rng.integers(60, size=300), strict=True):
+            alone = exact_pulse(float(plane.a[row]), float(plane.omega[column]), 0.9)
+            impacts = plane.impacts[row, column]
+            assert (impacts if impacts >= 0 else None) == alone.impacts_before_overturning
+            ratio = plane.peak_ratio[row, column]
+            assert np.isnan(ratio) if alone.max_ratio is None else ratio == pytest.approx(alone.max_ratio, abs=1e-9)
+
+    def test_every_region_is_there_and_the_shares_are_those_of_the_points(self, plane):
+        assert sum(plane.shares.values()) == pytest.approx(1.0, abs=1e-12)
+        assert all(share > 0 for share in plane.shares.values())
+        assert plane.shares[Region.NO_UPLIFT] == pytest.approx(np.mean(plane.a <= 1))
+        assert plane.shares[Region.WITHOUT_IMPACT] == np.mean(plane.impacts == 0)
+
+    def test_the_curves_are_those_of_the_columns(self, plane):
+        falls = plane.impacts >= 0
+        for k, (least, safe) in enumerate(
+            zip(plane.least(Region.AFTER_IMPACT, Region.WITHOUT_IMPACT), plane.safe_again, strict=True)
+        ):
+            a = plane.a[falls[:, k]]
+            assert least == a[0] if a.size else np.isnan(least)
+            above = plane.a[~falls[:, k]]
+            above = above[above > least] if a.size else above[:0]
+            assert safe == above[-1] if above.size else np.isnan(safe)
+        assert np.isfinite(plane.safe_again).any()
+
+    def test_a_nonlinear_point_is_the_history_of_respond(self):
+        structure = shaken(BLOCK, "nonlinear", SINE)
+        found = overturning_map(structure, SINE, np.array([3.0, 6.0]), np.array([0.8, 2.0, 4.0, 9.0]))
+        for row, ag in enumerate(found.accelerations * STANDARD_GRAVITY):
+            for column, period in enumerate(found.periods):
+                motion = replace(SINE, amplitude=float(ag), period=float(period)).sampled()
+                alone = respond(BLOCK, motion, models=("nonlinear",))["nonlinear"]
+                assert (found.impacts[row, column] >= 0) == alone.overturned
+                if alone.overturned:
+                    assert found.impacts[row, column] == alone.impact_count
+                else:
+                    assert found.peak_ratio[row, column] == pytest.approx(alone.peak_ratio, rel=1e-9)
+        assert {int(each) for each in found.regions.ravel()} == set(Region)
+
+    def test_histories_on_samples_agree_with_the_exact_answer(self, plane):
+        structure = linear_block(0.9)
+        ricker_like = replace(SINE)
+        object.__setattr__(ricker_like, "segments", lambda: ())
+        found = overturning_map(structure, ricker_like, plane.omega[::6], plane.a[::6])
+        exact = plane.impacts[::6, ::6]
+        assert np.mean(found.impacts != exact) < 0.02
+        both = (found.impacts < 0) & (exact < 0)
+        np.testing.assert_allclose(found.peak_ratio[both], plane.peak_ratio[::6, ::6][both], atol=2e-3)
+
+    def test_both_polarities_give_the_worse(self):
+        structure = shaken(load_structure(FRAME), "linear2", SINE, (1, -1))
+        omega, a = np.linspace(2, 8, 20), np.linspace(0.9, 6, 20)
+        one, other, both = (
+            overturning_map(structure, SINE, omega, a, polarities=each) for each in ((1,), (-1,), (1, -1))
+        )
+        assert (one.peak_ratio != other.peak_ratio).any()
+        falls = (one.impacts >= 0) | (other.impacts >= 0)
+        np.testing.assert_array_equal(both.impacts >= 0, falls)
+        np.testing.assert_array_equal(both.peak_ratio[~falls], np.fmax(one.peak_ratio, other.peak_ratio)[~falls])
+        fewer = np.minimum(*(np.where(each.impacts >= 0, each.impacts, 99) for each in (one, other)))
+        np.testing.assert_array_equal(both.impacts[falls], fewer[falls])
+
+    def test_uplift_is_at_a_of_one_in_the_weaker_direction(self):
+        frame = load_structure(FRAME)
+        structure = shaken(frame, "nonlinear", SINE)
+        assert structure.lambda_ == min(frame.uplift(direction) for direction in Direction)
+        found = overturning_map(structure, SINE, np.array([4.0]), np.array([0.999, 1.001]))
+        assert found.peak_ratio[0, 0] == 0 and found.peak_ratio[1, 0] > 0
+
+    def test_kappa1_measures_by_the_lambda_of_the_linearised_mechanism(self):
+        block = equivalent_block(BLOCK).positive
+        assert shaken(BLOCK, "linear1", SINE).lambda_ == block.lambda_lin
+        assert shaken(BLOCK, "linear2", SINE).lambda_ == block.lambda_ != block.lambda_lin
+
+    @pytest.mark.parametrize(
+        ("omega", "a", "complaint"),
+        [([1.0], [0.5, 1.0], "uplift needs a > 1"), ([0.0], [2.0], "must be positive"), ([1.0], [-1.0], "positive")],
+    )
+    def test_a_plane_without_motion_is_refused(self, omega, a, complaint):
+        with pytest.raises(InputError, match=complaint):
+            overturning_map(linear_block(0.9), SINE, np.array(omega), np.array(a))
+
+    @pytest.mark.parametrize("eta", [0.0, -0.5, 1.1, float("nan")])
+    def test_an_impossible_restitution_is_refused(self, eta):
+        with pytest.raises(InputError, match="eta must be in"):
+            linear_block(eta)
+        with pytest.raises(InputError, match="eta must be in"):
+            shaken(BLOCK, "linear2", SINE, eta=eta)
+
+
+class TestOnlyPeaks:
+    """A motion that is left some impacts after its record has the peaks of the whole one."""
+
+    def test_all_but_the_end_is_the_same(self):
+        models = [build_models(load_structure(file), ("nonlinear",))[0] for file in FILES]
+        motions = [replace(SINE, period=period).sampled(50) for period in (0.4, 0.9, 2.0)]
+        runs = Runs.every(3, 3, scales=np.linspace(1, 12, 12), polarities=(1, -1), etas=(0.7, 0.95))
+        whole, left = (respond_many(models, motions, runs, only_peaks=only) for only in (False, True))
+        for column in ("overturned", "fell_to", "peak_positive", "peak_negative", "peak_ratio", "overturning_time"):
+            np.testing.assert_array_equal(getattr(whole, column), getattr(left, column), err_msg=column)
+        fell = whole.overturned
+        np.testing.assert_array_equal(whole.impact_count[fell], left.impact_count[fell])
+        assert left.still_rocking.any() and left.impact_count.sum() < whole.impact_count.sum() / 3
+
+
+class TestBoundaries:
+    @pytest.mark.parametrize("shape", ["sine", "half_sine", "rectangular", "cosine"])
+    @pytest.mark.parametrize("name", ["uplift", "without_impact", "after_one_impact"])
+    def test_the_responses_differ_on_their_two_sides(self, shape, name):
+        shape, eta = parse_shape(shape), 0.9
+        (boundary,) = (each for each in boundaries(shape, eta) if each.name == name)
+        omega, a = np.meshgrid(np.linspace(0.3, 8, 120), np.geomspace(0.9, 20, 200))
+        level = boundary.level(omega, a)
+        crosses = (level[:-1] < 0) & (level[1:] >= 0)
+        row, column = np.nonzero(crosses)
+        if name == "after_one_impact" and shape.name != "sine":
+            assert not crosses.any()  # a pulse to one side alone leaves too little; of the cosine no impact is so late
+            return
+        assert row.size > 20
+        low, high, across = a[row, column], a[row + 1, column], omega[row, column]
+        for _ in range(40):
+            middle = (low + high) / 2
+            above = boundary.level(across, middle) >= 0
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        ends = [outcomes(linear_block(eta), shape, 2 * pi / across, high * factor) for factor in (1 - 1e-6, 1 + 1e-6)]
+        below, over = (_happens(name, end) for end in ends)
+        assert over.all() and not below.any()
+
+    def test_those_of_the_sine_are_the_conditions_of_the_closed_form(self):
+        known = {each.name: each for each in boundaries(SINE, 0.8)}
+        omega, a = np.meshgrid(np.linspace(0.5, 9, 40), np.linspace(1.05, 9, 41))
+        levels = {name: each.level(omega, a) for name, each in known.items()}
+        for k in np.ndindex(omega.shape):
+            closed = closed_form(float(a[k]), float(omega[k]), 0.8)
+            stays, after = (
+                closed.conditions[name] for name in ("no_overturning_without_impact", "first_impact_after_pulse")
+            )
+            assert (levels["without_impact"][k] < 0) == stays
+            if stays:
+                assert (levels["impact_at_end"][k] >= 0) == after
+            if closed.valid:
+                assert (levels["after_one_impact"][k] >= 0) == closed.overturns
+            else:
+                assert np.isnan(levels["after_one_impact"][k])
+
+    def test_overturning_without_impact_in_closed_form(self):
+        a, omega = 4.0, 3.0
+        s = sqrt(a * a - 1)
+
+        def zero(shape, omega):
+            level = next(each.level for each in boundaries(parse_shape(shape), 0.9) if each.name == "without_impact")
+            return float(level(np.array([omega]), np.array([a]))[0])
+
+        assert zero("rectangular", 2 * pi / log(a / (a - 1))) == pytest.approx(0, abs=1e-12)
+        te = (2 * pi - asin(1 / a)) / omega
+        assert zero("sine", omega) * exp(te) == pytest.approx(((s - omega) * exp(te) - a) * omega / (1 + omega**2))
+        te = (pi - asin(1 / a)) / omega
+        assert zero("half_sine", omega) * exp(te) == pytest.approx(((s - omega) * exp(te) + a) * omega / (1 + omega**2))
+
+    @pytest.mark.parametrize(
+        ("shape", "omega"),
+        [("sine", 2.0), ("sine", 5.0), ("sine", 9.0), ("half_sine", 2.0), ("half_sine", 9.0), ("cosine", 5.0)],
+    )
+    def test_the_first_impact_is_at_the_end_of_the_pulse(self, shape, omega):
+        shape = parse_shape(shape)
+        level = next(each.level for each in boundaries(shape, 0.9) if each.name == "impact_at_end")
+        a = np.geomspace(1.001, 40, 4000)
+        signs = np.sign(level(np.full(a.size, omega), a))
+        (k,) = np.flatnonzero((signs[:-1] < 0) & (signs[1:] >= 0))
+        low, high = a[k], a[k + 1]
+        while high - low > 1e-12:
+            middle = (low + high) / 2
+            low, high = (low, middle) if level(np.array([omega]), np.array([middle]))[0] >= 0 else (middle, high)
+        pulse = replace(shape, amplitude=float(high), period=2 * pi / omega)
+        exact = exact_response(linear_block(0.9).equivalence, pulse, kappa=2, gravity=1.0)
+        assert exact.first_impact == pytest.approx(exact.pulse_end, rel=1e-4)
+
+    def test_other_shapes_and_models_have_that_of_uplift(self):
+        assert [each.name for each in boundaries(parse_shape("ricker"), 0.9)] == ["uplift"]
+        found = overturning_map(shaken(BLOCK, "nonlinear", SINE), SINE, np.array([5.0, 6.0]), np.array([0.5, 2.0]))
+        assert [each.name for each in found.boundaries] == ["uplift"]
+
+
+def _happens(name, found):
+    return {
+        "uplift": found.peak_ratio != 0,
+        "without_impact": found.impacts == 0,
+        "after_one_impact": found.impacts == 1,
+    }[name]
+
+
+class TestCompare:
+    def test_nothing_below_overturns_and_what_is_just_above_does(self, curves):
+        assert np.isfinite(curves.least).sum() > 20
+        for structure, least in zip(curves.structures, curves.least, strict=True):
+            for period, ag in zip(curves.periods, least, strict=True):
+                top = curves.top if np.isnan(ag) else ag * (1 - 1e-6)
+                scan = 1 + (top * STANDARD_GRAVITY / structure.unit - 1) * np.geomspace(0.01, 1, SCAN)
+                found = outcomes(structure, SINE, np.full(SCAN, period), scan * structure.unit)
+                assert (found.impacts < 0).all()
+                if np.isfinite(ag):
+                    above = np.array([ag * (1 + 1e-6) * STANDARD_GRAVITY])
+                    assert outcomes(structure, SINE, np.array([period]), above).impacts[0] >= 0
+
+    def test_the_first_is_the_one_with_the_least(self, curves):
+        for k, first in enumerate(curves.first):
+            column = curves.least[:, k]
+            assert first == (-1 if np.isnan(column).all() else np.nanargmin(column))
+        assert len(set(curves.first)) > 1
+
+    def test_a_similar_block_overturns_at_the_same_amplitude_of_a_longer_pulse(self):
+        small, large = (shaken(Block(width=0.7 * k, height=2.8 * k), "nonlinear", SINE) for k in (1.0, 4.0))
+        one = compare([small], SINE, np.array([0.5, 0.8]), 4.0)
+        other = compare([large], SINE, np.array([1.0, 1.6]), 4.0)
+        np.testing.assert_allclose(one.least, other.least, rtol=1e-6)
+
+    def test_too_small_amplitudes_are_refused(self):
+        with pytest.raises(InputError, match="larger accelerations"):
+            compare([shaken(BLOCK, "linear2", SINE)], SINE, np.array([1.0]), 0.2)
+
+
+class TestShape:
+    def test_it_is_of_unit_size(self):
+        shape = parse_shape("mavroeidis:90deg:3")
+        assert (shape.amplitude, shape.period, shape.phase, shape.cycles) == (1.0, 1.0, 90.0, 3.0)
+
+    def test_amplitude_and_period_do_not_belong_to_it(self):
+        with pytest.raises(InputError, match="give the shape alone, sine"):
+            parse_shape("sine:0.6g:0.8s")
+
+    def test_an_unknown_one_gets_a_guess(self):
+        with pytest.raises(InputError, match="did you mean sine"):
+            parse_shape("sinus")
+
+    def test_the_weakest_pulse_lifts_the_weaker_direction(self):
+        frame = equivalent_block(load_structure(FRAME))
+        weaker = min(Direction, key=lambda d: frame[d].lambda_)
+        assert weakest(frame, SINE) == weakest(frame, SINE, (-1,)) == weaker
+        # To one side alone it is that side.
+        assert weakest(frame, parse_shape("half_sine")) is Direction.NEGATIVE
+        assert weakest(frame, parse_shape("half_sine"), (-1,)) is Direction.POSITIVE
+        # Where both are alike, the one that is pushed first.
+        assert weakest(equivalent_block(BLOCK), SINE) is Direction.NEGATIVE
+        assert weakest(equivalent_block(BLOCK), SINE, (-1,)) is Direction.POSITIVE
+
+
+class TestCommand:
+    def test_a_map_in_every_form(self):
+        result = run(
+            "overturning", FILES[0], "--points", 24, "--out", "map.csv", "--plot", "map.png", "--periods", "0.3:2.5",
+            "--accelerations", "0.1g:2g", "--json",
+        )  # fmt: skip
+        (line,) = result.stdout.splitlines()
+        data = json.loads(line)
+        assert set(data) == {
+            "structure", "pulse", "model", "eta", "polarity", "dimensionless", "shares", "omega", "period", "a",
+            "acceleration", "least_a", "largest_safe_a_above",
+        }  # fmt: skip
+        assert set(data["structure"]) == {"mechanism", "name", "direction", "p", "lambda"}
+        assert (data["model"], data["dimensionless"], data["polarity"]) == ("linear2", False, 1)
+        assert sum(data["shares"].values()) == pytest.approx(1)
+        assert data["period"][0] == pytest.approx(0.3) and data["acceleration"][-1] == pytest.approx(2)
+        with Path("map.csv").open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        assert len(rows) == 24 * 24
+        labels = [row["outcome"] for row in rows]
+        for region in Region:
+            assert labels.count(region.label) / len(rows) == pytest.approx(data["shares"][region.name.lower()])
+        for row in rows[::37]:
+            ratio = float(row["acceleration [g]"]) / float(row["a"])
+            assert ratio == pytest.approx(data["structure"]["lambda"], rel=1e-6)
+            assert float(row["omega"]) * float(row["period [s]"]) == pytest.approx(
+                2 * pi / data["structure"]["p"], rel=1e-6
+            )
+            assert (row["impacts before overturning"] == "") == (row["peak phi/phi_cr"] != "")
+
+    def test_the_table_has_the_curves_and_the_shares(self):
+        text = run("overturning", "--points", 64).stdout
+        assert "omega" in text and "without" in text and "no uplift" in text
+        assert "T [s]" in run("overturning", FILES[0], "--points", 16).stdout
+        assert "omega" in run("overturning", FILES[0], "--points", 16, "--dimensionless").stdout
+
+    def test_curves_in_every_form(self):
+        result = run(
+            "overturning", "--compare", *FILES, "--points", 8, "--model", "linear2", "--plot", "c.svg", "--out",
+            "c.csv", "--json",
+        )  # fmt: skip
+        data = json.loads(result.stdout)
+        assert set(data) == {"pulse", "model", "polarity", "largest_tried", "period", "structures", "first"}
+        assert [each["mechanism"] for each in data["structures"]] == ["block", "asymmetric_frame", "wall"]
+        with Path("c.csv").open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        assert [row["first"] or None for row in rows] == data["first"]
+        text = run("overturning", "--compare", *FILES, "--points", 8, "--model", "linear2").stdout
+        assert "goes first" in text and "Goes first" in text
+
+    def test_structures_of_one_name_are_told_apart(self, tmp_path):
+        for name in ("one", "two"):
+            (tmp_path / f"{name}.yaml").write_text("mechanism: block\nname: b\nwidth: 1\nheight: 4\n", encoding="utf-8")
+        text = run("overturning", "--compare", "one.yaml", "two.yaml", "--points", 4, "--model", "linear2").stdout
+        assert "(one.yaml)" in text and "(two.yaml)" in text
+
+    @pytest.mark.parametrize(
+        ("arguments", "complaint"),
+        [
+            (["--a", "0.2:0.9"], "uplift needs a > 1"),
+            (["--a", "5:2"], "give the smaller first"),
+            (["--a", "2:2"], "give the smaller first"),
+            (["--omega", "0:4"], "is not positive"),
+            (["--omega", "4"], "give the least and the largest"),
+            (["--omega", "1:x"], "'x' is no number"),
+            (["--omega", "1g:2g"], "a number without a unit"),
+            (["--eta", "0"], "above 0 and at most 1"),
+            (["--eta", "1.2"], "above 0 and at most 1"),
+            (["--pulse", "sinus"], "did you mean sine?"),
+            (["--pulse", "sine:1g:1s"], "give the shape alone"),
+            (["--periods", "0.2:4"], "give --omega"),
+            (["--model", "nonlinear"], "give FILE"),
+            (["--points", "1"], "1 is not in the range"),
+            (["--plot", "map.txt"], "does not end in"),
+            (["--out", "nowhere/map.csv"], "does not exist"),
+            ([FILES[0], "--accelerations", "0.1:2"], "has no unit: give one of g, m/s2"),
+            ([FILES[0], "--accelerations", "1ft:2ft"], "'ft' is no unit of acceleration"),
+            ([FILES[0], "--accelerations", "2g:1g"], "give the smaller first"),
+            ([FILES[0], "--accelerations", "0.01g:0.02g"], "no pulse of the map lifts"),
+            ([FILES[0], "--periods", "0:1"], "is not positive"),
+            ([FILES[0], "--omega", "1:2"], "give --periods, or add --dimensionless"),
+            ([FILES[0], FILES[1]], "--compare"),
+            (["--compare", FILES[0]], "two structures or more"),
+            (["--compare", *FILES, "--a", "1:2"], "give --accelerations"),
+            (["--compare", *FILES, "--dimensionless"], "leave --dimensionless out"),
+            (["nowhere.yaml"], "no such file"),
+        ],
+    )
+    def test_wrong_input_is_told_and_nothing_is_written(self, arguments, complaint, tmp_path):
+        if not {"--plot", "--out"} & set(arguments):
+            arguments = [*arguments, "--plot", "left.png", "--out", "left.csv"]
+        assert complaint in " ".join(run("overturning", *arguments, code=2).stderr.split())
+        assert list(tmp_path.iterdir()) == []
+
+    @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+    def test_pictures_are_of_the_kind_their_name_says(self, suffix, tmp_path):
+        run("overturning", "--points", 12, "--plot", f"map.{suffix}")
+        start = (tmp_path / f"map.{suffix}").read_bytes()[:200]
+        assert {"png": b"\x89PNG", "svg": b"<svg", "pdf": b"%PDF"}[suffix] in (tmp_path / f"map.{suffix}").read_bytes()[
+            :2000
+        ], start
+
+
+class TestPictures:
+    def test_a_map_names_what_it_shows(self, plane):
+        figure = draw_map(plane, "a block", dimensionless=True)
+        (axes,) = figure.axes
+        (legend,) = figure.legends
+        labels = [text.get_text() for text in legend.get_texts()]
+        assert labels[:4] == ["no uplift", "rocks", "overturns after one impact", "overturns without impact"]
+        assert "overturning without impact (closed form)" in labels and "uplift, a = 1 (closed form)" in labels
+        assert "omega" in axes.get_xlabel() and "lambda" in axes.get_ylabel()
+
+    def test_one_of_a_structure_has_units(self):
+        found = overturning_map(shaken(BLOCK, "linear2", SINE), SINE, np.linspace(1, 8, 20), np.linspace(0.5, 9, 20))
+        (axes,) = draw_map(found, "a block", dimensionless=False).axes
+        assert "[s]" in axes.get_xlabel() and "[g]" in axes.get_ylabel()
+        low, high = axes.get_xlim()
+        assert low < found.periods.min() and high > found.periods.max()
+
+    def test_curves_differ_by_dash_and_mark(self):
+        structures = [shaken(load_structure(file), "linear2", SINE) for file in FILES]
+        found = compare(structures, SINE, np.linspace(0.4, 3, 9), 3.0)
+        (axes,) = draw_comparison(found, "sine").axes
+        looks = {(line.get_linestyle(), line.get_marker(), line.get_color()) for line in axes.get_lines()}
+        assert len({look[0] for look in looks}) == len({look[1] for look in looks}) == 3
+        np.testing.assert_array_equal(axes.get_lines()[1].get_ydata(), found.least[1])
