@@ -11,7 +11,7 @@ from scipy.optimize import differential_evolution, minimize
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import velocity
-from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, fit_pulse, fit_pulses
+from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, _Search, fit_pulse, fit_pulses
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.simplex import maximise
@@ -226,3 +226,22 @@ class TestSimplex:
         calls = []
         maximise(lambda p: calls.append(0) or float(p.sum()), np.zeros(2), [1.0, 1.0], within=1e-9, most=10)
         assert len(calls) <= 3 + 10 * 4
+
+    def test_it_shrinks_where_nothing_else_helps(self):
+        calls = []
+        most, where = maximise(lambda p: calls.append(0) or -float(p.any()), np.zeros(2), [1.0, 1.0], within=1e-6)
+        assert most == 0 and not where.any() and len(calls) < 150
+
+
+def test_coarser_levels_are_the_same_record_at_the_same_times():
+    search = _Search(np.sin(np.arange(4000) / 100), 0.01, False)
+    for k, level in enumerate(search.levels[:4]):
+        np.testing.assert_allclose(level[1:-1], search.levels[0][:: 2**k][1 : level.size - 1], atol=2e-3)
+    assert [search.level(period, 40) for period in (0.1, 0.79, 0.81, 1.61, 1e9)] == [0, 0, 1, 2, 8]
+
+
+def test_the_best_of_a_grid_is_not_always_the_best(monkeypatch):
+    motion = GroundMotion("noise", 0.01, np.random.default_rng(6).normal(size=600))
+    fit = fit_pulse(motion, "mavroeidis", "acceleration")
+    monkeypatch.setattr("rocking_cli.excitation.pulse_fit.PLACES", 1)
+    assert fit.captured > fit_pulse(motion, "mavroeidis", "acceleration").captured + 1e-5
