@@ -201,7 +201,7 @@ class TestEvery:
 def test_the_amplitude_of_a_near_fault_pulse_is_its_peak_for_any_phase(phase, cycles):
     pulse = MavroeidisPapageorgiou(1.0, 1.0, phase, cycles)
     a = np.abs(pulse.shape(np.linspace(0, cycles, round(2000 * cycles))))
-    assert a.max() == pytest.approx(1, abs=1e-5) and a.max() < 1 + 1e-9
+    assert a.max() == pytest.approx(1, abs=1e-5) and a.max() < 1 + 1e-8  # a parabola over 1e-3 period
 
 
 @pytest.mark.parametrize(
