@@ -73,6 +73,7 @@ def main() -> None:
       rocking record accel.csv
       rocking respond block.yaml --record accel.csv --plot response.png
       rocking pulse --a 4 --omega 6
+      rocking overturning block.yaml --plot map.png
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
     3 mechanism or plugin, 4 solver.
