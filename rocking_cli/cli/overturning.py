@@ -187,7 +187,7 @@ def _curves(
 
     strongest = max(each.unit for each in subjects) / STANDARD_GRAVITY
     top = accelerations[1] if accelerations else _round(AMPLITUDES[1] * strongest)
-    return np.linspace(*(periods or _usual_periods(subjects)), points), top
+    return np.geomspace(*(periods or _usual_periods(subjects)), points), top
 
 
 def _usual_periods(subjects: list[Shaken]) -> tuple[float, float]:

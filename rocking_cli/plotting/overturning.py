@@ -146,10 +146,12 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     for k, (structure, least) in enumerate(zip(found.structures, found.least, strict=True)):
         name = structure.name.replace("$", r"\$")
         axes.plot(found.periods, least, label=name, markevery=(k * every // 4, every), **style.distinct(k))
+    axes.set_xscale("log")  # a curve is steep where pulses are short
     axes.set_yscale("log")
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
     axes.set_xlabel("period of the pulse [s]", fontsize=9)
     axes.set_ylabel("least amplitude that overturns [g]", fontsize=9)
