@@ -90,13 +90,14 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         structures.append((cells, len(model.forces), model.is_linear))
         cells += len(model.forces)
     us, vs, aheads, v_aheads = _Row(), _Row(), _Row(), _Row()
+    any_vertical = any(motion is not None and motion.vertical is not None for motion in motions)
     for motion in motions:
         up = motion.vertical if motion is not None else None
         u, dt = (motion.acceleration, motion.dt) if motion is not None else (NOTHING, RELEASE_DT)
         v, v_dt = (up.acceleration, up.dt) if up is not None else (NOTHING, 1.0)
         length = max(u.size, ceil((v.size - 1) * v_dt / dt) + 1)
         places = (*us.add(u), *vs.add(v), *aheads.add(_strongest_to_come(np.abs(u), 1.0, length)))
-        if any(each is not None and each.vertical is not None for each in motions):
+        if any_vertical:
             v_aheads.add(_strongest_to_come(np.maximum(-v, 0.0), dt / v_dt, length))  # beside the other
         records.append((*places, dt, v_dt))
     return Deck(

@@ -217,7 +217,7 @@ def locate(forces, law, ground, tau, state, low, high, guess, sought, level, fal
     """
     q, w, f = state
     h = guess if low < guess < high else (low + high) / 2
-    close = 1e-8 if sought == HEIGHT else 1e-4  # what then is missing is below rounding: near a turn q stands still
+    close = 1e-8 if sought == HEIGHT else 1e-4  # what then is missing is 1e-13 at most: near a turn q stands still
     for _ in range(200):
         (q, w, f), _, _ = advance(forces, law, ground, tau, state, h)
         value = f if sought == BALANCE else w if sought == TURN else q - level

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rocking_cli.core import Direction, Mechanism
 
 Reals = NDArray[np.float64]
-TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then interpolated to 1e-12 of their size
+TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, of thick short arches to 3e-11
 FEWEST, MOST = 2048, 16384  # cells from rest to the kinematic limit
 END = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at the limit itself
 
