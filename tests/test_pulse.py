@@ -510,7 +510,7 @@ def run(*arguments):
 
 def test_the_command_prints_both_answers_as_one_line_of_json():
     got = run("--a", 4, "--omega", 6)
-    assert set(got) == {"a", "omega", "eta", "closed_form", "exact"}
+    assert set(got) == {"shape", "a", "omega", "eta", "closed_form", "exact"}
     assert (got["a"], got["omega"], got["eta"]) == (4, 6, 0.9)
     assert set(got["closed_form"]) >= {"D0", "max_ratio", "overturns", "valid", "conditions"}
     assert set(got["exact"]) >= EXACT_KEYS

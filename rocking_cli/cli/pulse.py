@@ -1,4 +1,4 @@
-"""`rocking pulse`: a full sine pulse, by the closed form and exactly."""
+"""`rocking pulse`: a pulse on the dimensionless block, or on a structure; by the closed form and exactly."""
 
 from __future__ import annotations
 
@@ -16,92 +16,166 @@ CONDITIONS = {
     "first_impact_after_pulse": "the first impact comes after the pulse",
     "no_overturning_without_impact": "the block does not overturn before its first impact",
 }
+ETA = 0.9
 
 
-@click.command(short_help="Response to a full sine pulse: closed form and exact.")
-@click.option("--a", required=True, type=options.Finite(positive=True), help="Amplitude a = a_g/(g lambda).")
-@click.option("--omega", required=True, type=options.Finite(positive=True), help="Frequency omega = omega_g/p.")
+@click.command(short_help="Response to a pulse: closed form, exact and nonlinear.")
+@click.argument("file", required=False, type=click.Path())
+@click.option("--ag", metavar="AMPLITUDE", help="Amplitude with its unit, such as 0.6g or 5.9m/s2.")
+@click.option("--period", type=options.Finite(positive=True), metavar="SECONDS", help="Period of the pulse.")
 @click.option(
-    "--eta",
-    default=0.9,
+    "--polarity",
+    type=click.Choice(("1", "-1", "both")),
+    default="1",
     show_default=True,
-    type=click.FloatRange(0, 1, min_open=True),
-    help="Coefficient of restitution.",
+    help="-1 reverses the pulse. both: one after the other.",
+)
+@click.option("--a", type=options.Finite(positive=True), help="Without a structure: amplitude a = a_g/(g lambda).")
+@click.option("--omega", type=options.Finite(positive=True), help="Frequency omega = omega_g/p.")
+@click.option(
+    "--eta", type=click.FloatRange(0, 1, min_open=True), help=f"Coefficient of restitution.  [default: {ETA}]"
+)
+@click.option(
+    "--shape",
+    default="sine",
+    show_default=True,
+    help="Of the pulse: sine, cosine, half_sine or rectangular; for a structure any that is installed.",
 )
 @options.as_json
-def command(a: float, omega: float, eta: float, as_json: bool) -> None:
-    """Maximum response of the linear rocking block to one full sine pulse.
+def command(
+    file: str | None,
+    ag: str | None,
+    period: float | None,
+    polarity: str,
+    a: float | None,
+    omega: float | None,
+    eta: float | None,
+    shape: str,
+    as_json: bool,
+) -> None:
+    """Response of a structure, or of the dimensionless linear block, to a pulse.
 
-    The closed form (Eqs. 41-42) holds only under three conditions. Each is tested, and the exact answer of the same
-    equation stands beside it. Rotations are over the critical one; times are tau = p t, counted from uplift.
+    With --a and --omega: the linear block. The closed form (Eqs. 41-42) is for one full sine and holds only under
+    three conditions. Each is tested, and the exact answer of the same equation stands beside it. Rotations are over the
+    critical one; times are tau = p t, counted from uplift.
+
+    With --ag and --period: the structure of FILE, by its equivalent blocks with kappa1 and kappa2, and by its
+    nonlinear history. Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
       rocking pulse --a 4 --omega 6 --eta 0.9
+      rocking pulse frame.yaml --ag 0.4g --period 0.8 --polarity both
 
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 40-42.
     """
-    from rocking_cli.dynamics.pulse_response import closed_form, exact_pulse
+    bare = {"--a": a, "--omega": omega, "--eta": eta}
+    real = {"FILE": file, "--ag": ag, "--period": period, "--polarity": None if polarity == "1" else polarity}
+    given = [[name for name, value in each.items() if value is not None] for each in (bare, real)]
+    if given[0] and given[1]:
+        raise click.UsageError(
+            f"{given[0][0]} is for the dimensionless block, {given[1][0]} for a structure: give --a and --omega, or "
+            "FILE with --ag and --period" + (" (eta is the restitution in its file)." if eta is not None else ".")
+        )
+    if given[1]:
+        from rocking_cli.cli import pulse_on_structure
 
-    closed, exact = closed_form(a, omega, eta), exact_pulse(a, omega, eta)
+        if ag is None or period is None:
+            missing = "--ag, such as 0.6g" if ag is None else "--period in seconds"
+            raise click.UsageError(f"A pulse on a structure needs {missing}.")
+        pulse_on_structure.run(file, shape, ag, period, polarity, as_json)
+        return
+    if a is None or omega is None:
+        missing = " and ".join(name for name in ("--a", "--omega") if bare[name] is None)
+        raise click.UsageError(
+            f"Missing {missing}: give --a and --omega for the dimensionless block, or FILE with --ag and --period."
+        )
+    _on_block(a, omega, ETA if eta is None else eta, shape, as_json)
+
+
+def _on_block(a: float, omega: float, eta: float, shape: str, as_json: bool) -> None:
+    from rocking_cli.dynamics.pulse_response import SHAPES, closed_form, exact_pulse
+
+    if shape not in SHAPES:
+        raise click.UsageError(
+            f"The dimensionless block takes the shapes {', '.join(SHAPES)}, not {shape!r}: "
+            "for another one give FILE, --ag and --period."
+        )
+    closed = closed_form(a, omega, eta) if shape == "sine" else None
+    exact = exact_pulse(a, omega, eta, shape)
     if as_json:
         from dataclasses import asdict
 
         terminal.print_json(
             {
+                "shape": shape,
                 "a": a,
                 "omega": omega,
                 "eta": eta,
-                "closed_form": {**asdict(closed), "valid": closed.valid},
+                "closed_form": None if closed is None else {**asdict(closed), "valid": closed.valid},
                 "exact": asdict(exact),
             }
         )
         return
+    title = "Full sine" if shape == "sine" else shape.replace("_", " ").capitalize()
     terminal.table(
-        f"Full sine pulse: a = {a:g}, omega = {omega:g}, eta = {eta:g}",
+        f"{title} pulse: a = {a:g}, omega = {omega:g}, eta = {eta:g}",
         ["", "value", "meaning"],
-        _rows(closed, exact),
+        [*(_closed_rows(closed) if closed is not None else []), *_exact_rows(exact)],
         numbers=[1],
     )
     terminal.result(_verdict(a, closed, exact))
 
 
-def _rows(closed: ClosedForm, exact: ExactPulse) -> list[list[str]]:
-    number, yes_no = terminal.number, {True: "yes", False: "no", None: terminal.ABSENT}
-    rows = [
+YES_NO = {True: "yes", False: "no", None: terminal.ABSENT}
+
+
+def _closed_rows(closed: ClosedForm) -> list[list[str]]:
+    number = terminal.number
+    return [
         ["closed form D0*", number(closed.D0), "energy of the free motion after the pulse (Eq. 42)"],
         ["  max ratio", number(closed.max_ratio), "peak of the first rebound over phi_cr (Eq. 41)"],
-        ["  overturns", yes_no[closed.overturns], "eta^2 (1 - D0*) >= 1"],
+        ["  overturns", YES_NO[closed.overturns], "eta^2 (1 - D0*) >= 1"],
+        *(["  condition", YES_NO[holds], CONDITIONS[name]] for name, holds in closed.conditions.items()),
     ]
-    rows += [["  condition", yes_no[holds], CONDITIONS[name]] for name, holds in closed.conditions.items()]
-    rows += [
+
+
+def _exact_rows(exact: ExactPulse) -> list[list[str]]:
+    number = terminal.number
+    return [
         ["exact max ratio", number(exact.max_ratio), "largest rotation over phi_cr"],
         ["  first excursion", number(exact.first_excursion), "peak before the first impact"],
         ["  first rebound", number(exact.first_rebound), "peak after it"],
-        ["  overturns", yes_no[exact.overturns], _impacts(exact)],
+        ["  overturns", YES_NO[exact.overturns], impacts(exact.impacts_before_overturning)],
         ["  uplift", number(exact.uplift), "tau from the start of the pulse"],
         ["  end of pulse", number(exact.pulse_end), "tau from uplift"],
         ["  first impact", number(exact.first_impact), "tau from uplift"],
     ]
-    return rows
 
 
-def _impacts(exact: ExactPulse) -> str:
-    count = exact.impacts_before_overturning
+def impacts(count: int | None) -> str:
+    """After how many it overturns, in words."""
     return (
         "" if count is None else "without impact" if count == 0 else f"after {count} impact{'s' if count > 1 else ''}"
     )
 
 
-def _verdict(a: float, closed: ClosedForm, exact: ExactPulse) -> str:
+def failed(closed: ClosedForm) -> str:
+    """The conditions that do not hold, in words."""
+    return " and ".join(CONDITIONS[name] for name, holds in closed.conditions.items() if not holds)
+
+
+def _verdict(a: float, closed: ClosedForm | None, exact: ExactPulse) -> str:
     if a <= 1:
         return "The pulse does not lift the block (a <= 1): it stays at rest."
     fate = (
-        f"overturns {_impacts(exact)}"
+        f"overturns {impacts(exact.impacts_before_overturning)}"
         if exact.overturns
         else f"rocks to {exact.max_ratio:.4g} of its critical rotation"
     )
-    if closed.valid:
+    if closed is None:
+        trust = "There is no closed form for this shape: Eqs. 41-42 are for a full sine"
+    elif closed.valid:
         trust = "All conditions hold: the closed form can be used"
         if (
             exact.first_excursion is not None
@@ -112,6 +186,5 @@ def _verdict(a: float, closed: ClosedForm, exact: ExactPulse) -> str:
         elif exact.first_excursion is not None and exact.first_excursion > 1 and exact.first_rebound is None:
             trust += "; the block passes its critical rotation before its first impact"
     else:
-        failed = " and ".join(CONDITIONS[name] for name, holds in closed.conditions.items() if not holds)
-        trust = f"Do not use the closed form: it is not true that {failed}"
+        trust = f"Do not use the closed form: it is not true that {failed(closed)}"
     return f"The linear block {fate}. {trust}."

@@ -1,0 +1,342 @@
+"""`rocking pulse FILE`: a pulse on a structure, by its equivalent blocks and by its nonlinear history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from math import degrees, pi
+from typing import Any
+
+import click
+
+from rocking_cli.cli import structures, terminal
+from rocking_cli.cli.pulse import CONDITIONS, YES_NO, failed, impacts
+from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.dynamics.compiled import needs_compiling
+from rocking_cli.dynamics.exact import ExactResponse, exact_response
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.model import build_models
+from rocking_cli.dynamics.pulse_response import ClosedForm, closed_form
+from rocking_cli.dynamics.sampled_pulse import SampledHistory, sampled_history
+from rocking_cli.dynamics.verdict import SENSE
+from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
+
+KAPPAS = {"linear1": 1, "linear2": 2}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one model says."""
+
+    exact: bool
+    overturned: bool
+    overturning_direction: str | None
+    overturning_time: float | None
+    impacts_before_overturning: int | None
+    peak_positive: float | None
+    peak_negative: float | None
+    peak_ratio: float | None
+    uplift_time: float | None
+    first_impact: float | None
+    first_excursion: float | None
+    first_rebound: float | None
+    samples_per_period: int | None
+    over_nonlinear: float | None = None
+
+    @classmethod
+    def of_exact(cls, found: ExactResponse) -> Answer:
+        """From the exact response of an equivalent block."""
+        known = {name: value for name, value in vars(found).items() if name in cls.__dataclass_fields__}
+        direction = {None: None, 1: "positive", -1: "negative"}[found.fell_to]
+        return cls(exact=True, overturning_direction=direction, samples_per_period=None, **known)
+
+    @classmethod
+    def of_sampled(cls, found: SampledHistory) -> Answer:
+        """From a history under the sampled pulse."""
+        history: History = found.history
+        return cls(
+            exact=False,
+            overturned=history.overturned,
+            overturning_direction=history.fell_to.label if history.fell_to else None,
+            overturning_time=history.overturning_time,
+            impacts_before_overturning=history.impact_count if history.overturned else None,
+            peak_positive=history.peak_positive,
+            peak_negative=history.peak_negative,
+            peak_ratio=history.peak_ratio,
+            uplift_time=history.uplift_time,
+            first_impact=float(history.impacts[0, 0]) if len(history.impacts) else None,
+            first_excursion=None,
+            first_rebound=None,
+            samples_per_period=found.per_period,
+        )
+
+
+@dataclass(frozen=True)
+class Closed:
+    """Eqs. 41-42 with one kappa, and by how much they miss the exact answer of the same equation.
+
+    Parameters
+    ----------
+    closed : ClosedForm
+        What they say.
+    off_first_rebound, off_peak_ratio : float or None
+        Eq. 41 less the exact peak of the first rebound, and less the largest of all; None where either has none.
+    """
+
+    closed: ClosedForm
+    off_first_rebound: float | None
+    off_peak_ratio: float | None
+
+
+def run(file: str | None, shape: str, ag: str, period: float, polarity: str, as_json: bool) -> None:
+    """Do all that is asked for and print it."""
+    pulse = _pulse(shape, ag, period)
+    mechanism = structures.load([file] if file else [])[0]
+    try:
+        equivalence = equivalent_block(mechanism)
+        signs = (1, -1) if polarity == "both" else (int(polarity),)
+        answers = {sign: _answers(mechanism, equivalence, pulse, sign) for sign in signs}
+    except MechanismError as error:
+        raise MechanismError(f"{mechanism.name}: {error}") from error
+    closed = {}
+    if pulse.name == "sine" and equivalence.symmetric:
+        closed = _closed(mechanism, equivalence.positive, pulse, answers[signs[0]])
+    if as_json:
+        terminal.print_json(_as_json(mechanism, equivalence, pulse, polarity, closed, answers))
+        return
+    _print_pulse(mechanism, equivalence, pulse)
+    for sign, found in answers.items():
+        terminal.result()
+        _print_answers(f"Polarity {sign}: {'as it is' if sign > 0 else 'reversed'}", found)
+        terminal.result(_verdict(found))
+    terminal.result()
+    if not closed:
+        terminal.result(_why_no_closed_form(pulse))
+    elif any(each.closed.conditions["uplift"] for each in closed.values()):
+        _print_closed(closed, answers[signs[0]])
+    else:
+        terminal.result("No closed form: the pulse does not lift the equivalent blocks (a <= 1).")
+
+
+def _pulse(shape: str, ag: str, period: float) -> Pulse:
+    """The pulse of `--shape`, `--ag` and `--period`."""
+    name, *further = shape.split(":")
+    shapes = PulseShapes()
+    if name not in shapes:
+        raise click.BadParameter(f"{name!r} is not one of {', '.join(shapes)}.", param_hint="'--shape'")
+    try:
+        parse_pulse(f"sine:{ag}:1s")
+    except InputError:
+        raise click.BadParameter(
+            f"{ag!r} is not a positive amplitude with its unit: give it as 0.6g, 5.9m/s2, 590cm/s2 or 590gal "
+            "(--polarity -1 reverses the pulse).",
+            param_hint="'--ag'",
+        ) from None
+    return parse_pulse(":".join((name, ag, f"{period!r}s", *further)))
+
+
+def _answers(mechanism: Mechanism, equivalence: Equivalence, pulse: Pulse, polarity: int) -> dict[str, Answer]:
+    """What the models say, linear ones exactly if the pulse has segments."""
+    if needs_compiling():
+        terminal.note("compiling the history kernel, some ten seconds, once for this machine ...")
+    exact = bool(pulse.segments())
+    sampled = {
+        model.name: sampled_history(model, pulse, polarity)
+        for model in build_models(mechanism, ("nonlinear",) if exact else ("linear1", "linear2", "nonlinear"))
+    }
+    for name, found in sampled.items():
+        if not found.converged:
+            terminal.warning(
+                f"{name}: {found.per_period} samples to a period do not settle it: it is close to another motion"
+            )
+    nonlinear = Answer.of_sampled(sampled["nonlinear"])
+    answers = {
+        name: Answer.of_exact(
+            exact_response(
+                equivalence, pulse, kappa=1 if kappa == 1 else 2, gravity=mechanism.gravity, polarity=polarity
+            )
+        )
+        if exact
+        else Answer.of_sampled(sampled[name])  # type: ignore[index]
+        for name, kappa in KAPPAS.items()
+    }
+    return {
+        **{name: replace(answer, over_nonlinear=_over(answer, nonlinear)) for name, answer in answers.items()},
+        "nonlinear": nonlinear,
+    }
+
+
+def _over(answer: Answer, nonlinear: Answer) -> float | None:
+    return answer.peak_ratio / nonlinear.peak_ratio if answer.peak_ratio is not None and nonlinear.peak_ratio else None
+
+
+def _scaled(mechanism: Mechanism, block: EquivalentBlock, pulse: Pulse) -> dict[str, float]:
+    """Eq. 40: the pulse as the equivalent blocks see it."""
+    return {
+        "omega": 2 * pi / pulse.period / block.p,
+        "a1": pulse.amplitude / (mechanism.gravity * block.lambda_lin),
+        "a2": pulse.amplitude / (mechanism.gravity * block.lambda_),
+        "eta": block.eta,
+    }
+
+
+def _closed(
+    mechanism: Mechanism, block: EquivalentBlock, pulse: Pulse, answers: Mapping[str, Answer]
+) -> dict[str, Closed]:
+    scaled, found = _scaled(mechanism, block, pulse), {}
+    for name, kappa in KAPPAS.items():
+        closed, exact = closed_form(scaled[f"a{kappa}"], scaled["omega"], block.eta), answers[name]
+        found[name] = Closed(
+            closed, _less(closed.max_ratio, exact.first_rebound), _less(closed.max_ratio, exact.peak_ratio)
+        )
+    return found
+
+
+def _less(one: float | None, other: float | None) -> float | None:
+    return None if one is None or other is None else one - other
+
+
+def _directions(equivalence: Equivalence) -> dict[str, EquivalentBlock]:
+    return {"positive": equivalence.positive, "negative": equivalence.negative}
+
+
+def _as_json(
+    mechanism: Mechanism,
+    equivalence: Equivalence,
+    pulse: Pulse,
+    polarity: str,
+    closed: Mapping[str, Closed],
+    answers: Mapping[int, Mapping[str, Answer]],
+) -> dict[str, Any]:
+    each = {
+        str(sign): {"responses": {name: asdict(answer) for name, answer in found.items()}}
+        for sign, found in answers.items()
+    }
+    return {
+        "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
+        "pulse": {
+            "shape": pulse.name,
+            "amplitude": pulse.amplitude,
+            "period": pulse.period,
+            "duration": pulse.duration,
+            "polarity": polarity if polarity == "both" else int(polarity),
+        },
+        "directions": {label: _scaled(mechanism, block, pulse) for label, block in _directions(equivalence).items()},
+        "closed_form": {
+            name: {
+                **asdict(found.closed),
+                "valid": found.closed.valid,
+                "off_first_rebound": found.off_first_rebound,
+                "off_peak_ratio": found.off_peak_ratio,
+            }
+            for name, found in closed.items()
+        }
+        or None,
+        **(each.popitem()[1] if len(each) == 1 else {"polarities": each}),
+    }
+
+
+def _print_pulse(mechanism: Mechanism, equivalence: Equivalence, pulse: Pulse) -> None:
+    number = terminal.number
+    rows = []
+    for label, block in _directions(equivalence).items():
+        scaled = _scaled(mechanism, block, pulse)
+        rows.append([label, *(number(scaled[key], 5) for key in ("omega", "a1", "a2", "eta"))])
+    if equivalence.symmetric:
+        rows = [["both", *rows[0][1:]]]
+    terminal.table(
+        f"{structures.label(mechanism)}, {pulse}",
+        ["direction", "omega", "a\nkappa1", "a\nkappa2", "eta"],
+        rows,
+        numbers=range(1, 5),
+    )
+
+
+def _print_answers(title: str, answers: Mapping[str, Answer]) -> None:
+    number, found = terminal.number, list(answers.values())
+
+    def in_degrees(phi: float | None) -> str:
+        return terminal.ABSENT if phi is None else number(degrees(phi), 5)
+
+    rows = [
+        ["pulse", *("exact" if each.exact else "sampled" for each in found), ""],
+        ["overturns", *(impacts(each.impacts_before_overturning) or "no" for each in found), ""],
+        ["peak / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
+        ["  over nonlinear", *(number(each.over_nonlinear, 5) for each in found), ""],
+        ["peak, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
+        ["peak, anticlockwise", *(in_degrees(each.peak_negative) for each in found), "deg"],
+        ["first excursion", *(number(each.first_excursion, 5) for each in found), ""],
+        ["first rebound", *(number(each.first_rebound, 5) for each in found), ""],
+        ["uplift", *(number(each.uplift_time, 5) for each in found), "s"],
+        ["first impact", *(number(each.first_impact, 5) for each in found), "s"],
+        ["overturning time", *(number(each.overturning_time, 5) for each in found), "s"],
+    ]
+    terminal.table(title, ["", *answers, "unit"], rows, numbers=range(1, len(found) + 1))
+
+
+def _verdict(answers: Mapping[str, Answer]) -> str:
+    """What the nonlinear history says, and how the linear ones compare."""
+    nonlinear = answers["nonlinear"]
+    if nonlinear.uplift_time is None:
+        return "The pulse does not lift the structure: it stays at rest."
+    if nonlinear.overturned:
+        sense = next(sense for direction, sense in SENSE.items() if direction.label == nonlinear.overturning_direction)
+        said = f"The structure overturns {sense}, {impacts(nonlinear.impacts_before_overturning)}."
+    else:
+        said = f"The structure rocks to {nonlinear.peak_ratio:.4g} of its critical rotation."
+    for name in KAPPAS:
+        answer = answers[name]
+        if answer.over_nonlinear is not None:
+            off = 100 * (answer.over_nonlinear - 1)
+            said += f" {name} gives {abs(off):.2g} % {'more' if off > 0 else 'less'}."
+        elif answer.overturned != nonlinear.overturned:
+            said += f" By {name} it {'overturns' if answer.overturned else 'does not overturn'}."
+    return said
+
+
+def _print_closed(found: Mapping[str, Closed], answers: Mapping[str, Answer]) -> None:
+    number = terminal.number
+    closed = [each.closed for each in found.values()]
+    rows = [
+        ["D0* (Eq. 42)", *(number(each.D0) for each in closed)],
+        ["max ratio (Eq. 41)", *(number(each.max_ratio) for each in closed)],
+        ["  minus exact first rebound", *(number(each.off_first_rebound, 3) for each in found.values())],
+        ["  minus exact peak", *(number(each.off_peak_ratio, 3) for each in found.values())],
+        ["overturns after one impact", *(YES_NO[each.overturns] for each in closed)],
+    ]
+    rows += [
+        [f"condition {place}", *(YES_NO[each.conditions[name]] for each in closed)]
+        for place, name in enumerate(CONDITIONS, start=1)
+    ]
+    terminal.table("Closed form of a full sine", ["", *found], rows, numbers=range(1, len(found) + 1))
+    for place, condition in enumerate(CONDITIONS.values(), start=1):
+        terminal.result(f"{place}: {condition}")
+    for name, each in found.items():
+        terminal.result(f"{name}: {_trust(each, answers[name])}")
+
+
+def _trust(found: Closed, exact: Answer) -> str:
+    closed = found.closed
+    if not closed.conditions["uplift"]:
+        return "no closed form, the pulse does not lift it (a <= 1)."
+    if not closed.valid:
+        said = f"do not use the closed form, it is not true that {failed(closed)}"
+    else:
+        said = "all conditions hold, the closed form can be used"
+    if closed.overturns != exact.overturned:
+        return f"{said}: it {'overturns' if closed.overturns else 'does not'} by Eq. 41, the exact answer is otherwise."
+    if found.off_peak_ratio is None or abs(found.off_peak_ratio) < 1e-9:
+        return said + "."
+    assert closed.max_ratio is not None
+    where = ": it gives the first rebound only, and" if closed.valid else ":"
+    return f"{said}{where} the largest rotation is {exact.peak_ratio:.4g}, Eq. 41 says {closed.max_ratio:.4g}."
+
+
+def _why_no_closed_form(pulse: Pulse) -> str:
+    if pulse.name != "sine":
+        said = "No closed form: Eqs. 41-42 are for a full sine."
+        if not pulse.segments():
+            said += " This pulse has no exact answer either: the linear models are followed on a sampled one."
+        return said
+    return "No closed form: Eqs. 41-42 are for a structure whose directions agree."

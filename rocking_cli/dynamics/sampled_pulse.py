@@ -1,0 +1,69 @@
+"""The history of any model of a structure under a pulse of any shape, sampled finely enough."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rocking_cli.dynamics.history import History, follow
+from rocking_cli.dynamics.model import Model
+from rocking_cli.excitation.pulses import Pulse
+
+COARSEST, FINEST = 200, 25_600  # samples to a period
+WITHIN = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class SampledHistory:
+    """A history under a sampled pulse.
+
+    Parameters
+    ----------
+    history : History
+        Under the finest sampling.
+    per_period : int
+        Its samples to a period.
+    converged : bool
+        Whether half as many give the same peak ratio to 1e-4 of it, or overturn likewise.
+    """
+
+    history: History
+    per_period: int
+    converged: bool
+
+
+def sampled_history(model: Model, pulse: Pulse, polarity: int = 1) -> SampledHistory:
+    """The history of a model under a pulse, its sampling refined until that changes nothing.
+
+    Parameters
+    ----------
+    model : Model
+        See `build_models`.
+    pulse : Pulse
+        Any.
+    polarity : {1, -1}
+        -1 reverses the pulse.
+
+    Returns
+    -------
+    SampledHistory
+
+    Notes
+    -----
+    Straight lines between n samples of a sine are off by order n^-2, and so is the motion: the last halving
+    of the interval changes three times as much as is left to change.
+    """
+    before, per_period = None, COARSEST
+    while True:
+        history = follow(model, pulse.sampled(per_period).scaled(polarity), tail=0.0)
+        converged = before is not None and _alike(before, history)
+        if converged or per_period >= FINEST:
+            return SampledHistory(history, per_period, converged)
+        before, per_period = history, 2 * per_period
+
+
+def _alike(one: History, other: History) -> bool:
+    if one.overturned or other.overturned:
+        return (one.fell_to, one.impact_count) == (other.fell_to, other.impact_count)
+    assert one.peak_ratio is not None
+    assert other.peak_ratio is not None
+    return abs(one.peak_ratio - other.peak_ratio) <= WITHIN * other.peak_ratio
