@@ -11,12 +11,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import acosh, ceil, cos, exp, inf, log, log10, pi, sin, sqrt, tan
+from math import acosh, asin, ceil, cos, exp, inf, log, log10, pi, sin, sqrt, tan
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mechanisms._arch_collapse import least_thickness
 from rocking_cli import (
     Direction,
     GroundMotion,
@@ -26,6 +27,7 @@ from rocking_cli import (
     equivalent_block,
     exact_pulse,
     load_structure,
+    measure,
     respond,
 )
 from rocking_cli.studies.linearisation import linearisation
@@ -80,10 +82,29 @@ def one_body() -> Iterator[Check]:
     strut = equivalent_block(make("point_mass", base_width=0.7, height=2.8)).positive
     R = sqrt(0.35**2 + 2.8**2)
     yield Check("point mass on a strut: p [rad/s]", "Table I: sqrt(g/R)", sqrt(G / R), strut.p, test)
+    yield Check(
+        "its restitution", "Table I: cos(2 alpha)", cos(2 * np.arctan2(0.35, 2.8)), strut.eta, "test_restitution.py"
+    )
+    shell = equivalent_block(make("cone", base_radius=0.5, height=3.0)).positive
+    R, a = sqrt(0.25 + 1.0), float(np.arctan2(0.5, 1.0))
+    yield Check("thin conical shell: p [rad/s]", "Table I", sqrt(4 * G / (R * (5 + cos(a) ** 2))), shell.p, test)
+    eta = 1 - 8 * sin(a) ** 2 / (5 + cos(a) ** 2)
+    yield Check("its restitution", "Table I", eta, shell.eta, "test_restitution.py")
     cone = equivalent_block(make("cone", base_radius=0.5, height=3.0, kind="solid")).positive
     p2 = 5 * G * sqrt(9 + 16 * 0.25) / (2 * 9 + 23 * 0.25)
     yield Check("solid cone: p [rad/s]", "Table I", sqrt(p2), cone.p, test)
     yield Check("its uplift acceleration/g", "Table I: 4r/h", 4 * 0.5 / 3.0, cone.lambda_, test)
+    eta = (2 * 9 - 17 * 0.25) / (2 * 9 + 23 * 0.25)
+    yield Check("its restitution", "Table I", eta, cone.eta, "test_restitution.py")
+    gamma, b, h = 2.0, 0.4, 2.0
+    R, alpha = sqrt(b * b + h * h), float(np.arctan2(b, h))
+    frame = equivalent_block(
+        make("symmetric_frame", column_width=2 * b, column_height=2 * h, mass_ratio=gamma)
+    ).positive
+    p = sqrt(3 * G / (4 * R) * (1 + 2 * gamma) / (1 + 3 * gamma))
+    yield Check("symmetric frame: p [rad/s]", "Table I", p, frame.p, test)
+    eta = (1 - 1.5 * sin(alpha) ** 2 + 3 * gamma * cos(2 * alpha)) / (1 + 3 * gamma)
+    yield Check("its restitution", "Table I", eta, frame.eta, "test_restitution.py")
 
 
 def more_bodies() -> Iterator[Check]:
@@ -97,6 +118,7 @@ def more_bodies() -> Iterator[Check]:
         wall.lambda_,
         "test_closed_forms.py",
     )
+    yield Check("its critical rotation [rad]", "Section 4: alpha", alpha, wall.phi_cr, "test_closed_forms.py")
     yield Check("its kappa1", "Section 4: 1/2", 0.5, wall.kappa1, "test_closed_forms.py")
     yield Check("its p [rad/s]", "Eq. 23: sqrt(3g/2R)", sqrt(1.5 * G), wall.p, "test_closed_forms.py")
     b, H, H1, L, h = 0.8, 3.5, 5.0, 10.0, 0.75
@@ -107,6 +129,15 @@ def more_bodies() -> Iterator[Check]:
         expected /= left + 2 * (1 + s * (b * h / (L * H)) * (1 - H / H1)) * beam + right
         yield Check(f"asymmetric frame, {direction.label}: uplift acceleration/g", "Eq. 33, corrected", expected,
                     frame[direction].lambda_, "test_asymmetric_frame.py")  # fmt: skip
+    even = {"column_width": 1.6, "left_height": 7.0, "right_height": 7.0, "spacing": 10.0, "beam_depth": 1.5}
+    masses = {"left_mass": 1.0, "right_mass": 1.0, "beam_mass": 4.0}
+    one = equivalent_block(make("asymmetric_frame", **even, **masses)).negative
+    other = equivalent_block(make("symmetric_frame", column_width=1.6, column_height=7.0, mass_ratio=2.0)).positive
+    for name in ("p", "lambda_", "eta"):
+        yield Check(f"asymmetric frame of equal columns: {name.rstrip('_')}", "symmetric frame, Eq. 36",
+                    getattr(other, name), getattr(one, name), "test_asymmetric_frame.py")  # fmt: skip
+    yield Check("least t/r of an arch of 180 deg that stands", "Milankovitch 1907: 0.1075", 0.1075,
+                least_thickness(pi, None), "test_arch.py")  # fmt: skip
     arch = equivalent_block(load_structure(EXAMPLES / "arch.yaml")).positive
     yield Check("Oppenheim's arch: uplift acceleration/g", "Oppenheim 1992: 0.37", 0.37, arch.lambda_, "test_arch.py")
 
@@ -141,6 +172,21 @@ def histories() -> Iterator[Check]:
     yield Check("linear block pushed at 2 lambda for 0.4 s: phi/phi_cr", "cosh(pt) - 1", cosh_minus_one(block.p * t),
                 float(held.ratio[1]), "test_history_linear.py")  # fmt: skip
 
+    heavy = respond(make("block", width=0.7, height=2.8, gravity=1.25 * G), release=0.4)["nonlinear"]
+    still = GroundMotion("still", 10.0, np.zeros(2), vertical=GroundMotion("up", 10.0, np.full(2, 0.25 * G)))
+    lifted = respond(mechanism, still, release=0.4)["nonlinear"]
+    yield Check("block under a constant v_g'' = g/4: first impact [s]", "gravity of 1.25 g", float(heavy.impacts[0, 0]),
+                float(lifted.impacts[0, 0]), "test_history_vertical.py")  # fmt: skip
+
+
+def records() -> Iterator[Check]:
+    """Measures of a ground motion: a ramp of the acceleration to 3 m/s2 in 2 s."""
+    found = measure(GroundMotion("ramp", 2.0, np.array([0.0, 3.0])))
+    test = "test_measures.py"
+    yield Check("ramp to 3 m/s2 in 2 s: PGV [m/s]", "a t/2", 3.0, found.pgv, test)
+    yield Check("its PGD [m]", "a t^2/6", 2.0, found.pgd, test)
+    yield Check("its Arias intensity [m/s]", "pi a^2 t/(6 g)", pi * 9 * 2 / (6 * G), found.arias, test)
+
 
 def cosh_minus_one(y: float) -> float:
     """The rise under twice the uplift acceleration, over phi_cr."""
@@ -153,6 +199,22 @@ def pulses() -> Iterator[Check]:
     exact, form = exact_pulse(a, omega, eta), closed_form(a, omega, eta)
     yield Check("full sine a = 4, omega = 6: first rebound", "Eqs. 41-42", form.max_ratio or inf,
                 exact.first_rebound or inf, "test_pulse.py")  # fmt: skip
+
+    def without_impact(a: float, omega: float) -> float:
+        """Condition (iii) of the closed form: zero where a full sine just overturns without impact."""
+        s, te = sqrt(a * a - 1), (2 * pi - asin(1 / a)) / omega
+        return (s - omega) * exp(te) - a
+
+    low, high = 2.0, 20.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if without_impact(middle, 3.0) < 0 else (low, middle)
+    expected, low, up = high, 3.0, 5.0
+    for _ in range(60):
+        middle = (low + up) / 2
+        low, up = (low, middle) if exact_pulse(middle, 3.0, eta).impacts_before_overturning == 0 else (middle, up)
+    yield Check("full sine omega = 3: least a that overturns without impact", "(s - omega) exp(te) = a", expected, up,
+                "test_exact_pulse.py")  # fmt: skip
     low, high = 1e-3, 20.0
     for _ in range(60):  # the length of a rectangle that just overturns a block, as omega = 2 pi/(p T)
         middle = sqrt(low * high)
@@ -165,6 +227,7 @@ SECTIONS: dict[str, Callable[[], Iterator[Check]]] = {
     "One rigid body": one_body,
     "Walls, frames and arches": more_bodies,
     "Histories": histories,
+    "Ground motions": records,
     "The error of the equivalence": errors,
     "Pulses": pulses,
 }
