@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Quantity
 
 if TYPE_CHECKING:
@@ -98,12 +98,9 @@ def command(
         terminal.note(f"wrote {out}")
     title = f"{given.title}, a = {found.a:.4g}, omega = {found.omega:.4g}"
     if plot is not None:
-        os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
         from rocking_cli.plotting.equivalent import draw_equivalent
 
-        figure = draw_equivalent(found, title)
-        write_whole(plot, lambda stream: figure.savefig(stream, format=plot.suffix[1:].lower()))
-        terminal.note(f"wrote {plot}")
+        write_picture(plot, draw_equivalent(found, title))
     if as_json:
         terminal.print_json(_as_json(found, judge(found)))
         return

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.cli.pictures import write_picture
 
 if TYPE_CHECKING:
     from rocking_cli.core import Equivalence, Mechanism
@@ -121,13 +121,9 @@ def _compare(
 
 
 def _draw(path: Path, curves: list[Linearisation], asked: list[Linearisation], title: str) -> None:
-    os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
-    from rocking_cli.files import write_whole
     from rocking_cli.plotting.linearisation import draw_linearisation
 
-    figure = draw_linearisation(curves, asked, title)
-    write_whole(path, lambda stream: figure.savefig(stream, format=path.suffix[1:].lower()))
-    terminal.note(f"wrote {path}")
+    write_picture(path, draw_linearisation(curves, asked, title))
 
 
 def _rows(each: Linearisation) -> list[list[str]]:

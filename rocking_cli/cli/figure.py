@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,7 +53,6 @@ def command(
 
     Source: DeJong and Dimitrakopoulos (2014). Geometries that the scan has lost are our choice; the captions say so.
     """
-    os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
     if number not in ("14", "all") and record is not None:
         raise click.UsageError("--record is for Figure 14.")
     motion = _motion(record, dt, units, channel) if number in ("14", "all") else None

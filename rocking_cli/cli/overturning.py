@@ -111,16 +111,18 @@ def command(
     chosen = model or ("nonlinear" if compare else "linear2")
     mechanisms = structures.told_apart(structures.load(files), files) if files else []
     subjects = [shaken(each, chosen, shape, polarities, eta) for each in mechanisms]  # type: ignore[arg-type]
+    exact = chosen != "nonlinear" and bool(shape.segments())
     if compare:
         spread, top = _curves(subjects, points or CURVE, periods, accelerations)
-        with work.histories(study.work(subjects, spread.size * study.SCAN * study.PASSES, polarities)) as progress:
+        pulses = spread.size * study.SCAN * study.PASSES
+        with work.histories(study.work(subjects, pulses, polarities), exact=exact) as progress:
             compared = study.compare(subjects, shape, spread, top, polarities=polarities, progress=progress)
         results.give_comparison(compared, mechanisms, out, plot, as_json=as_json)
         return
     subject = subjects[0] if subjects else linear_block(ETA if eta is None else eta)
     dimensionless = dimensionless or not files
     omegas, amplitudes = _plane(subject, points or PLANE, omega, a, periods, accelerations, dimensionless=dimensionless)
-    with work.histories(study.work([subject], omegas.size * amplitudes.size, polarities)) as progress:
+    with work.histories(study.work([subject], omegas.size * amplitudes.size, polarities), exact=exact) as progress:
         found = study.overturning_map(subject, shape, omegas, amplitudes, polarities=polarities, progress=progress)
     mechanism = mechanisms[0] if mechanisms else None
     results.give_map(found, mechanism, out, plot, dimensionless=dimensionless, as_json=as_json)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.cli import terminal
+from rocking_cli.cli.pictures import write_picture
 from rocking_cli.core import Mechanism
 from rocking_cli.files import write_whole
 from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
@@ -34,12 +34,9 @@ def give_map(
         write_whole(out, lambda stream: write_table_csv(stream, _map_columns(found, mechanism)))
         terminal.note(f"wrote {out}")
     if plot is not None:
-        os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
         from rocking_cli.plotting.overturning import draw_map
 
-        figure = draw_map(found, _heading(found), dimensionless=dimensionless)
-        write_whole(plot, lambda stream: figure.savefig(stream, format=plot.suffix[1:].lower()))
-        terminal.note(f"wrote {plot}")
+        write_picture(plot, draw_map(found, _heading(found), dimensionless=dimensionless))
     if as_json:
         terminal.print_json(_map_json(found, mechanism, dimensionless=dimensionless))
     else:
@@ -156,12 +153,9 @@ def give_comparison(
         terminal.note(f"wrote {out}")
     title = f"{_pulse(found)}, {found.structures[0].model.name}"
     if plot is not None:
-        os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
         from rocking_cli.plotting.overturning import draw_comparison
 
-        figure = draw_comparison(found, title)
-        write_whole(plot, lambda stream: figure.savefig(stream, format=plot.suffix[1:].lower()))
-        terminal.note(f"wrote {plot}")
+        write_picture(plot, draw_comparison(found, title))
     if as_json:
         terminal.print_json(_comparison_json(found, mechanisms))
     else:

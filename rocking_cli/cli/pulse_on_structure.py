@@ -11,8 +11,8 @@ import click
 
 from rocking_cli.cli import structures, terminal
 from rocking_cli.cli.pulse import CONDITIONS, YES_NO, failed, impacts
+from rocking_cli.cli.work import say_if_compiling
 from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, equivalent_block
-from rocking_cli.dynamics.compiled import needs_compiling
 from rocking_cli.dynamics.exact import ExactResponse, exact_response
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import build_models
@@ -138,8 +138,7 @@ def _pulse(shape: str, ag: str, period: float) -> Pulse:
 
 def _answers(mechanism: Mechanism, equivalence: Equivalence, pulse: Pulse, polarity: int) -> dict[str, Answer]:
     """What the models say, linear ones exactly if the pulse has segments."""
-    if needs_compiling():
-        terminal.note("compiling the history kernel, some ten seconds, once for this machine ...")
+    say_if_compiling()
     exact = bool(pulse.segments())
     sampled = {
         model.name: sampled_history(model, pulse, polarity)

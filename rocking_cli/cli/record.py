@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -185,18 +185,14 @@ def _write(path: Path, motion: GroundMotion) -> None:
 
 
 def _draw(path: Path, motion: GroundMotion, shown: Shown) -> None:
-    os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
-    from rocking_cli.files import write_whole
     from rocking_cli.plotting.pulse_fit import draw_pulses
     from rocking_cli.plotting.record import draw_record
 
     if shown.pulses:
         end = shown.measures.t_95 or motion.duration
-        figure = draw_pulses(motion, _best(shown.pulses), end)
+        write_picture(path, draw_pulses(motion, _best(shown.pulses), end))
     else:
-        figure = draw_record(motion, shown.measures)
-    write_whole(path, lambda stream: figure.savefig(stream, format=path.suffix[1:].lower()))
-    terminal.note(f"wrote {path}")
+        write_picture(path, draw_record(motion, shown.measures))
 
 
 def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 import click
 
 from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli.pictures import write_picture
 
 if TYPE_CHECKING:
     from rocking_cli.cli.responses import Runs
@@ -326,12 +326,11 @@ def _respond(
     tail: float,
     rtol: float,
 ) -> dict[ModelName, History]:
-    from rocking_cli.dynamics.compiled import needs_compiling
+    from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.dynamics.history import respond
     from rocking_cli.errors import MechanismError
 
-    if needs_compiling():
-        terminal.note("compiling the history kernel, some ten seconds, once for this machine ...")
+    say_if_compiling()
     try:
         return respond(mechanism, motion, models=models, release=release, tail=tail, rtol=rtol)
     except MechanismError as error:
@@ -360,10 +359,6 @@ def _draw(
     title: str,
     pulse: tuple[PulseFit, dict[ModelName, History]] | None,
 ) -> None:
-    os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
-    from rocking_cli.files import write_whole
     from rocking_cli.plotting.history import draw_history
 
-    figure = draw_history(runs[next(iter(runs))], motion, title, runs[-1] if len(runs) > 1 else None, pulse)
-    write_whole(path, lambda stream: figure.savefig(stream, format=path.suffix[1:].lower()))
-    terminal.note(f"wrote {path}")
+    write_picture(path, draw_history(runs[next(iter(runs))], motion, title, runs[-1] if len(runs) > 1 else None, pulse))

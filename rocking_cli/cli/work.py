@@ -8,17 +8,18 @@ from contextlib import contextmanager
 from rocking_cli.cli import terminal
 
 
-def say_if_compiling() -> None:
-    """Say that the first history on a machine takes a while."""
-    from rocking_cli.dynamics.compiled import needs_compiling
+def say_if_compiling(*, exact: bool = False) -> None:
+    """Say that the first history on a machine takes a while, or the first exact response to many pulses."""
+    from rocking_cli.dynamics.compiled import HISTORIES, PULSES, needs_compiling
 
-    if needs_compiling():
-        terminal.note("compiling the history kernel, some ten seconds, once for this machine ...")
+    if needs_compiling(PULSES if exact else HISTORIES):
+        what = "the exact response to pulses, some five" if exact else "the history kernel, some ten"
+        terminal.note(f"compiling {what} seconds, once for this machine ...")
 
 
 @contextmanager
-def histories(total: int) -> Iterator[Callable[[int], None]]:
-    """Show the progress of so many histories."""
-    say_if_compiling()
+def histories(total: int, *, exact: bool = False) -> Iterator[Callable[[int], None]]:
+    """Show the progress of so many histories, or exact responses."""
+    say_if_compiling(exact=exact)
     with terminal.progress(total, "histories") as advance:
         yield advance

@@ -95,11 +95,15 @@ def compile_source(
     return {function.__name__: namespace[function.__name__] for function in functions}
 
 
-def needs_compiling() -> bool:
-    """Whether the next history will first have to compile its kernel, some seconds once for this machine."""
-    source = Path(__file__).with_name("kernels.py")
+HISTORIES, PULSES = "kernels.run", "pulse_motion.many"
+"""The kernels that commands call: file and function."""
+
+
+def needs_compiling(kernel: str = HISTORIES) -> bool:
+    """Whether a kernel will have to be compiled when it is next called, some seconds once for this machine."""
+    source = Path(__file__).with_name(kernel.split(".")[0] + ".py")
     tag = f"py{sys.version_info.major}{sys.version_info.minor}"
-    indexes = cache_folder().glob(f"*/kernels.run-*.{tag}.nbi")
+    indexes = cache_folder().glob(f"*/{kernel}-*.{tag}.nbi")
     try:
         return not any(index.stat().st_mtime >= source.stat().st_mtime for index in indexes)
     except OSError:  # another process is at work on the cache

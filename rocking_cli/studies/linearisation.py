@@ -8,6 +8,7 @@ smooth, up to phi_cr and down to the uplift acceleration, and Gauss's rule conve
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -204,7 +205,7 @@ def _coefficients(mechanism: Mechanism, direction: Direction, phi: Reals, name: 
     return values.reshape(phi.shape)
 
 
-def _integral(integrand, until: Reals) -> Reals:  # type: ignore[no-untyped-def]
+def _integral(integrand: Callable[[Reals], Reals], until: Reals) -> Reals:
     """Integrals of f(u) from 0 to each `until`, by Gauss's rule with more and more nodes."""
     before = np.full_like(until, np.nan)
     nodes = FEWEST

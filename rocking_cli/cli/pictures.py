@@ -1,0 +1,19 @@
+"""Writing a picture to the file that a user asked for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rocking_cli.cli import terminal
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def write_picture(path: Path, figure: Figure) -> None:
+    """Write a figure whole or not at all, in the format of the path's suffix, and say so."""
+    from rocking_cli.files import write_whole
+
+    write_whole(path, lambda stream: figure.savefig(stream, format=path.suffix[1:].lower()))
+    terminal.note(f"wrote {path}")
