@@ -9,6 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+INCOMPLETE = 5
+"""Exit code of a command that did its work except for what it reports: one bad record in a hundred."""
+
 
 @dataclass(frozen=True)
 class Problem:

@@ -159,11 +159,11 @@ class TestBadFiles:
     def test_one_of_several_is_reported_and_the_others_shown(self, tmp_path):
         (tmp_path / "bad.csv").write_text("t,accel_g\n0,0\n0.01,x\n", encoding="utf-8")
         result = CliRunner().invoke(main, ["record", "bad.csv", ACCEL, "none.csv", "--json"])
-        assert result.exit_code == 2
+        assert result.exit_code == 5
         assert [json.loads(line)["name"] for line in result.stdout.splitlines()] == ["accel.csv"]
         assert "bad.csv:3" in result.stderr and "none.csv: no such file" in result.stderr
         result = CliRunner().invoke(main, ["record", "bad.csv", ACCEL])
-        assert result.exit_code == 2 and "0.55" in result.stdout
+        assert result.exit_code == 5 and "0.55" in result.stdout
 
     def test_none_at_all(self):
         assert "FILE" in run("record", code=2).stderr

@@ -78,5 +78,5 @@ def main() -> None:
       rocking overturning block.yaml --plot map.png
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
-    3 mechanism or plugin, 4 solver.
+    3 mechanism or plugin, 4 solver, 5 done except for records or runs that are reported.
     """

@@ -11,7 +11,7 @@ import click
 
 from rocking_cli.cli import motions, options, terminal
 from rocking_cli.cli.pictures import write_picture
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import INCOMPLETE, InputError, Problem
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
@@ -78,7 +78,7 @@ def command(
     The measures are those of the scaled record, exact for straight lines between its samples. A drift, an offset,
     clipped peaks, a coarse interval and an odd unit are warned of, with the number that shows it. With --json,
     several files give one object a line. A file that cannot be used is reported, the others are shown, and the exit
-    code is 2.
+    code is 5.
 
     \b
     Example:
@@ -118,7 +118,7 @@ def command(
     if shown and not as_json:
         _print_tables(shown)
     if len(shown) < len(files):
-        ctx.exit(InputError.exit_code)
+        ctx.exit(INCOMPLETE if shown else InputError.exit_code)
 
 
 def _clean_paths(files: Sequence[str], channel: str | None) -> dict[str, Path]:

@@ -1,0 +1,62 @@
+"""Which record files are meant by names and patterns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rocking_cli.errors import InputError, Problem
+
+
+def select(place: str, folder: Path | None = None) -> list[Path]:
+    """The files that a name or a pattern stands for.
+
+    Parameters
+    ----------
+    place : str
+        A file, or a pattern: `records/*.AT2`; `**` stands for any folders between.
+    folder : Path, optional
+        The folder that it is relative to; by default that of the process.
+
+    Returns
+    -------
+    list of Path
+        At least one, in the order of their names; relative where the place is.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it is a folder, or nothing matches.
+    """
+    base = folder if folder is not None else Path()
+    path = base / place
+    if path.is_dir():
+        raise InputError(Problem("this is a folder", place, hint=f"for the files in it give a pattern: {place}/*.AT2"))
+    if path.exists():
+        return [path]
+    if not any(sign in place for sign in "*?["):
+        raise InputError(Problem("no such file", place, hint="check the path"))
+    pattern = Path(place)
+    if pattern.is_absolute():
+        base, pattern = Path(pattern.anchor), pattern.relative_to(pattern.anchor)
+    try:
+        found = sorted(each for each in base.glob(str(pattern)) if each.is_file() and not each.name.startswith("."))
+    except (ValueError, NotImplementedError) as error:
+        raise InputError(Problem(f"not a pattern of file names: {error}", place)) from None
+    if not found:
+        raise InputError(Problem("no file matches this pattern", place, hint="check the path"))
+    return found
+
+
+def select_all(places: Sequence[str], folder: Path | None = None) -> list[Path]:
+    """The files of several names and patterns, each once. Raises as `select`, with the problems of all."""
+    found: dict[Path, None] = {}
+    problems: list[Problem] = []
+    for place in places:
+        try:
+            found |= dict.fromkeys(select(place, folder))
+        except InputError as error:
+            problems += error.problems
+    if problems:
+        raise InputError(*problems)
+    return list(found)

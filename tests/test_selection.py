@@ -1,0 +1,58 @@
+"""Which record files are meant by names and patterns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.selection import select, select_all
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "deep" / "er").mkdir(parents=True)
+    for name in ("b.AT2", "a.AT2", ".hidden.AT2", "deep/c.AT2", "deep/er/d.AT2", "odd[1].AT2"):
+        (tmp_path / name).write_text("x")
+    return tmp_path
+
+
+def names(paths):
+    return [each.name for each in paths]
+
+
+def test_a_file_is_itself(folder):
+    assert select("a.AT2", folder) == [folder / "a.AT2"]
+    assert select(str(folder / "a.AT2")) == [folder / "a.AT2"]
+
+
+def test_without_a_folder_it_is_relative_to_the_process(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    assert select("deep/*.AT2") == [Path("deep/c.AT2")]
+
+
+def test_a_pattern_gives_files_in_order_without_hidden_ones(folder):
+    assert names(select("*.AT2", folder)) == ["a.AT2", "b.AT2", "odd[1].AT2"]
+    assert names(select(str(folder / "?.AT2"))) == ["a.AT2", "b.AT2"]
+    assert names(select("deep/**/*.AT2", folder)) == ["c.AT2", "d.AT2"]
+
+
+def test_a_name_that_looks_like_a_pattern_is_a_name_first(folder):
+    assert names(select("odd[1].AT2", folder)) == ["odd[1].AT2"]
+
+
+@pytest.mark.parametrize(
+    ("place", "said"),
+    [("none.AT2", "no such file"), ("deep", "this is a folder"), ("*.csv", "no file matches"), ("a**b*", "pattern")],
+)
+def test_what_is_not_there_is_refused(folder, place, said):
+    with pytest.raises(InputError, match=said):
+        select(place, folder)
+
+
+def test_several_places_give_each_file_once_and_every_problem(folder):
+    assert names(select_all(["b.AT2", "*.AT2"], folder)) == ["b.AT2", "a.AT2", "odd[1].AT2"]
+    with pytest.raises(InputError) as caught:
+        select_all(["none.AT2", "a.AT2", "*.csv"], folder)
+    assert len(caught.value.problems) == 2
