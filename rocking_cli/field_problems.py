@@ -1,0 +1,155 @@
+"""What pydantic finds wrong with the fields of a file, in plain words and with its place."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any, get_args
+
+from pydantic import BaseModel
+from pydantic_core import ErrorDetails
+
+from rocking_cli.errors import Problem
+from rocking_cli.plugins import did_you_mean
+from rocking_cli.yaml_file import Document, Place, spell
+
+
+def problems(
+    document: Document, model: type[BaseModel], errors: Iterable[ErrorDetails], *, owner: str, lister: str
+) -> list[Problem]:
+    """The errors of a validation, each with its place in the file.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    model : type
+        What its data were validated as.
+    errors : iterable of ErrorDetails
+        See `pydantic.ValidationError.errors`.
+    owner : str
+        What the fields at the top belong to, for messages: "block".
+    lister : str
+        What lists them.
+    """
+    found: dict[Place, Problem] = {}
+    for error in errors:
+        place = _place(document.data, error)
+        if error["type"] == "geometry":
+            place = (*place, error["ctx"]["field"])
+        elif not _concerns(document.data, place, error):
+            continue
+        message, hint = _say(model, place, error, owner, lister)
+        key = error["type"] == "extra_forbidden"
+        found.setdefault(place, document.at(place, message, hint, key=key))
+    return list(found.values())
+
+
+def _place(data: Any, error: ErrorDetails) -> Place:
+    """The path of an error in the user's data: pydantic adds the branches of unions to it."""
+    path: list[str | int] = []
+    for k, part in enumerate(error["loc"]):
+        last = k == len(error["loc"]) - 1
+        if isinstance(data, dict) and (part in data or (last and error["type"] == "missing")):
+            path.append(part)
+            data = data.get(part)
+        elif isinstance(data, list) and isinstance(part, int) and part < len(data):
+            path.append(part)
+            data = data[part]
+    return tuple(path)
+
+
+def _concerns(data: Any, place: Place, error: ErrorDetails) -> bool:
+    """Whether an error speaks of the branch of a union that the user meant: a mapping, or a plain value."""
+    for part in place:
+        data = data.get(part) if isinstance(data, dict) else data[part]
+    return not (
+        (isinstance(data, dict) and error["type"] in ("float_type", "int_type"))
+        or (not isinstance(data, dict) and error["type"] in ("model_type", "model_attributes_type"))
+    )
+
+
+BOUNDS = {
+    "greater_than": ("gt", "more than"),
+    "greater_than_equal": ("ge", "at least"),
+    "less_than": ("lt", "less than"),
+    "less_than_equal": ("le", "at most"),
+}
+
+
+def _got(given: Any) -> str:
+    if given is None:
+        return "got nothing"
+    if isinstance(given, bool):
+        return f"got {str(given).lower()}"
+    if isinstance(given, str):
+        return f"got the text {given!r}"
+    if isinstance(given, int | float):
+        return f"got {given}"
+    return f"got a {'list' if isinstance(given, list) else 'mapping'}"
+
+
+def _say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, lister: str) -> tuple[str, str | None]:
+    """An error in plain words, and a hint."""
+    kind, given, ctx = error["type"], error["input"], error.get("ctx", {})
+    fields = _fields(model, place[:-1])
+    info = next((fields[part] for part in reversed(place) if isinstance(part, str) and part in fields), None)
+    extra = info.json_schema_extra if info is not None and isinstance(info.json_schema_extra, dict) else {}
+    unit = f" {extra['unit']}" if extra.get("unit") else ""
+    got = _got(given)
+    if kind == "geometry":
+        return ctx["reason"], None
+    if kind == "missing":
+        what = "is missing"
+        if info is not None and info.description:
+            what += f": {info.description}" + (f" [{unit.strip()}]" if unit else "")
+        return what, lister
+    if kind == "extra_forbidden":
+        within = owner if len(place) == 1 else spell(place[:-1])
+        return f"is not a field of {within}", did_you_mean(str(place[-1]), list(fields))
+    if kind in BOUNDS:
+        key, words = BOUNDS[kind]
+        return f"must be {words} {ctx[key]:g}{unit}, {got}", None
+    if kind == "finite_number":
+        return f"must be a finite number, {got}", None
+    if kind in ("float_type", "float_parsing"):
+        comma = isinstance(given, str) and re.fullmatch(r"\s*[-+]?\d+,\d+\s*", given)
+        return f"must be a number{f' in{unit}' if unit else ''}, {got}", "write a decimal point" if comma else None
+    if kind in ("int_type", "int_parsing", "int_from_float"):
+        return f"must be a whole number, {got}", None
+    if kind == "string_type":
+        return f"must be text, {got}", "put it in quotes"
+    if kind == "literal_error":
+        return f"must be {ctx['expected']}, {got}".replace("'", ""), None
+    if kind in ("too_short", "too_long"):
+        least, most = ctx.get("min_length"), ctx.get("max_length")
+        wanted = f"at least {least}" if least is not None else f"at most {most}"
+        return f"must have {wanted} entries, has {ctx['actual_length']}", None
+    if kind == "list_type":
+        return f"must be a list, {got}", None
+    if kind in ("model_type", "model_attributes_type", "dict_type"):
+        return f"must be a mapping, {got}", None
+    if kind == "value_error":
+        return str(ctx["error"]), None
+    return f"{error['msg'][0].lower()}{error['msg'][1:]}", None
+
+
+def _fields(model: type[BaseModel], place: Place) -> dict[str, Any]:
+    """The fields that may stand at a place, of whichever models it may hold."""
+    models: list[Any] = [model]
+    for part in place:
+        if isinstance(part, str):
+            models = [
+                inner
+                for each in models
+                if part in each.model_fields
+                for inner in _models(each.model_fields[part].annotation)
+            ]
+    return {name: info for each in models for name, info in each.model_fields.items()}
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    """The models in an annotation, such as `list[A | B] | None`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [inner for part in get_args(annotation) for inner in _models(part)]

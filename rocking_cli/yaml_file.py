@@ -1,0 +1,194 @@
+"""A YAML file as plain data, with every problem placed at file:line:column."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from rocking_cli.errors import InputError, Problem
+
+LARGEST = 1_000_000  # bytes; a structure takes a few hundred, a study a few thousand
+DEEPEST = 20  # nesting
+
+
+class _Loader(yaml.SafeLoader):
+    """PyYAML with the plain scalars of YAML 1.2: `1e3` is a number, `on` a word and `012` is twelve."""
+
+    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 - so it is declared in PyYAML
+
+
+for _tag, _first, _pattern in (
+    ("bool", "tTfF", r"true|True|TRUE|false|False|FALSE"),
+    ("int", "-+0123456789", r"[-+]?[0-9]+"),
+    ("float", "-+.0123456789", r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?"),
+    ("float", "-+.", r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"),
+    ("null", ["~", "n", "N", ""], r"~|null|Null|NULL|"),
+):
+    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first))
+
+SCALARS: dict[str, Callable[[str], Any]] = {
+    "int": int,
+    "float": lambda text: float(text.lower().replace(".inf", "inf").replace(".nan", "nan")),
+    "bool": lambda text: ["false", "true"].index(text.lower()) == 1,
+    "null": lambda text: None,
+    "str": str,
+}
+Place = tuple[str | int, ...]
+"""Where a value stands in a file: keys, and places in lists counted from 0."""
+
+
+@dataclass
+class Document:
+    """A parsed file: plain data, and where each key and value stands.
+
+    Parameters
+    ----------
+    what : str
+        What the file should be, for messages: "structure".
+    file : str
+        What to call it.
+    lines : list of str
+        Its text.
+    data : dict
+        Its content.
+    keys, values : dict
+        Where the key and the value of each path stand.
+    problems : list of Problem
+        What is wrong so far.
+    """
+
+    what: str
+    file: str
+    lines: list[str]
+    data: dict[str, Any] = field(default_factory=dict)
+    keys: dict[Place, yaml.Mark] = field(default_factory=dict)
+    values: dict[Place, yaml.Mark] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+
+    def problem(
+        self, message: str, mark: yaml.Mark | None, name: str | None = None, hint: str | None = None
+    ) -> Problem:
+        """A problem at a mark, with the line it stands in."""
+        if mark is None or mark.line >= len(self.lines):
+            return Problem(message, self.file, field=name, hint=hint)
+        return Problem(
+            message, self.file, mark.line + 1, mark.column + 1, name, self.lines[mark.line].replace("\t", " "), hint
+        )
+
+    def plain(self, node: yaml.Node, path: Place = ()) -> Any:
+        """Plain data of a node; problems are gathered, not raised."""
+        self.values.setdefault(path, node.start_mark)
+        if len(path) > DEEPEST:
+            raise InputError(self.problem(f"nested too deep to be a {self.what}", node.start_mark))
+        if isinstance(node, yaml.SequenceNode):
+            return [self.plain(item, (*path, k)) for k, item in enumerate(node.value)]
+        if isinstance(node, yaml.MappingNode):
+            return self._mapping(node, path)
+        kind, text = node.tag.rpartition(":")[2], node.value
+        try:
+            return SCALARS[kind](text)
+        except KeyError:
+            message = f"unknown tag {node.tag}"
+        except ValueError:  # !!int abc, or thousands of digits
+            message = f"not a {kind}"
+        raise InputError(self.problem(message, node.start_mark, hint="write plain text or numbers"))
+
+    def _mapping(self, node: yaml.MappingNode, path: Place) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        for key, value in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                self.problems.append(self.problem("a key must be a word", key.start_mark))
+                continue
+            here = (*path, key.value)
+            if key.value in data:
+                first = self.keys[here].line + 1
+                self.problems.append(self.problem(f"given twice, first in line {first}", key.start_mark, key.value))
+                continue
+            self.keys[here] = key.start_mark
+            data[key.value] = self.plain(value, here)
+        return data
+
+    def at(self, place: Place, message: str, hint: str | None = None, *, key: bool = False) -> Problem:
+        """A problem with the value at a place, or with its key; where it stands nowhere, with what holds it."""
+        mark = (self.keys if key else self.values).get(place) or self.values.get(place[:-1])
+        return self.problem(message, mark, spell(place), hint)
+
+    def check(self) -> None:
+        """Raise every problem found so far, in the order of the lines."""
+        if self.problems:
+            raise InputError(*sorted(self.problems, key=lambda problem: problem.line or 0))
+
+
+def spell(place: Place) -> str | None:
+    """A place as the user would write it: `polygon[2]`, `restitution.positive_to_negative`."""
+    text = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in place)
+    return text.lstrip(".") or None
+
+
+def read_text(path: Path, what: str) -> str:
+    """The text of a file that should be a `what`. Raises `InputError` if there is none."""
+    shown = str(path)
+    try:
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(Problem("no such file", shown)) from None
+    except IsADirectoryError:
+        raise InputError(Problem(f"this is a folder, not a {what} file", shown)) from None
+    except OSError as error:
+        raise InputError(Problem(f"cannot be read: {error.strerror or error}", shown)) from None
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # what a redirection writes in older shells of Windows
+        raw = raw.decode("utf-16", errors="replace").encode()
+    if b"\0" in raw or len(raw) > LARGEST:
+        raise InputError(Problem(f"this is not a {what} file: it is binary or far too large", shown))
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        raise InputError(Problem("not UTF-8 text", shown, line, hint="save the file as UTF-8")) from None
+
+
+def parse(text: str, file: str, what: str, hint: str) -> Document:
+    """Parse YAML text that should be a mapping.
+
+    Parameters
+    ----------
+    text, file : str
+        The text, and what to call it.
+    what : str
+        What it should be: "structure".
+    hint : str
+        Where to find one to start from, for who gives none.
+
+    Returns
+    -------
+    Document
+        Keys given twice and the like are among its problems.
+
+    Raises
+    ------
+    InputError
+        If it is not YAML, or not a mapping.
+    """
+    document = Document(what, file, text.splitlines())
+    try:
+        node = yaml.compose(text, Loader=_Loader)
+    except yaml.MarkedYAMLError as error:
+        said = " ".join(part for part in (error.context, error.problem) if part)
+        raise InputError(document.problem(f"not YAML: {said}", error.problem_mark or error.context_mark)) from None
+    except RecursionError:
+        raise InputError(Problem(f"nested too deep to be a {what}", file)) from None
+    except yaml.YAMLError as error:
+        raise InputError(Problem(f"not YAML: {str(error).splitlines()[0]}", file)) from None
+    if node is None:
+        raise InputError(Problem("the file is empty", file, hint=hint))
+    data = document.plain(node)
+    if not isinstance(data, dict):
+        message = f"a {what} is written as `field: value` lines"
+        raise InputError(document.problem(message, node.start_mark, hint=hint))
+    document.data = data
+    return document
