@@ -138,7 +138,7 @@ class TestInARecord:
     def test_several_files_and_one_without_a_pulse(self, made, tmp_path):
         (tmp_path / "zero.csv").write_text("t,accel_g\n" + "".join(f"{k},0\n" for k in range(40)), encoding="utf-8")
         result = CliRunner().invoke(main, ["record", "zero.csv", str(made), "--pulse", "--json"])
-        assert result.exit_code == 2 and "zero throughout" in result.stderr
+        assert result.exit_code == 5 and "zero throughout" in result.stderr
         assert json.loads(result.stdout)["pulses"]["velocity"]["sine"]["sign"] == -1
 
     def test_a_long_search_says_how_far_it_is(self, made, monkeypatch):
