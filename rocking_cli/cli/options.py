@@ -35,6 +35,13 @@ class Finite(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
         return number
 
 
+def restitution(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
+    """A callback for a coefficient of restitution."""
+    if value is not None and not 0 < value <= 1:
+        raise click.BadParameter(f"{value:g} is not a coefficient of restitution: it is above 0 and at most 1.")
+    return value
+
+
 def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str | None], Path | None]:
     """A callback for an output file: its suffix must be one of these, and its folder must take a file."""
 
@@ -71,9 +78,10 @@ reading: Decorator = _in_order(
 """How to read a record: `units`, `dt` and `channel`."""
 
 
-def scaling(*polarities: str) -> Decorator:
+def scaling(*polarities: str, both: str = "one after the other") -> Decorator:
     """How to change a record: `scale`, `target_pga`, `target_pgv` and `polarity`, which is one of these.
 
+    `both` says what becomes of both polarities, where they are one of them.
     `motions.factor` turns the first three, of which a user may give one, into a number.
     """
     return _in_order(
@@ -89,6 +97,6 @@ def scaling(*polarities: str) -> Decorator:
             type=click.Choice(polarities),
             default="1",
             show_default=True,
-            help="-1 reverses the record." + (" both: one after the other." if "both" in polarities else ""),
+            help="-1 reverses the record." + (f" both: {both}." if "both" in polarities else ""),
         ),
     )

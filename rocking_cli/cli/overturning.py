@@ -22,19 +22,16 @@ OMEGAS, AMPLITUDES = (0.5, 10.0), (0.5, 10.0)  # shown unless asked otherwise
 SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
 
 
-def _eta(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not 0 < value <= 1:
-        raise click.BadParameter(f"{value:g} is not a coefficient of restitution: it is above 0 and at most 1.")
-    return value
-
-
 @click.command(short_help="Which pulses overturn a structure; which of several goes first.")
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @click.option("--compare", is_flag=True, help="The least overturning amplitude of several FILEs, in one picture.")
 @click.option("--pulse", default="sine", show_default=True, metavar="SHAPE", help="Shape of the pulses.")
 @click.option("--model", type=click.Choice(MODELS), help="[default: linear2; nonlinear with --compare]")
 @click.option(
-    "--eta", type=options.Finite(), callback=_eta, help="Restitution.  [default: the structure's; 0.9 without FILE]"
+    "--eta",
+    type=options.Finite(),
+    callback=options.restitution,
+    help="Restitution.  [default: the structure's; 0.9 without FILE]",
 )
 @click.option(
     "--polarity",

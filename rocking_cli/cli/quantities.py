@@ -66,3 +66,24 @@ class Range(Quantity):
         if not low < high:
             self.fail(f"{value!r} does not grow: give the smaller first, such as {example}.", param, ctx)
         return low, high
+
+
+class Sizes(Range):
+    """Two periods in s, the smaller first, and how many sizes there are between them if a third number says so."""
+
+    name = "sizes"
+
+    def __init__(self, count: int, most: int) -> None:
+        super().__init__("period")
+        self.count, self.most = count, most
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Turn a text into the two periods and the number, or fail naming the option and what would be right."""
+        if isinstance(value, tuple):
+            return value
+        *ends, last = str(value).split(":")
+        if len(ends) != 2:
+            return *super().convert(value, param, ctx), self.count
+        if not (last.strip().isdecimal() and 2 <= int(last) <= self.most):
+            self.fail(f"{last!r} is no number of sizes from 2 to {self.most}: give such as 1:10:60.", param, ctx)
+        return *super().convert(":".join(ends), param, ctx), int(last)

@@ -57,13 +57,13 @@ def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
     return _sampling(motion, measured) + _size(motion, measured) + _baseline(motion, measured) + _clipping(motion)
 
 
-def coarse_for(motion: GroundMotion, p: float) -> list[Doubt]:
-    """Whether the samples are too far apart for a structure of frequency parameter p [rad/s]."""
+def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> list[Doubt]:
+    """Whether the samples are too far apart for a structure, called `what`, of frequency parameter p [rad/s]."""
     product = p * motion.dt
     if product <= GROWTH:
         return []
     text = (
-        f"dt = {motion.dt:g} s is coarse for this structure: p dt = {product:.2g}, so that near overturning its "
+        f"dt = {motion.dt:g} s is coarse for {what}: p dt = {product:.2g}, so that near overturning its "
         f"motion grows by {100 * np.expm1(product):.2g} % from sample to sample"
     )
     return [Doubt("p_dt", product, text)]
