@@ -14,7 +14,19 @@ from rocking_cli import __version__
 from rocking_cli.cli import terminal
 from rocking_cli.errors import RockingError
 
-COMMANDS = ("equiv", "error", "record", "respond", "pulse", "overturning", "equivalent", "figure", "mechanisms", "new")
+COMMANDS = (
+    "equiv",
+    "error",
+    "record",
+    "respond",
+    "pulse",
+    "overturning",
+    "spectrum",
+    "equivalent",
+    "figure",
+    "mechanisms",
+    "new",
+)
 
 
 class LazyGroup(click.Group):
@@ -76,6 +88,7 @@ def main() -> None:
       rocking respond block.yaml --record accel.csv --plot response.png
       rocking pulse --a 4 --omega 6
       rocking overturning block.yaml --plot map.png
+      rocking spectrum block.yaml --record "records/*.AT2"
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
     3 mechanism or plugin, 4 solver, 5 done except for records or runs that are reported.

@@ -1,0 +1,205 @@
+"""`rocking spectrum`: the peak rotation over the size of structures, and where the user's own lies."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import click
+
+from rocking_cli.cli import motions, options
+from rocking_cli.cli.quantities import Sizes
+from rocking_cli.errors import INCOMPLETE, InputError
+
+if TYPE_CHECKING:
+    from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.studies.shaken import Reals
+    from rocking_cli.studies.spectrum import Shape
+
+MODELS = ("nonlinear", "linear1", "linear2")
+POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
+SIZES, MOST = 60, 2000  # of a curve, unless asked otherwise and at most
+AROUND = 10.0  # scale up to which, and one over which down to, a structure is shown
+BLOCKS = (1.0, 10.0)  # 2 pi/p of blocks [s]: R from 0.19 to 19 m
+
+
+def _numbers(low: float, high: float, what: str) -> Any:
+    """A callback for a list of different numbers between two bounds."""
+
+    def read(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[float, ...]:
+        number = options.Finite()
+        words = value.split(",") if value is not None else []
+        found = tuple(dict.fromkeys(number.convert(word, param, ctx) for word in words))
+        for each in found:
+            if not low < each < high:
+                raise click.BadParameter(f"{each:g} is {what}.", ctx, param)
+        return found
+
+    return read
+
+
+@click.command(short_help="Peak rotation and overturning over the size of structures.")
+@click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
+@click.option(
+    "--record",
+    "records",
+    multiple=True,
+    metavar="PLACE",
+    help="A ground motion, or a pattern in quotes for several: 'records/*.AT2'. May be repeated.",
+)
+@click.option("--pulse", "pulses", multiple=True, metavar="PULSE", help="Such as sine:0.6g:0.8s. May be repeated.")
+@click.option(
+    "--slenderness",
+    metavar="A,B,...",
+    callback=_numbers(0, pi / 2, "no angle in rad between 0 and pi/2: alpha = atan(b/h) of a block 2b wide, 2h high"),
+    help="Also rectangular blocks: alpha = atan(b/h) in rad, such as 0.1,0.2.",
+)
+@click.option(
+    "--sizes",
+    type=Sizes(SIZES, MOST),
+    metavar="FROM:TO[:COUNT]",
+    help="Sizes, as 2 pi/p in s, such as 1:10:60.  [default: FILE scaled by 0.1 to 10; 1:10 for blocks alone]",
+)
+@click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help="Equation of motion.")
+@click.option(
+    "--eta",
+    type=options.Finite(),
+    callback=options.restitution,
+    help="Restitution.  [default: the structure's, the block's]",
+)
+@options.reading
+@options.scaling("1", "-1", "both", both="the worse of the two")
+@click.option(
+    "--fractiles",
+    default="0.16,0.84",
+    show_default=True,
+    metavar="Q,Q",
+    callback=_numbers(0, 1, "no fractile between 0 and 1"),
+    help="Beside the median, of several motions.",
+)
+@click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Histories at a time.  [default: all cores]")
+@click.option(
+    "--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the curves, with every motion's."
+)
+@click.option(
+    "--plot",
+    callback=options.output_path(".png", ".svg", ".pdf"),
+    metavar="FILE.png",
+    help="Draw them (.png, .svg or .pdf).",
+)
+@options.as_json
+@click.pass_context
+def command(
+    ctx: click.Context,
+    files: tuple[str, ...],
+    records: tuple[str, ...],
+    pulses: tuple[str, ...],
+    slenderness: tuple[float, ...],
+    sizes: tuple[float, float, int] | None,
+    model: str,
+    eta: float | None,
+    units: str | None,
+    dt: float | None,
+    channel: str | None,
+    scale: float | None,
+    target_pga: float | None,
+    target_pgv: float | None,
+    polarity: str,
+    fractiles: tuple[float, ...],
+    threads: int | None,
+    out: Path | None,
+    plot: Path | None,
+    as_json: bool,
+) -> None:
+    """Rocking response spectrum: the peak rotation and overturning over the size, under one or more ground motions.
+
+    There is a curve for each FILE, every length of which is multiplied by the scale, and one for rectangular blocks
+    of each slenderness. Sizes are 2 pi/p: it goes as the square root of the scale. FILE itself is marked. Of
+    several motions it gives median, fractiles and the share that overturns.
+
+    Without FILE and --slenderness it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m. A motion that
+    cannot be used is reported, the others are run, and the exit code is 5.
+
+    \b
+    Example:
+      rocking spectrum --record accel.csv --plot spectrum.png
+      rocking spectrum block.yaml --record "records/*.AT2" --slenderness 0.1,0.2 --plot spectrum.png
+      rocking spectrum --slenderness 0.1,0.2,0.3 --pulse sine:0.5g:0.8s --sizes 1:10
+      rocking spectrum frame.yaml --record "records/*.AT2" --target-pga 0.4 --polarity both --out spectrum.csv
+
+    Source: Makris and Konstantinidis (2003).
+    """
+    _check(files, records, pulses, (units, dt, channel))
+    motions.check_scaling(scale, target_pga, target_pgv)
+    from rocking_cli.cli import spectrum_results as results
+    from rocking_cli.cli import work
+    from rocking_cli.files import keep_apart
+    from rocking_cli.studies import spectrum as study
+
+    paths, missing = motions.find(records)
+    keep_apart([("--out", out), ("--plot", plot)], [*files, *(str(path) for path in paths)])
+    shapes = _shapes(files, slenderness, cast("ModelName", model), eta)
+    periods = _sizes(shapes, sizes)
+    smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])
+    asked = scale, target_pga, target_pgv
+    chosen, refused = motions.gather(paths, pulses, (dt, units, channel), asked, 2 * pi / smallest)
+    if not chosen:
+        ctx.exit(InputError.exit_code)
+    polarities = POLARITIES[polarity]
+    with work.histories(study.work(shapes, periods, len(chosen), polarities)) as progress:
+        found = study.spectra(
+            shapes,
+            periods,
+            [each.motion.scaled(each.factor) for each in chosen],
+            polarities=polarities,
+            threads=threads,
+            progress=progress,
+        )
+    lost = results.report_lost(found, chosen)
+    results.give(results.Results(found, chosen, tuple(sorted({*fractiles, 0.5})), polarity), out, plot, as_json=as_json)
+    if missing or refused or lost:
+        ctx.exit(INCOMPLETE)
+
+
+def _check(
+    files: tuple[str, ...],
+    records: tuple[str, ...],
+    pulses: tuple[str, ...],
+    reading: tuple[object, ...],
+) -> None:
+    """Refuse options that do not go together, before anything is read."""
+    if not records and not pulses:
+        raise click.UsageError(
+            "Nothing to respond to: give --record PLACE or --pulse PULSE, each as often as you like."
+        )
+    if not records and any(value is not None for value in reading):
+        raise click.UsageError("--units, --dt and --channel describe records: give --record PLACE.")
+    endings = {Path(place).suffix.lower() for place in records} - {"", ".yaml", ".yml"}
+    strays = [file for file in files if Path(file).suffix.lower() in endings]
+    if strays:  # the shell has put the files in the place of a pattern
+        raise click.UsageError(
+            f"{strays[0]} stands where a structure is expected: is it a record? Give --record before each, or a "
+            f"pattern in quotes: --record '*{Path(strays[0]).suffix}'."
+        )
+
+
+def _shapes(files: tuple[str, ...], slenderness: tuple[float, ...], model: ModelName, eta: float | None) -> list[Shape]:
+    """What there is a curve of: the structures, then the blocks."""
+    from rocking_cli.cli import structures
+    from rocking_cli.studies.spectrum import blocks_of, shape_of
+
+    mechanisms = structures.load(files) if files or not slenderness else []
+    if files:
+        mechanisms = structures.told_apart(mechanisms, files)
+    own = [shape_of(each, model, eta) for each in mechanisms]
+    return own + [blocks_of(alpha, model, eta) for alpha in slenderness]
+
+
+def _sizes(shapes: list[Shape], asked: tuple[float, float, int] | None) -> Reals:
+    """2 pi/p of the sizes [s], at equal ratios."""
+    import numpy as np
+
+    own = [each.period for each in shapes if each.slenderness is None]
+    low, high = (min(own) / AROUND**0.5, max(own) * AROUND**0.5) if own else BLOCKS
+    return np.geomspace(*(asked or (low, high, SIZES)))

@@ -1,0 +1,251 @@
+"""Rocking spectra as people and programs read them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import shorten
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.cli import terminal
+from rocking_cli.cli.motions import Scaled
+from rocking_cli.cli.overturning_results import numbers
+from rocking_cli.cli.pictures import write_picture
+from rocking_cli.files import write_whole
+from rocking_cli.studies.shaken import Integers, Reals
+from rocking_cli.studies.spectrum import Spectrum
+from rocking_cli.table_csv import write_table_csv
+
+ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
+LISTED = 3  # histories that could not be followed
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """Spectra, the motions they are of, the fractiles to show (0.5 among them), and the polarity as asked for."""
+
+    spectra: Sequence[Spectrum]
+    motions: Sequence[Scaled]
+    fractiles: tuple[float, ...]
+    polarity: str
+
+    @property
+    def one(self) -> bool:
+        """Whether there is a single motion, and so no fractile."""
+        return len(self.motions) == 1
+
+    @property
+    def shaking(self) -> str:
+        """The motions, as a heading has them."""
+        first = self.motions[0]
+        scaled = f" x {first.factor:.4g}" if first.factor != 1 else ""
+        what = f"{first.motion.name}{scaled}" if self.one else f"{len(self.motions)} motions"
+        return what + {"1": "", "-1": ", reversed", "both": ", either polarity"}[self.polarity]
+
+
+def report_lost(spectra: Sequence[Spectrum], motions: Sequence[Scaled]) -> int:
+    """Report histories that could not be followed; how many there are."""
+    lost = [
+        f"{each.shape.structure.name} at 2 pi/p = {each.periods[k]:.4g} s under {motions[m].motion.name}"
+        for each in spectra
+        for m, k in np.argwhere(np.isnan(each.peak_ratio)).tolist()
+    ]
+    if lost:
+        more = f" and {len(lost) - LISTED} more" if len(lost) > LISTED else ""
+        every = sum(each.peak_ratio.size for each in spectra)
+        terminal.error(
+            f"{len(lost)} of {every} responses could not be followed and are left out: {'; '.join(lost[:LISTED])}{more}"
+        )
+    return len(lost)
+
+
+def give(results: Results, out: Path | None, plot: Path | None, *, as_json: bool) -> None:
+    """Write spectra to the files asked for, and print them."""
+    if out is not None:
+        write_whole(out, lambda stream: write_table_csv(stream, _columns(results)))
+        terminal.note(f"wrote {out}")
+    if plot is not None:
+        from rocking_cli.plotting.spectrum import draw_spectra
+
+        title = f"{results.shaking}, {results.spectra[0].shape.structure.model.name}"
+        write_picture(plot, draw_spectra(results.spectra, results.fractiles, title))
+    if as_json:
+        terminal.print_json(_json(results))
+        return
+    for each in results.spectra:
+        _print_table(results, each)
+    for each in results.spectra:
+        terminal.result(_verdict(results, each))
+
+
+def _columns(results: Results) -> dict[str, Sequence[object]]:
+    """A line for each shape and size."""
+    columns: dict[str, list[object]] = {}
+
+    def add(heading: str, values: Sequence[object]) -> None:
+        columns.setdefault(heading, []).extend(values)
+
+    for each in results.spectra:
+        blocks = each.shape.slenderness is not None
+        nothing = [np.nan] * each.scales.size
+        add("structure", [each.shape.structure.name] * each.scales.size)
+        add("2 pi/p [s]", each.periods.tolist())
+        add("scale", nothing if blocks else each.scales.tolist())
+        add("R of the block [m]", each.scales.tolist() if blocks else nothing)
+        if not results.one:
+            add("motions", each.followed.tolist())
+            add("overturned share", each.share.tolist())
+            for q in results.fractiles:
+                add(f"{q:g}-fractile of peak phi/phi_cr", each.fractile(q).tolist())
+        for peaks, (motion, _) in zip(each.peak_ratio, results.motions, strict=True):
+            add(f"peak phi/phi_cr under {motion.name}", peaks.tolist())
+    return columns  # type: ignore[return-value]
+
+
+def _json(results: Results) -> dict[str, Any]:
+    structure = results.spectra[0].shape.structure
+    return {
+        "model": structure.model.name,
+        "polarity": results.polarity,
+        "fractiles": list(results.fractiles),
+        "motions": [
+            {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt, "pga": motion.pga}
+            | {"scale": factor}
+            for motion, factor in results.motions
+        ],
+        "spectra": [_spectrum_json(results, each) for each in results.spectra],
+    }
+
+
+def _spectrum_json(results: Results, each: Spectrum) -> dict[str, Any]:
+    structure, blocks = each.shape.structure, each.shape.slenderness is not None
+    return {
+        "name": structure.name,
+        "slenderness": each.shape.slenderness,
+        "direction": structure.direction.label,
+        "p": None if blocks else structure.p,
+        "lambda": structure.lambda_,
+        "eta": structure.eta,
+        "size": each.periods.tolist(),
+        "scale": None if blocks else each.scales.tolist(),
+        "R": each.scales.tolist() if blocks else None,
+        "given": each.given,
+        "motions": each.followed.tolist(),
+        "overturned": each.overturned.tolist(),
+        "peaks": [_finite(each.fractile(q)) for q in results.fractiles],
+        "every_peak": [_finite(peaks) for peaks in each.peak_ratio],
+        "every_overturned": np.isinf(each.peak_ratio).tolist(),
+        "verdict": _verdict(results, each),
+    }
+
+
+def _finite(values: Reals) -> list[float | None]:
+    return numbers(np.where(np.isfinite(values), values, np.nan))
+
+
+def _peak(value: float) -> str:
+    if value != value:
+        return terminal.ABSENT
+    return "overturns" if np.isinf(value) else f"{value:.3g}"
+
+
+def _print_table(results: Results, each: Spectrum) -> None:
+    structure = each.shape.structure
+    shown = sorted({round(k) for k in np.linspace(0, each.scales.size - 1, min(ROWS, each.scales.size)).tolist()})
+    if each.given is not None and each.given not in shown:
+        shown = sorted([*shown, each.given])
+    heads = ["2 pi/p\n[s]", "scale" if each.shape.slenderness is None else "R\n[m]"]
+    columns = [[f"{value:.3g}" for value in values] for values in (each.periods, each.scales)]
+    if each.given is not None:
+        columns[1][each.given] = "as given"
+    if results.one:
+        heads.append("peak\nphi/phi_cr")
+        columns.append([_peak(value) for value in each.peak_ratio[0]])
+    else:
+        heads += ["median" if q == 0.5 else f"{100 * q:g} %" for q in results.fractiles]
+        columns += [[_peak(value) for value in each.fractile(q)] for q in results.fractiles]
+        heads.append("over-\nturned")
+        columns.append([f"{value} of {of}" for value, of in zip(each.overturned, each.followed, strict=True)])
+    rows = [[column[k] for column in columns] for k in shown]
+    side = "" if structure.symmetric else f" ({structure.direction.label})"
+    terminal.result(
+        f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
+        f"{structure.eta:.4g}, under {results.shaking}"
+    )
+    if not results.one:
+        terminal.result("Median and fractiles of the peak phi/phi_cr; overturning counts as larger than any.")
+    terminal.table("", heads, rows, numbers=range(len(heads)))
+
+
+def _verdict(results: Results, each: Spectrum) -> str:
+    """Where the structure lies and what becomes of larger and smaller ones, or which blocks overturn."""
+    place = each.given
+    if place is None:
+        return f"{each.shape.structure.name}: {_blocks(results, each)}"
+    sides = [
+        said
+        for what, part in (("smaller", slice(None, place)), ("larger", slice(place + 1, None)))
+        if (said := _side(results, each, what, part))
+    ]
+    return " ".join(
+        [f"{each.shape.structure.name}, 2 pi/p = {each.periods[place]:.3g} s: {_itself(results, each)}.", *sides]
+    )
+
+
+def _itself(results: Results, each: Spectrum) -> str:
+    assert each.given is not None
+    peaks = each.peak_ratio[:, each.given]
+    if results.one:
+        if np.isnan(peaks[0]):
+            return "its motion could not be followed"
+        if np.isinf(peaks[0]):
+            return "it overturns"
+        return f"it rocks to {peaks[0]:.3g} of phi_cr" if peaks[0] else "it does not uplift"
+    falls, count = np.flatnonzero(np.isinf(peaks)), np.count_nonzero(~np.isnan(peaks))
+    if not count:
+        return "no motion could be followed"
+    names = shorten(", ".join(results.motions[k].motion.name for k in falls.tolist()), 90, placeholder=" ...")
+    median = float(each.fractile(0.5)[each.given])
+    said = f"{falls.size} of {count} motions overturn it ({names})" if falls.size else f"none of {count} overturns it"
+    return said if np.isinf(median) else f"{said}, and its median peak is {median:.3g} of phi_cr"
+
+
+def _side(results: Results, each: Spectrum, what: str, part: slice) -> str:
+    """A sentence on the sizes to one side of the structure; nothing if there are none."""
+    falls, of, scales = each.overturned[part], each.followed[part], each.scales[part]
+    if not falls.size:
+        return ""
+    end = f"down to scale {scales[0]:.3g}" if what == "smaller" else f"up to scale {scales[-1]:.3g}"
+    if not falls.any():
+        return f"No {what} one {end} overturns."
+    if not results.one:
+        return f"Of the {what} ones {end}, {_most(falls, of, [f'scale {scale:.3g}' for scale in scales])}."
+    if (falls == of).all():
+        return f"Every {what} one {end} overturns."
+    least, largest = scales[falls > 0][[0, -1]]
+    where = f"at scale {least:.3g}" if least == largest else f"between scale {least:.3g} and {largest:.3g}"
+    return f"Of the {what} ones {end}, {falls.sum()} of {of.sum()} overturn, {where}."
+
+
+def _blocks(results: Results, each: Spectrum) -> str:
+    """Which sizes of blocks overturn."""
+    falls, of = each.overturned, each.followed
+    names = [f"{period:.3g} s (R = {R:.3g} m)" for period, R in zip(each.periods, each.scales, strict=True)]
+    if not falls.any():
+        return f"no size up to {names[-1]} overturns."
+    if not results.one:
+        return f"{_most(falls, of, names)}."
+    last = int(np.flatnonzero(falls)[-1])
+    return f"{falls.sum()} of {of.sum()} sizes overturn, the largest at {names[last]}."
+
+
+def _most(falls: Integers, of: Integers, names: Sequence[str]) -> str:
+    """How many motions overturn a size at most, and above which size none does."""
+    worst, last = int(np.argmax(falls / np.maximum(of, 1))), int(np.flatnonzero(falls)[-1])
+    said = f"at most {falls[worst]} of {of[worst]} motions overturn one, at {names[worst]}"
+    if last == len(names) - 1:
+        return said
+    return f"{said}, and none {'overturns a larger one' if worst == last else f'does above {names[last]}'}"

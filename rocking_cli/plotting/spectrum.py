@@ -1,0 +1,168 @@
+"""Rocking spectra: the peak rotation over the size, and the share of the motions that overturn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from textwrap import shorten
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, PercentFormatter
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.shaken import Reals
+from rocking_cli.studies.spectrum import Spectrum
+
+LONGEST = 95  # characters of a heading
+NAME = 40  # characters of a structure's name in the legend
+SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks
+SHADED = 2  # curves up to which the spread of the motions is drawn: more shades cannot be told apart
+ROW = 0.06  # height of the row of marks where a curve overturns, over that of the peaks
+STAR: dict[str, Any] = {"marker": "*", "markersize": 15, "markeredgecolor": "white", "linestyle": "none", "zorder": 6}
+
+
+def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title: str) -> Figure:
+    """Draw spectra over 2 pi/p, the structures as given marked; of several motions below the share that overturns.
+
+    Parameters
+    ----------
+    spectra : sequence of Spectrum
+        What to draw, all under the same motions.
+    fractiles : sequence of float
+        Of several motions, 0.5 among them; the outermost bound the shade around the median of one or two curves.
+    title : str
+        Heading.
+    """
+    many = len(spectra[0].peak_ratio) > 1
+    low, high = min(fractiles), max(fractiles)
+    figure = style.new_figure(6.4 if many else 4.8)
+    panels = figure.subplots(1 + many, 1, sharex=True, squeeze=False, height_ratios=[2.4, 1][: 1 + many])[:, 0]
+    panels[0].set_title(shorten(title, LONGEST, placeholder=" ..."), loc="left", fontsize=10, parse_math=False)
+    medians = [each.fractile(0.5) for each in spectra]
+    rows = [k for k, median in enumerate(medians) if np.isinf(median).any()]
+    shaded = many and low < high and len(spectra) <= SHADED
+    top = _top(spectra, high if shaded else 0.5)
+    for k, (each, median) in enumerate(zip(spectra, medians, strict=True)):
+        if shaded:
+            _draw_spread(panels[0], each, k, (low, high), top, every=len(spectra) == 1)
+        if many:
+            _draw_line(panels[1], each, k, each.share)
+        _draw_line(panels[0], each, k, median, row=top * (1 + ROW * (rows.index(k) + 0.5)) if k in rows else np.nan)
+        if each.given is not None:
+            for axes in panels:
+                axes.axvline(each.periods[each.given], color=style.INK, linewidth=0.8, linestyle=":", zorder=1)
+    _scale_peaks(panels[0], top, len(rows))
+    if many:
+        panels[1].set_ylim(-0.04, 1.04)
+        panels[1].yaxis.set_major_formatter(PercentFormatter(1.0))
+        panels[1].set_ylabel("share that overturns", fontsize=9)
+    what = r"median peak $\phi/\phi_{cr}$" if many else r"peak $\phi/\phi_{cr}$"
+    panels[0].set_ylabel(what, fontsize=9)
+    panels[-1].set_xlabel(r"size $2\pi/p$ [s]", fontsize=9)
+    for axes in panels:
+        axes.set_xscale("log")
+        axes.margins(x=0.01)
+        _log_ticks(axes.xaxis, spectra[0].periods[-1] / spectra[0].periods[0])
+        style.tidy(axes)
+    _second_axis(panels[0], spectra)
+    handles = _legend(spectra, (low, high) if shaded else None)
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8, frameon=False, handlelength=3.5)
+    return figure
+
+
+def _top(spectra: Sequence[Spectrum], q: float) -> float:
+    """The peak up to which the scale goes: past those that are drawn, and to 1 where something overturns."""
+    drawn = [each.fractile(q) for each in spectra]
+    if len(spectra) == 1:
+        drawn.append(spectra[0].peak_ratio.ravel())
+    peaks = np.concatenate(drawn)
+    finite = peaks[np.isfinite(peaks)]
+    highest = float(finite.max()) if finite.size else 0.0
+    return max(1.05 * highest, 1.0 if np.isinf(peaks).any() else 0.01)
+
+
+def _within(each: Spectrum) -> Reals:
+    """Sizes to join by lines: a structure as given that lies beyond those asked for stands alone."""
+    inside = np.ones(each.scales.size)
+    if each.given in (0, each.scales.size - 1):
+        inside[each.given] = np.nan
+    return inside
+
+
+def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float], top: float, *, every: bool) -> None:
+    """Shade between two fractiles, up to the top where the upper one overturns; `every` motion too, faintly."""
+    lower, upper = (np.minimum(each.fractile(q), top) * _within(each) for q in bounds)
+    axes.fill_between(each.periods, lower, upper, color=style.distinct(k)["color"], alpha=0.15, linewidth=0)
+    if every:
+        curves = np.where(np.isfinite(each.peak_ratio), each.peak_ratio, np.nan) * _within(each)
+        axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=0.5)
+
+
+def _draw_line(axes: Axes, each: Spectrum, k: int, values: Reals, row: float = np.nan) -> None:
+    """Draw a curve and the structure as given on it; where it is infinite a mark each in a row of its own."""
+    look = style.distinct(k)
+    finite = np.where(np.isfinite(values), values, np.nan)
+    spaced = max(1, each.scales.size // 8)
+    axes.plot(each.periods, finite * _within(each), markevery=(k * spaced // 4, spaced), **look)
+    small = look | {"linestyle": "none", "markersize": 3.5}
+    no_line = np.isnan(np.pad(finite, 1, constant_values=np.nan))
+    axes.plot(each.periods, np.where(no_line[:-2] & no_line[2:], finite, np.nan), **small)
+    marks = np.where(np.isinf(values), row, np.nan)
+    axes.plot(each.periods, marks, **small)
+    finite = np.where(np.isinf(values), row, finite)
+    if each.given is not None:
+        axes.plot(each.periods[each.given], finite[each.given], color=look["color"], clip_on=False, **STAR)
+
+
+def _scale_peaks(axes: Axes, top: float, rows: int) -> None:
+    """Scale the upper panel: peaks, and above them a row for each curve where it overturns."""
+    ticks = [tick for tick in MaxNLocator(6).tick_values(0.0, top) if 0 <= tick <= top]
+    labels = [f"{tick:g}" for tick in ticks]
+    roof = top * (1 + ROW * rows)
+    if rows:
+        axes.axhspan(top, roof, color=style.SHADE, zorder=0)
+        ticks.append((top + roof) / 2)
+        labels.append("overturns")
+    axes.set_yticks(ticks, labels)
+    axes.set_ylim(-0.02 * top, roof)
+
+
+def _log_ticks(axis: Axis, ratio: float) -> None:
+    """Ticks in plain numbers on a logarithmic axis over this ratio of its ends."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if ratio > SHORT else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
+    """Above, the scale of the structure if there is only one, or R of the blocks if there are only these."""
+    own = [each.shape for each in spectra if each.shape.slenderness is None]
+    if len(own) > 1:
+        return
+    shape = own[0] if own else spectra[0].shape
+    above = axes.secondary_xaxis("top", functions=(shape.scales, shape.periods))  # type: ignore[arg-type]
+    above.set_xlabel("scale (1: as given)" if own else "size R of the blocks [m]", fontsize=9)
+    _log_ticks(above.xaxis, spectra[0].scales[-1] / spectra[0].scales[0])
+    above.tick_params(labelsize=8, colors=style.INK)
+
+
+def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None) -> list[Line2D | Patch]:
+    handles: list[Line2D | Patch] = []
+    for k, each in enumerate(spectra):
+        alpha = each.shape.slenderness
+        name = shorten(each.shape.structure.name, NAME, placeholder=" ...").replace("$", r"\$")
+        label = rf"blocks, $\alpha$ = {alpha:g} rad" if alpha is not None else name
+        handles.append(Line2D([], [], label=label, **style.distinct(k)))
+    if any(each.given is not None for each in spectra):
+        handles.append(Line2D([], [], label="as given", color=style.INK, **STAR))
+    if bounds is not None:
+        label = f"{100 * bounds[0]:g} to {100 * bounds[1]:g} % of the motions"
+        handles.append(Patch(color=style.INK, alpha=0.15, linewidth=0, label=label))
+    if bounds is not None and len(spectra) == 1:
+        handles.append(Line2D([], [], color=style.FAINT, linewidth=0.5, label="each motion"))
+    return handles

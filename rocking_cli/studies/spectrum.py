@@ -1,0 +1,233 @@
+"""Rocking response spectra: the peak rotation under ground motions over the size of a structure of one shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, inf, isclose, pi, sin
+
+import numpy as np
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.registry import Registry
+from rocking_cli.studies.shaken import Integers, Progress, Reals, Shaken, parse_shape, shaken
+
+SAME = 1e-9  # relative difference below which a size is that of the structure as given
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """What a spectrum is of: a structure, or a block of a slenderness, to be enlarged and reduced.
+
+    Parameters
+    ----------
+    structure : Shaken
+        At scale 1; its direction is the one with the smaller uplift acceleration, whose p measures sizes.
+    slenderness : float, optional
+        alpha [rad] of a block whose R is 1 m at scale 1, so that its scale is R in m; None for a structure as given.
+    """
+
+    structure: Shaken
+    slenderness: float | None = None
+
+    @property
+    def period(self) -> float:
+        """2 pi/p at scale 1 [s]."""
+        return 2 * pi / self.structure.p
+
+    def scales(self, periods: Reals) -> Reals:
+        """The factors on every length that give 2 pi/p these values [s]: p^2 goes as one over a length."""
+        return np.square(periods / self.period)
+
+    def periods(self, scales: Reals) -> Reals:
+        """2 pi/p at these scales [s]."""
+        return self.period * np.sqrt(scales)
+
+
+def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None) -> Shape:
+    """A structure to be enlarged and reduced.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    model : {"nonlinear", "linear1", "linear2"}
+        Its equation of motion.
+    eta : float, optional
+        Coefficient of restitution of every impact; without it the structure's own, which does not change with size.
+
+    Raises
+    ------
+    InputError, MechanismError
+        If the structure does not stand, or its restitution is not known.
+    """
+    # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
+    return Shape(shaken(mechanism, model, parse_shape("sine"), eta=eta))
+
+
+def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> Shape:
+    """Rectangular blocks of one slenderness alpha = atan(b/h) [rad] and any size. Raises as `shape_of`."""
+    if not 0 < slenderness < pi / 2:
+        raise InputError(
+            Problem(
+                f"a slenderness is an angle in rad between 0 and pi/2, alpha = atan(b/h), got {slenderness:g}",
+                hint="a block 0.7 m wide and 2.8 m high has alpha = atan(0.7/2.8) = 0.245",
+            )
+        )
+    name = f"alpha = {slenderness:g}"
+    sides = {"width": 2 * sin(slenderness), "height": 2 * cos(slenderness)}  # R = 1 m
+    block = Registry()["block"].model_validate({"name": name, **sides})
+    own = block.eta(Direction.POSITIVE)
+    if eta is None and own <= 0:
+        message = f"blocks of {name}: the kinematics give {own:.3g} for an impact: too stocky to rock the other way"
+        raise InputError(Problem(message, hint="give a measured eta in (0, 1], or a smaller slenderness"))
+    return Shape(shape_of(block, model, eta).structure, slenderness)
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """What ground motions do to the sizes of a shape.
+
+    Parameters
+    ----------
+    shape : Shape
+        What is shaken.
+    scales : ndarray, shape (n,)
+        Factors on every length, ascending; 1 is among them if it is a structure as given.
+    peak_ratio : ndarray, shape (m, n)
+        Largest rotation over the critical one under each of m motions: 0 without uplift, inf if it overturns, NaN if
+        the motion could not be followed.
+    """
+
+    shape: Shape
+    scales: Reals
+    peak_ratio: Reals
+
+    @property
+    def periods(self) -> Reals:
+        """2 pi/p of the sizes [s]."""
+        return self.shape.periods(self.scales)
+
+    @property
+    def given(self) -> int | None:
+        """The place of the structure as given; None for blocks of a slenderness."""
+        return None if self.shape.slenderness is not None else int(np.flatnonzero(self.scales == 1.0)[0])
+
+    @property
+    def followed(self) -> Integers:
+        """How many motions were followed at each size, shape (n,)."""
+        counts: Integers = np.sum(~np.isnan(self.peak_ratio), axis=0)
+        return counts
+
+    @property
+    def overturned(self) -> Integers:
+        """How many of them overturn it, shape (n,)."""
+        counts: Integers = np.sum(np.isinf(self.peak_ratio), axis=0)
+        return counts
+
+    @property
+    def share(self) -> Reals:
+        """The share of the motions followed that overturn it, shape (n,); NaN if there is none."""
+        return np.where(self.followed > 0, self.overturned / np.maximum(self.followed, 1), np.nan)
+
+    def fractile(self, q: float) -> Reals:
+        """See `fractile`, shape (n,)."""
+        return fractile(self.peak_ratio, q)
+
+
+def fractile(peaks: Reals, q: float) -> Reals:
+    """The q-fractile of peaks under several motions, overturning being larger than any peak.
+
+    Parameters
+    ----------
+    peaks : ndarray, shape (m, n)
+        Peaks of m motions, inf where it overturns; those that are NaN are left out.
+    q : float
+        In [0, 1]; 0.5 for the median.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        By straight lines between the ordered peaks, (k - 1)/(m - 1) being the place of the k-th; inf where overturning
+        has a part in it, NaN where there is no peak.
+    """
+    ordered = np.sort(peaks, axis=0)  # NaN come last
+    last = np.maximum(np.count_nonzero(~np.isnan(peaks), axis=0) - 1, 0)
+    place = np.round(q * last, 9)  # so that rounding gives no part to a neighbour
+    k = np.floor(place).astype(int)
+    below, above = (np.take_along_axis(ordered, row[None], axis=0)[0] for row in (k, np.ceil(place).astype(int)))
+    with np.errstate(invalid="ignore"):  # inf - inf
+        between: Reals = below + (place - k) * (above - below)
+    return np.where(below == above, below, between)
+
+
+def spectra(
+    shapes: Sequence[Shape],
+    periods: Reals,
+    motions: Sequence[GroundMotion],
+    *,
+    polarities: Sequence[int] = (1,),
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> list[Spectrum]:
+    """Shake every size of several shapes.
+
+    Parameters
+    ----------
+    shapes : sequence of Shape
+        See `shape_of` and `blocks_of`.
+    periods : ndarray, shape (n,)
+        Sizes, as 2 pi/p [s].
+    motions : sequence of GroundMotion
+        What shakes them.
+    polarities : sequence of int
+        Of 1 and -1; with both, the worse of the two counts for each motion.
+    threads : int, optional
+        Histories at a time; without it, one for each processor.
+    progress : callable, optional
+        Called with the number of histories done since the last call, of `work(...)`.
+
+    Returns
+    -------
+    list of Spectrum
+        One for each shape. A structure as given is run at scale 1 too, whatever the sizes.
+
+    Notes
+    -----
+    Every length of the structure is multiplied by the scale: slenderness, uplift, critical rotation and restitution
+    stay, and p goes as one over the square root of the scale. Makris and Konstantinidis (2003) draw the spectrum of a
+    block of given slenderness over 2 pi/p.
+    """
+    if not motions:
+        raise InputError("there is no ground motion")
+    found = []
+    for shape in shapes:
+        scales, signs = _scales(shape, periods), _signs(shape, polarities)
+        runs = Runs.every(1, len(motions), polarities=signs, sizes=scales.tolist())
+        answer = respond_many(
+            [shape.structure.model], motions, runs, threads=threads, only_peaks=True, progress=progress
+        )
+        peaks = np.where(answer.failed, np.nan, np.where(answer.overturned, inf, answer.peak_ratio))
+        found.append(Spectrum(shape, scales, peaks.reshape(len(motions), len(signs), scales.size).max(axis=1)))
+    return found
+
+
+def work(shapes: Sequence[Shape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:
+    """How many histories `spectra` runs."""
+    return motions * sum(_scales(each, periods).size * len(_signs(each, polarities)) for each in shapes)
+
+
+def _scales(shape: Shape, periods: Reals) -> Reals:
+    scales = np.sort(shape.scales(periods))
+    if shape.slenderness is not None:
+        return scales
+    return np.union1d([scale for scale in scales if not isclose(scale, 1.0, rel_tol=SAME)], 1.0)
+
+
+def _signs(shape: Shape, polarities: Sequence[int]) -> Sequence[int]:
+    # A reversed motion does the same to a symmetric structure.
+    return polarities[:1] if shape.structure.symmetric else polarities
