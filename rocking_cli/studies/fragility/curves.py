@@ -1,0 +1,325 @@
+"""Fragility curves: the probability that a limit state is exceeded, over an intensity of shaking."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from rocking_cli.errors import InputError
+from rocking_cli.studies.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
+from rocking_cli.studies.fragility.likelihood import (
+    Bools,
+    Estimate,
+    Fit,
+    Integers,
+    Link,
+    Reals,
+    fit_binomial,
+    fit_brackets,
+    too_few,
+)
+from rocking_cli.studies.fragility.surfaces import Surface, fit_surface
+
+__all__ = ["Curve", "Estimate", "Kind", "Observations", "Surface", "fit_capacities", "fit_curve", "fit_surface"]
+
+Kind = Literal["lognormal", "logistic", "step", "none"]
+LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
+REJECTED = 0.05  # p-value below which a curve is rejected
+_DECREASING = "nothing increases: fewer exceed as the intensity grows, so this measure does not tell what exceeds"
+_NO_MAXIMUM = "the likelihood found no maximum: the data hardly tell a slope"
+TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
+
+
+@dataclass(frozen=True, eq=False)
+class Observations:
+    """Which runs exceed a limit state.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Intensity of each run, positive.
+    exceeded : ndarray of bool, shape (n,)
+        Whether it exceeds the limit state.
+    record : ndarray of int, shape (n,)
+        The record it belongs to: runs of one record are not independent.
+
+    Raises
+    ------
+    InputError
+        If an intensity is not a positive number, or there are no runs.
+    """
+
+    x: Reals
+    exceeded: Bools
+    record: Integers
+
+    def __post_init__(self) -> None:
+        if not self.x.size == self.exceeded.size == self.record.size:
+            raise InputError(f"{self.x.size} intensities, {self.exceeded.size} outcomes, {self.record.size} records")
+        if not self.x.size:
+            raise InputError("a fragility curve needs runs, and there are none")
+        wrong = ~((self.x > 0) & np.isfinite(self.x))
+        if wrong.any():
+            k = int(wrong.argmax())
+            raise InputError(
+                f"the intensity of run {k} (record {self.record[k]}) is {self.x[k]:g}: a curve over its logarithm "
+                "needs positive ones; leave out records without shaking"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A fragility curve, or the reason why there is none.
+
+    Parameters
+    ----------
+    kind : str
+        `lognormal`: P = Phi(ln(x/median)/dispersion). `logistic`: P = 1/(1 + exp(-(x - median)/scale)). `step`: no
+        exceedance up to one intensity, nothing else from another one on. `none`.
+    why : str
+        Why this kind, a sentence.
+    confidence : float
+        Of all intervals and bands.
+    runs, exceedances : int
+        Number of runs, or of records with a capacity each, and how many exceed.
+    fit : Fit or None
+        Of lognormal, over 1 and ln x; of logistic, over 1 and x.
+    step : Estimate or None
+        Where the step is taken, and the interval in which it lies.
+    goodness : Goodness or None
+        Of the kind that was chosen.
+    aic : dict of str to float, or None
+        Akaike's criterion of the kinds that were fitted; of repeated records without what makes them alike.
+    """
+
+    kind: Kind
+    why: str
+    confidence: float
+    runs: int
+    exceedances: int
+    fit: Fit | None = None
+    step: Estimate | None = None
+    goodness: Goodness | None = None
+    aic: dict[Kind, float] | None = None
+
+    @property
+    def median(self) -> Estimate | None:
+        """The intensity at which one half exceed, in the unit of x; its interval is where the band crosses one half."""
+        if self.fit is None:
+            return self.step
+        a, b = self.fit.coefficients
+        low, high = _root_interval(self.fit)
+        if self.kind == "logistic":
+            return Estimate(float(-a / b), low, high)
+        with np.errstate(over="ignore"):  # an end that the data hardly bound
+            return Estimate(float(np.exp(-a / b)), float(np.exp(low)), float(np.exp(high)))
+
+    @property
+    def dispersion(self) -> Estimate | None:
+        """Standard deviation of the logarithm of the capacity; of lognormal only."""
+        return self._inverse_slope() if self.kind == "lognormal" else None
+
+    @property
+    def scale(self) -> Estimate | None:
+        """Of logistic only, in the unit of x."""
+        return self._inverse_slope() if self.kind == "logistic" else None
+
+    def _inverse_slope(self) -> Estimate:
+        assert self.fit is not None
+        slope = self.fit.intervals[1]
+        return Estimate(1 / slope.value, 1 / slope.high, 1 / slope.low if slope.low > 0 else np.inf)
+
+    def probability(self, x: Reals) -> Reals:
+        """Probability of exceedance at intensities of any shape; NaN where there is no curve."""
+        x = np.asarray(x, dtype=np.float64)
+        if self.fit is not None:
+            return self.fit.probability(self._design(x)).reshape(x.shape)
+        if self.step is not None:
+            return np.heaviside(x - self.step.value, 0.5)
+        return np.full(x.shape, np.nan)
+
+    def band(self, x: Reals) -> tuple[Reals, Reals]:
+        """Confidence limits of the probability at each intensity alone; inside the interval of a step, 0 and 1."""
+        x = np.asarray(x, dtype=np.float64)
+        if self.fit is not None:
+            low, high = self.fit.band(self._design(x))
+            return low.reshape(x.shape), high.reshape(x.shape)
+        if self.step is not None:
+            return (x >= self.step.high).astype(np.float64), (x > self.step.low).astype(np.float64)
+        return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
+
+    def _design(self, x: Reals) -> Reals:
+        return _design(self.kind, x.ravel())
+
+
+def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
+    """Fit a fragility curve to runs at any intensities: a cloud, or stripes.
+
+    Parameters
+    ----------
+    observations : Observations
+        The runs.
+    confidence : float
+        Of the intervals and the band.
+
+    Returns
+    -------
+    Curve
+        Lognormal, unless that is wrong: logistic if the lognormal does not increase, or is rejected at 5 % while
+        logistic is likelier. Logistic is taken in the intensity, not in its logarithm: that would be within 0.01 of the
+        lognormal and wrong where it is wrong. A step if all that exceed lie above all that do not: the likelihood
+        then grows for ever with the slope. None if there is nothing to fit.
+    """
+    x, exceeded = observations.x, observations.exceeded
+    bare = Curve("none", "", confidence, x.size, int(exceeded.sum()))
+    if not 0 < bare.exceedances < bare.runs:
+        return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
+    special = _step_or_none(bare, x[~exceeded], x[exceeded])
+    if special is not None:
+        return special
+    if few := too_few(observations.record, 2):
+        return replace(bare, why=few)
+    curves: dict[Kind, Curve] = {}
+    for kind, link in LINKS.items():
+        design = _design(kind, x)
+        fit = fit_binomial(link, design, exceeded, observations.record, confidence)
+        if fit is not None:
+            goodness = goodness_of_runs(fit, x, design, exceeded, observations.record)
+            curves[kind] = replace(bare, kind=kind, fit=fit, goodness=goodness)
+    kind, why = _choice(curves)
+    aic = {kind: curve.fit.aic for kind, curve in curves.items() if curve.fit is not None}
+    return replace(curves.get(kind, bare), why=why, aic=aic)
+
+
+def fit_capacities(lower: Reals, upper: Reals, *, confidence: float = 0.95) -> Curve:
+    """Fit a lognormal curve to the capacities of records: incremental dynamic analysis.
+
+    Parameters
+    ----------
+    lower, upper : ndarray, shape (n,)
+        For each record the last level that does not exceed the limit state, 0 if the first one does; and the first that
+        does, infinite if none does. The capacity is known to lie between them, and taken as no more than that.
+    confidence : float
+        Of the intervals and the band.
+
+    Returns
+    -------
+    Curve
+        Lognormal by maximum likelihood of the brackets; a step if one capacity agrees with all of them; or none.
+
+    Raises
+    ------
+    InputError
+        If a bracket is empty.
+    """
+    wrong = ~((lower >= 0) & (lower < upper))
+    if wrong.any():
+        k = int(wrong.argmax())
+        raise InputError(f"the capacity of record {k} lies between {lower[k]:g} and {upper[k]:g}: no such interval")
+    above = np.isfinite(upper)
+    bare = Curve("none", "", confidence, lower.size, int(above.sum()))
+    if not bare.exceedances:
+        return replace(bare, why=f"none of the {bare.runs} records exceeds at any level")
+    if not (lower > 0).any():
+        return replace(bare, why=f"all of the {bare.runs} records exceed at their first level: take lower ones")
+    special = _step_or_none(bare, lower[lower > 0], upper[above])
+    if special is not None:
+        return special
+    with np.errstate(divide="ignore"):
+        logs = np.log(lower), np.log(upper)
+    fit = fit_brackets(*logs, confidence)
+    if fit is None:
+        return replace(bare, why=_NO_MAXIMUM)
+    if fit.coefficients[1] <= 0:
+        return replace(bare, why=_DECREASING)
+    goodness = goodness_of_brackets(fit, *logs)
+    curve = replace(bare, kind="lognormal", fit=fit, goodness=goodness, aic={"lognormal": fit.aic})
+    return replace(curve, why=f"capacities are taken as lognormal; {_tested(curve)}")
+
+
+def _design(kind: Kind, x: Reals) -> Reals:
+    return np.column_stack([np.ones(x.size), x if kind == "logistic" else np.log(np.maximum(x, TINY))])
+
+
+def _step_or_none(bare: Curve, below: Reals, above: Reals) -> Curve | None:
+    """The curve where no likelihood has a maximum: what exceeds and what does not share at most one intensity."""
+    if below.min() == above.max() == below.max() == above.min():
+        return replace(bare, why=f"all runs have the intensity {above[0]:.4g}: other levels are needed")
+    if above.max() <= below.min():
+        return replace(bare, why=_DECREASING)
+    if below.max() > above.min():
+        return None
+    low, high = float(below.max()), float(above.min())
+    if low < high:
+        step = Estimate(float(np.sqrt(low * high)), low, high)
+        why = f"none exceeds up to {low:.4g} and all do from {high:.4g} on: the data know no scatter"
+        return replace(bare, kind="step", step=step, why=f"{why}; runs between them could")
+    under, over = below[below < low], above[above > low]
+    if not (under.size and over.size):
+        side = "none exceeds below" if under.size else "all exceed above"
+        why = f"both outcomes occur at {low:.4g} only and {side} it: a slope needs levels on either side"
+        return replace(bare, why=why)
+    step = Estimate(low, float(under.max()), float(over.min()))
+    why = f"both outcomes occur at {low:.4g} only, none exceeds up to {step.low:.4g} and all do from {step.high:.4g} on"
+    return replace(bare, kind="step", step=step, why=f"{why}: the scatter needs levels between them")
+
+
+def _choice(curves: dict[Kind, Curve]) -> tuple[Kind, str]:
+    """Which kind, and why."""
+    lognormal, logistic = curves.get("lognormal"), curves.get("logistic")
+    if lognormal is None:
+        return "none", _NO_MAXIMUM
+    if _slope(lognormal) <= 0:
+        if logistic is None or _slope(logistic) <= 0:
+            return "none", _DECREASING
+        return "logistic", f"the lognormal does not increase; {_tested(logistic)}"
+    if not _rejected(lognormal):
+        return "lognormal", f"lognormal is the default; {_tested(lognormal)}"
+    if logistic is None or _slope(logistic) <= 0 or _likelihood(logistic) <= _likelihood(lognormal):
+        return "lognormal", f"lognormal is the default, and logistic no likelier; {_tested(lognormal)}"
+    assert lognormal.goodness is not None
+    why = f"the lognormal is rejected (p = {lognormal.goodness.p_value:.2g}) and logistic is likelier"
+    return "logistic", f"{why}; {_tested(logistic)}"
+
+
+def _slope(curve: Curve) -> float:
+    assert curve.fit is not None
+    return float(curve.fit.coefficients[1])
+
+
+def _likelihood(curve: Curve) -> float:
+    assert curve.fit is not None
+    return curve.fit.log_likelihood
+
+
+def _rejected(curve: Curve) -> bool:
+    goodness = curve.goodness
+    return goodness is not None and goodness.p_value is not None and goodness.p_value < REJECTED
+
+
+def _tested(curve: Curve) -> str:
+    """What the data say of a curve."""
+    assert curve.goodness is not None and curve.fit is not None
+    p = curve.goodness.p_value
+    if p is None:
+        said = f"the data are too few to test a {curve.kind} curve"
+    elif _rejected(curve):
+        said = f"do not rely on it: the data reject a {curve.kind} curve (p = {p:.2g})"
+    else:
+        said = f"the data do not reject a {curve.kind} curve (p = {p:.2g})"
+    if curve.fit.intervals[1].low <= 0:
+        said += f"; at {curve.confidence:.0%} its increase cannot be told from none"
+    return said
+
+
+def _root_interval(fit: Fit) -> tuple[float, float]:
+    """All u at which the band of a + b u contains one half [Fieller 1954, J. R. Statist. Soc. B 16, 175-185]."""
+    a, b = fit.coefficients
+    squared = fit.quantile**2 * fit.covariance
+    leading, middle, constant = b * b - squared[1, 1], a * b - squared[0, 1], a * a - squared[0, 0]
+    if leading <= 0:  # the slope may be none: the band then contains one half for ever, on one side or both
+        return -np.inf, np.inf
+    root = np.sqrt(max(middle * middle - leading * constant, 0.0))
+    return float((-middle - root) / leading), float((-middle + root) / leading)

@@ -1,0 +1,155 @@
+"""Fragility over two measures of intensity at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from rocking_cli.errors import InputError
+from rocking_cli.studies.fragility.likelihood import (
+    Bools,
+    Estimate,
+    Fit,
+    Integers,
+    Reals,
+    fit_binomial,
+    separable,
+    too_few,
+)
+
+ADDS = 0.05  # p-value below which a second measure adds something
+PARALLEL = 1e-4  # 1 - |correlation| of two measures that are one
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """The probability of exceedance over two intensities, P = Phi(c0 + c1 ln x1 + c2 ln x2).
+
+    Parameters
+    ----------
+    kind : str
+        `lognormal` or `none`.
+    why : str
+        Why there is none, or how the two measures compare, in words.
+    confidence : float
+        Of the intervals.
+    runs, exceedances : int
+        Number of runs, and how many exceed.
+    fit : Fit or None
+        The coefficients, with their covariance.
+    aic : dict of str to float or None
+        Akaike's criterion with `both`, and with the `first` and the `second` measure alone.
+    p_values : tuple of float or None
+        How likely as much is gained by adding the first measure to the second, and the second to the first, if it
+        does not matter: by the likelihood ratio, or where records repeat by the robust standard error.
+    """
+
+    kind: Literal["lognormal", "none"]
+    why: str
+    confidence: float
+    runs: int
+    exceedances: int
+    fit: Fit | None = None
+    aic: dict[str, float] | None = None
+    p_values: tuple[float, float] | None = None
+
+    @property
+    def coefficients(self) -> list[Estimate] | None:
+        """c0, c1 and c2 with their confidence intervals."""
+        return None if self.fit is None else self.fit.intervals
+
+    def probability(self, x1: Reals, x2: Reals) -> Reals:
+        """Probability of exceedance at positive intensities of one shape; NaN where there is no surface."""
+        x1, x2 = np.broadcast_arrays(x1, x2)
+        if self.fit is None:
+            return np.full(x1.shape, np.nan)
+        return self.fit.probability(_design(x1.ravel(), x2.ravel())).reshape(x1.shape)
+
+
+def fit_surface(x1: Reals, x2: Reals, exceeded: Bools, record: Integers, *, confidence: float = 0.95) -> Surface:
+    """Fit the probability of exceedance over two measures of intensity.
+
+    Parameters
+    ----------
+    x1, x2 : ndarray, shape (n,)
+        Intensities of each run, positive.
+    exceeded : ndarray of bool, shape (n,)
+        Whether it exceeds the limit state.
+    record : ndarray of int, shape (n,)
+        The record it belongs to.
+    confidence : float
+        Of the intervals.
+
+    Returns
+    -------
+    Surface
+        None of it where a line in the plane of the logarithms separates the outcomes, or the measures are one.
+
+    Raises
+    ------
+    InputError
+        If an intensity is not a positive number.
+    """
+    for name, x in (("first", x1), ("second", x2)):
+        if not ((x > 0) & np.isfinite(x)).all():
+            raise InputError(f"the {name} intensity of a run is not a positive number: leave out what is not shaken")
+    bare = Surface("none", "", confidence, x1.size, int(exceeded.sum()))
+    if not 0 < bare.exceedances < bare.runs:
+        return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
+    design = _design(x1, x2)
+    if (np.ptp(design[:, 1:], axis=0) == 0).any():
+        return replace(bare, why="one of the measures is the same in all runs: take a curve over the other one")
+    correlation = float(np.corrcoef(design[:, 1], design[:, 2])[0, 1])
+    if 1 - abs(correlation) < PARALLEL:
+        return replace(
+            bare, why="the two measures are in proportion (of their logarithms): take a curve over either one"
+        )
+    spread = np.column_stack([design[:, :1], (design[:, 1:] - design[:, 1:].mean(axis=0)) / design[:, 1:].std(axis=0)])
+    if separable(spread, exceeded):
+        why = "a line in the plane of the two measures separates what exceeds from what does not"
+        return replace(bare, why=f"{why}: the likelihood has no maximum, more runs near the line are needed")
+    if few := too_few(record, 3):
+        return replace(bare, why=few)
+    fits = [
+        fit_binomial("probit", design[:, columns], exceeded, record, confidence)
+        for columns in ([0, 1, 2], [0, 1], [0, 2])
+    ]
+    if any(fit is None for fit in fits):
+        return replace(bare, why="the likelihood found no maximum: the runs hardly tell the slopes")
+    both, first, second = (fit for fit in fits if fit is not None)
+    if (both.coefficients[1:] <= 0).all():
+        return replace(bare, why="nothing increases: fewer exceed as either measure grows")
+    clustered = np.unique(record).size < record.size
+    p_values = (_gain(both, second, 1, clustered), _gain(both, first, 2, clustered))
+    aic = {"both": both.aic, "first": first.aic, "second": second.aic}
+    why = _words(both, p_values, aic)
+    return replace(bare, kind="lognormal", why=why, fit=both, aic=aic, p_values=p_values)
+
+
+def _design(x1: Reals, x2: Reals) -> Reals:
+    return np.column_stack([np.ones(x1.size), np.log(x1), np.log(x2)])
+
+
+def _gain(both: Fit, alone: Fit, column: int, clustered: bool) -> float:
+    """How likely as large a gain is by chance; with repeated records the likelihood ratio is no chi-square."""
+    from scipy.special import chdtrc, stdtr
+
+    if clustered:
+        error = float(np.sqrt(both.covariance[column, column]))
+        return 2 * float(stdtr(both.degrees, -abs(both.coefficients[column]) / error))
+    return float(chdtrc(1, 2 * (both.log_likelihood - alone.log_likelihood)))
+
+
+def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> str:
+    said = [
+        f"the {name} measure {'adds to' if p < ADDS else 'adds nothing that can be told to'} the {other} (p = {p:.2g})"
+        for name, other, p in (("second", "first", p_values[1]), ("first", "second", p_values[0]))
+    ]
+    if max(p_values) >= ADDS:
+        better = "first" if aic["first"] <= aic["second"] else "second"
+        said.append(f"a curve over the {better} alone serves")
+    falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]
+    said += [f"at a given other measure fewer exceed as the {name} grows" for name in falls]
+    return "; ".join(said)
