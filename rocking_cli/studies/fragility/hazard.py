@@ -1,0 +1,240 @@
+"""From a fragility curve and a hazard curve to the annual rate at which a limit state is exceeded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.records.text import numbers_in
+from rocking_cli.studies.fragility.curves import Curve
+from rocking_cli.studies.fragility.likelihood import Reals
+
+NODES = 16  # of Gauss's rule in a piece
+PIECE = 0.05  # of ln x: a curve of dispersion 0.02 is still smooth in it
+LIFE = 50.0  # years
+
+
+@dataclass(frozen=True, eq=False)
+class HazardCurve:
+    """How often in a year an intensity is exceeded at a site: straight in log-log between points.
+
+    Parameters
+    ----------
+    intensity : ndarray, shape (n,)
+        Positive, increasing; of the measure and in the unit of the fragility curve.
+    annual_rate : ndarray, shape (n,)
+        Positive, never increasing [1/year].
+
+    Raises
+    ------
+    InputError
+        If they are not so, or there are fewer than two points.
+    """
+
+    intensity: Reals
+    annual_rate: Reals
+
+    def __post_init__(self) -> None:
+        problem = _problem(self.intensity, self.annual_rate)
+        if problem is not None:
+            raise InputError(f"hazard curve, point {problem[0] + 1}: {problem[1]}")
+
+    def rate(self, x: Reals) -> Reals:
+        """Annual rate of exceeding x; NaN outside the points."""
+        logs = np.log(self.intensity), np.log(self.annual_rate)
+        return np.exp(np.interp(np.log(x), *logs, left=np.nan, right=np.nan))
+
+
+def _problem(intensity: Reals, rate: Reals) -> tuple[int, str] | None:
+    """The first point that is wrong, counted from 0, and what is wrong there."""
+    if intensity.size != rate.size:
+        return min(intensity.size, rate.size), "an intensity without a rate, or a rate without an intensity"
+    for k, (x, value) in enumerate(zip(intensity, rate, strict=True)):
+        if not 0 < x < math.inf:
+            return k, f"the intensity is {x:g}, it must be positive"
+        if not 0 < value < math.inf:
+            return k, f"the annual rate is {value:g}, it must be positive"
+        if k and x <= intensity[k - 1]:
+            return k, f"the intensity {x:g} does not exceed the {intensity[k - 1]:g} before it"
+        if k and value > rate[k - 1]:
+            return k, f"the annual rate {value:g} is above the {rate[k - 1]:g} of the lower intensity before it"
+    return (intensity.size, "at least two are needed") if intensity.size < 2 else None
+
+
+def read_hazard(path: Path) -> HazardCurve:
+    """Read a hazard curve from a file of two columns.
+
+    Parameters
+    ----------
+    path : Path
+        Lines of an intensity and an annual rate with a comma between; one heading, blank lines, and lines that begin
+        with # are passed over.
+
+    Returns
+    -------
+    HazardCurve
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from error
+    except UnicodeDecodeError as error:
+        raise InputError(Problem("this is no text in UTF-8", str(path), hint="save it as CSV in UTF-8")) from error
+    lines = text.splitlines()
+    used = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
+    if used and lines[used[0]].lstrip()[0] not in "+-.0123456789":
+        del used[0]  # a heading
+    rows = []
+    for k in used:
+        cells = lines[k].split(",")
+        if len(cells) != 2:
+            hint = "two are needed with a comma between: intensity, annual rate"
+            message = f"{len(cells)} column{'s' * (len(cells) > 1)}"
+            raise InputError(Problem(message, str(path), k + 1, excerpt=lines[k].strip()[:100], hint=hint))
+        rows.append(numbers_in(str(path), k + 1, lines[k], cells))
+    intensity, rate = np.array(rows).reshape(-1, 2).T
+    problem = _problem(intensity, rate)
+    if problem is not None:
+        point, message = problem
+        if point == len(used):
+            raise InputError(Problem(f"{len(used)} point{'s' * (len(used) != 1)}: {message}", str(path)))
+        raise InputError(Problem(message, str(path), used[point] + 1, excerpt=lines[used[point]].strip()[:100]))
+    return HazardCurve(intensity, rate)
+
+
+@dataclass(frozen=True)
+class Rate:
+    """How often in a year a limit state is exceeded.
+
+    Parameters
+    ----------
+    rate : float
+        The integral of P(x) |d rate(x)| over the hazard curve, and beyond its end with P as it is there [1/year].
+    low, high : float
+        The same of the confidence limits of the curve: as if the curve were at its limit everywhere at once, so that
+        the interval is at least as wide as asked for. The hazard curve is taken as exact.
+    above : float
+        What stronger shaking than the last point can add at most: P may grow to one there [1/year].
+    below : float
+        What weaker shaking than the first point adds if the first slope of the hazard curve goes on; infinite for a
+        curve that does not vanish with the intensity [1/year].
+    """
+
+    rate: float
+    low: float
+    high: float
+    above: float
+    below: float
+
+    @property
+    def return_period(self) -> float:
+        """Of the exceedance [years]; infinite at a rate of zero."""
+        return 1 / self.rate if self.rate > 0 else math.inf
+
+    @property
+    def in_50_years(self) -> float:
+        """Probability of at least one exceedance in 50 years, as events of a Poisson process."""
+        return -math.expm1(-LIFE * self.rate)
+
+
+def annual_rate(curve: Curve, hazard: HazardCurve) -> Rate:
+    """Convolve a fragility curve with a hazard curve.
+
+    Parameters
+    ----------
+    curve : Curve
+        Over the same measure of intensity, in the same unit.
+    hazard : HazardCurve
+        The site's.
+
+    Raises
+    ------
+    InputError
+        If there is no curve.
+
+    Notes
+    -----
+    The integral is by Gauss's rule in pieces of ln x. For a lognormal curve and one power law, rate = k0 x^-k, it is
+    rate(median) exp(k^2 dispersion^2/2) [Cornell et al. 2002, J. Struct. Eng. 128, 526-533].
+    """
+    if curve.kind == "none":
+        raise InputError(f"there is no fragility curve to convolve: {curve.why}")
+    last = float(hazard.annual_rate[-1])
+    if curve.step is not None:
+        at, low, high = (_rate_at(hazard, x) for x in (curve.step.value, curve.step.high, curve.step.low))
+        above = last if curve.step.value > hazard.intensity[-1] else 0.0
+        return Rate(at, low, high, above, _beyond(hazard, curve.step.value))
+    end = hazard.intensity[-1:]
+    low, rate, high = (
+        _integral(hazard, probability) + float(probability(end)[0]) * last
+        for probability in (lambda x: curve.band(x)[0], curve.probability, lambda x: curve.band(x)[1])
+    )
+    return Rate(rate, low, high, (1 - float(curve.probability(end)[0])) * last, _below(curve, hazard))
+
+
+def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals]) -> float:
+    """Integral of P |d rate| between the first and the last point."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    logs = np.log(hazard.intensity)
+    ends = np.concatenate(
+        [
+            np.linspace(start, stop, max(1, math.ceil((stop - start) / PIECE)), endpoint=False)
+            for start, stop in pairwise(logs)
+        ]
+        + [logs[-1:]]
+    )
+    half, middle = np.diff(ends)[:, None] / 2, (ends[:-1, None] + ends[1:, None]) / 2
+    at = middle + half * nodes
+    slope = -np.diff(np.log(hazard.annual_rate)) / np.diff(logs)  # k of each power law
+    k = slope[np.searchsorted(logs, middle, side="right") - 1]
+    x = np.exp(at)
+    return float((half * weights * probability(x) * k * hazard.rate(x)).sum())
+
+
+def _rate_at(hazard: HazardCurve, x: float) -> float:
+    """Rate at an intensity; that of the first point below it, and none above the last."""
+    if x > hazard.intensity[-1]:
+        return 0.0
+    return float(hazard.rate(np.array([max(x, hazard.intensity[0])]))[0])
+
+
+def _first_slope(hazard: HazardCurve) -> float:
+    """The k of the first power law."""
+    (x0, x1), (rate0, rate1) = hazard.intensity[:2], hazard.annual_rate[:2]
+    return float(np.log(rate0 / rate1) / np.log(x1 / x0))
+
+
+def _beyond(hazard: HazardCurve, at: float) -> float:
+    """What a step below the first point adds, if the first power law goes on."""
+    if at >= hazard.intensity[0]:
+        return 0.0
+    first = float(hazard.annual_rate[0])
+    return first * float((hazard.intensity[0] / at) ** _first_slope(hazard)) - first
+
+
+def _below(curve: Curve, hazard: HazardCurve) -> float:
+    """What intensities below the first point add, if the first power law goes on."""
+    from scipy.special import log_ndtr, ndtr
+
+    k = _first_slope(hazard)
+    if k == 0:
+        return 0.0
+    if curve.dispersion is None or curve.median is None:
+        return math.inf  # a logistic curve stays positive down to no shaking, where the power law is infinite
+    beta = curve.dispersion.value
+    z = math.log(hazard.intensity[0] / curve.median.value) / beta
+    # The integral of Phi(z) k rate d ln x from none to the first point, by parts and by completing the square.
+    with np.errstate(over="ignore"):
+        whole = np.exp(k * beta * z + (k * beta) ** 2 / 2 + log_ndtr(z + k * beta))
+    return float(hazard.annual_rate[0] * max(whole - ndtr(z), 0.0))

@@ -1,0 +1,164 @@
+"""Annual rates against Cornell's closed form, plain sums and steps; hazard files and what is wrong in them."""
+
+from __future__ import annotations
+
+from math import exp, inf, log
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.stats import norm
+
+from rocking_cli.errors import InputError
+from rocking_cli.studies.fragility.curves import Curve, Estimate
+from rocking_cli.studies.fragility.hazard import HazardCurve, annual_rate, read_hazard
+from rocking_cli.studies.fragility.likelihood import Fit
+
+COVARIANCE = np.array([[0.02, 0.015], [0.015, 0.03]])
+
+
+def lognormal(median, dispersion, covariance=COVARIANCE):
+    coefficients = np.array([-log(median), 1.0]) / dispersion
+    return Curve("lognormal", "", 0.95, 100, 50, fit=Fit("probit", coefficients, covariance, -1.0, 0.95))
+
+
+def step(at, low, high):
+    return Curve("step", "", 0.95, 100, 50, step=Estimate(at, low, high))
+
+
+def power_law(k, start=1e-4, stop=1e4, k0=1e-3):
+    x = np.geomspace(start, stop, 7)
+    return HazardCurve(x, k0 * x**-k)
+
+
+BENT = HazardCurve(np.array([0.05, 0.1, 0.3, 1.0, 2.0]), np.array([2e-2, 9e-3, 9e-4, 9e-4, 1e-5]))
+
+
+class TestRate:
+    @pytest.mark.parametrize("k", [1.0, 2.5])
+    @pytest.mark.parametrize("dispersion", [0.05, 0.5])
+    def test_of_a_lognormal_curve_and_one_power_law_is_cornells(self, k, dispersion):
+        found = annual_rate(lognormal(0.6, dispersion), power_law(k))
+        expected = 1e-3 * 0.6**-k * exp((k * dispersion) ** 2 / 2)
+        assert found.rate == pytest.approx(expected, rel=1e-9)
+        assert found.return_period == pytest.approx(1 / expected, rel=1e-9)
+        assert found.in_50_years == pytest.approx(1 - exp(-50 * expected), rel=1e-9)
+        assert found.above < 1e-12 * expected and found.below < 1e-9 * expected
+
+    @pytest.mark.parametrize("dispersion", [0.1, 0.6])
+    def test_of_a_bent_hazard_curve_is_a_plain_sum(self, dispersion):
+        curve = lognormal(0.7, dispersion)
+        x = np.exp(np.linspace(log(0.05), log(2.0), 400_001))
+        logs = np.log(BENT.intensity), np.log(BENT.annual_rate)
+        rates = np.exp(np.interp(np.log(x), *logs))
+        middle = np.sqrt(x[1:] * x[:-1])
+
+        def summed(probability):
+            return (probability(middle) * -np.diff(rates)).sum() + probability(x[-1:])[0] * rates[-1]
+
+        found = annual_rate(curve, BENT)
+        assert found.rate == pytest.approx(summed(curve.probability), rel=1e-6)
+        assert found.low == pytest.approx(summed(lambda x: curve.band(x)[0]), rel=1e-6)
+        assert found.high == pytest.approx(summed(lambda x: curve.band(x)[1]), rel=1e-6)
+        assert found.low < found.rate < found.high
+        assert found.above == pytest.approx(norm.sf(log(2 / 0.7) / dispersion) * 1e-5, rel=1e-9)
+
+    def test_of_a_logistic_curve_is_a_plain_sum_and_open_below(self):
+        curve = Curve("logistic", "", 0.95, 100, 50, fit=Fit("logit", np.array([-4.0, 6.0]), COVARIANCE, -1.0, 0.95))
+        hazard = power_law(2.0, 0.1, 5.0)
+        found = annual_rate(curve, hazard)
+        inside = quad(lambda x: 1 / (1 + exp(4 - 6 * x)) * 2e-3 * x**-3, 0.1, 5.0, epsabs=0, epsrel=1e-10)[0]
+        end = 1 / (1 + exp(-26)) * 1e-3 / 25
+        assert found.rate == pytest.approx(inside + end, rel=1e-9)
+        assert found.below == inf
+
+    def test_what_lies_below_the_first_point_is_what_the_power_law_goes_on_to_add(self):
+        curve, k = lognormal(0.3, 0.6), 2.2
+        found = annual_rate(curve, power_law(k, 0.2, 50.0))
+        added = quad(lambda s: norm.cdf((s - log(0.3)) / 0.6) * k * 1e-3 * exp(-k * s), -30, log(0.2), epsrel=1e-11)[0]
+        assert found.below == pytest.approx(added, rel=1e-8)
+        assert found.rate + found.below == pytest.approx(1e-3 * 0.3**-k * exp((k * 0.6) ** 2 / 2), rel=1e-6)
+        flat = HazardCurve(np.array([0.1, 0.2, 1.0]), np.array([1e-3, 1e-3, 1e-5]))
+        assert annual_rate(curve, flat).below == 0
+
+    def test_of_a_step_is_the_rate_at_the_step(self):
+        found = annual_rate(step(0.3, 0.1, 1.0), BENT)
+        assert (found.rate, found.low, found.high) == pytest.approx((9e-4, 9e-4, 9e-3))
+        assert (found.above, found.below) == (0, 0)
+        found = annual_rate(step(0.2, 0.15, 0.25), power_law(2.0))
+        assert (found.rate, found.low, found.high) == pytest.approx((1e-3 / 0.04, 1e-3 / 0.0625, 1e-3 / 0.0225))
+
+    def test_of_a_steep_curve_nears_that_of_the_step(self):
+        steep = annual_rate(lognormal(0.2, 0.002, 1e-9 * COVARIANCE), power_law(2.0))
+        assert steep.rate == pytest.approx(1e-3 / 0.04, rel=1e-3)
+
+    def test_of_a_step_outside_the_hazard_curve(self):
+        beyond = annual_rate(step(3.0, 1.5, 4.0), BENT)
+        assert (beyond.rate, beyond.low, beyond.above) == (0, 0, 1e-5) and beyond.return_period == inf
+        assert beyond.high == pytest.approx(float(BENT.rate(np.array([1.5]))[0]))
+        under = annual_rate(step(0.025, 0.01, 0.04), BENT)
+        k = log(2e-2 / 9e-3) / log(2)
+        assert under.rate == pytest.approx(2e-2)
+        assert under.rate + under.below == pytest.approx(2e-2 * 2**k)
+
+    def test_of_no_curve_is_refused_with_the_reason(self):
+        with pytest.raises(InputError, match="none of the 9 runs exceed"):
+            annual_rate(Curve("none", "none of the 9 runs exceed", 0.95, 9, 0), BENT)
+
+
+class TestHazardCurve:
+    def test_is_straight_in_logarithms_and_unknown_outside(self):
+        x = np.array([0.04, 0.05, np.sqrt(0.1 * 0.3), 2.0, 2.1])
+        np.testing.assert_allclose(BENT.rate(x), [np.nan, 2e-2, np.sqrt(9e-3 * 9e-4), 1e-5, np.nan])
+
+    @pytest.mark.parametrize(
+        ("x", "rate", "words"),
+        [
+            ([0.1, 0.1], [1, 0.5], "point 2: the intensity 0.1 does not exceed the 0.1"),
+            ([0.1, 0.2], [1, 2], "point 2: the annual rate 2 is above the 1"),
+            ([0, 0.2], [1, 0.5], "point 1: the intensity is 0"),
+            ([0.1, 0.2], [1, 0], "point 2: the annual rate is 0"),
+            ([0.1, np.nan], [1, 0.5], "the intensity is nan"),
+            ([0.1], [1], "at least two"),
+            ([0.1, 0.2, 0.3], [1, 0.5], "point 3: an intensity without a rate"),
+        ],
+    )
+    def test_refuses_what_is_none(self, x, rate, words):
+        with pytest.raises(InputError, match=words):
+            HazardCurve(np.array(x, dtype=float), np.array(rate, dtype=float))
+
+
+class TestFile:
+    def test_heading_comments_blanks_and_line_ends(self, tmp_path):
+        path = tmp_path / "hazard.csv"
+        path.write_bytes("\ufeff# site A\r\nPGA [g], rate [1/year]\r\n\r\n0.05, 2e-2\r\n0.1,9e-3 \r\n".encode())
+        found = read_hazard(path)
+        np.testing.assert_array_equal(found.intensity, [0.05, 0.1])
+        np.testing.assert_array_equal(found.annual_rate, [2e-2, 9e-3])
+
+    @pytest.mark.parametrize(
+        ("text", "place", "words"),
+        [
+            ("0.1,1e-2\n0.2\n", ":2", "1 column"),
+            ("0.1,1e-2,3\n", ":1", "3 columns"),
+            ("x,y\n\n0.1,1e-2\n0.2,high\n", ":4", "'high' is not a number"),
+            ("x,y\n0.1,1e-2\nx,y\n", ":3", "'x' is not a number"),
+            ("x,y\n0.1,1e-2\n\n0.05,1e-3\n", ":4", "does not exceed"),
+            ("0.1,1e-3\n0.2,1e-2\n", ":2", "above"),
+            ("0.1,1e-3\n", "", "1 point: at least two"),
+            ("", "", "0 points: at least two"),
+        ],
+    )
+    def test_what_is_wrong_is_placed_at_its_line(self, tmp_path, text, place, words):
+        path = tmp_path / "hazard.csv"
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(InputError) as caught:
+            read_hazard(path)
+        assert f"hazard.csv{place}: " in str(caught.value) and words in str(caught.value)
+
+    def test_no_file_and_no_text(self, tmp_path):
+        with pytest.raises(InputError, match="cannot be read"):
+            read_hazard(tmp_path / "nowhere.csv")
+        (tmp_path / "binary").write_bytes(b"\xff\xfe\x00\x81")
+        with pytest.raises(InputError, match="UTF-8"):
+            read_hazard(tmp_path / "binary")
