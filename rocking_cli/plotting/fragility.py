@@ -1,0 +1,280 @@
+"""Fragility curves with what was observed, incremental dynamic analyses, and fragility over two intensities."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from textwrap import shorten
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
+from numpy.typing import NDArray
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.fragility.curves import Curve, Observations, Surface
+from rocking_cli.studies.fragility.goodness import groups
+
+Reals = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+LONGEST = 95  # characters of a heading
+WIDEST = 30.0  # ratio of the ends of an axis from which on it is logarithmic
+FINE = 400  # points of a curve
+LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
+FRACTILES = ((0.16, "16 %"), (0.5, "median"), (0.84, "84 %"))
+CROWDED = 15  # levels of shaking from which on not every one is counted out
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """One curve of a picture.
+
+    Parameters
+    ----------
+    name : str
+        The limit state, or the structure.
+    curve : Curve
+        What was fitted.
+    observations : Observations
+        The runs.
+    """
+
+    name: str
+    curve: Curve
+    observations: Observations
+
+
+def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
+    """Draw curves with their bands, and the observed parts that exceed with binomial intervals.
+
+    Parameters
+    ----------
+    drawn : sequence of Drawn
+        Several limit states of one structure, or several structures for one limit state.
+    label : str
+        The measure of intensity, with its unit in brackets.
+    title : str
+        Heading.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(4.6)
+    axes = figure.subplots()
+    _head(axes, title)
+    reach = np.concatenate([each.observations.x for each in drawn])
+    start, stop = float(reach.min()), float(reach.max())
+    if stop > WIDEST * start:
+        fine = np.geomspace(start / 1.1, stop * 1.1, FINE)
+        axes.set_xscale("log")
+        _plain_numbers(axes.xaxis)
+    else:
+        fine = np.linspace(0.0, stop * 1.05, FINE)
+    for k, each in enumerate(drawn):
+        look = style.distinct(k)
+        _draw_observed(axes, each, look, counted=len(drawn) == 1)
+        _draw_curve(axes, each, look, fine)
+    axes.set_xlim(fine[0], fine[-1])
+    axes.set_ylim(-0.03, 1.06 if len(drawn) > 1 else 1.1)
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_xlabel(label, fontsize=9)
+    axes.set_ylabel("probability of exceedance", fontsize=9)
+    style.tidy(axes)
+    handles = [_key(each, style.distinct(k)) for k, each in enumerate(drawn)]
+    said = f"marks: observed parts; bars and shades: {100 * drawn[0].curve.confidence:.3g} % confidence"
+    handles.append(Line2D([], [], linestyle="none", label=said))
+    figure.legend(
+        handles=handles,
+        loc="outside lower center",
+        ncols=1,
+        fontsize=8,
+        frameon=False,
+        handlelength=4,
+        alignment="left",
+    )
+    return figure
+
+
+def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, counted: bool) -> None:
+    """Mark the part that exceeds in each group, at the mean intensity, with Wilson's interval."""
+    from scipy.special import ndtri
+
+    seen = each.observations
+    group = groups(seen.x)
+    runs = np.bincount(group)
+    over = np.bincount(group, weights=seen.exceeded)
+    x = np.bincount(group, weights=seen.x) / runs
+    part = over / runs
+    z2 = float(ndtri((1 + each.curve.confidence) / 2)) ** 2
+    middle = (over + z2 / 2) / (runs + z2)
+    half = np.sqrt(z2 * (part * (1 - part) / runs + z2 / (4 * runs**2))) / (1 + z2 / runs)
+    bars = np.array([part - (middle - half), middle + half - part]).clip(min=0.0)
+    axes.errorbar(
+        x, part, yerr=bars, fmt=look["marker"], color=look["color"], markersize=4.5, markerfacecolor="white",
+        elinewidth=0.8, capsize=2, zorder=4,
+    )  # fmt: skip
+    if counted:
+        for place, n, m, top in zip(x, over, runs, part + bars[1], strict=True):
+            axes.annotate(
+                f"{n:.0f}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=6.5,
+                color=style.INK,
+            )  # fmt: skip
+
+
+def _draw_curve(axes: Axes, each: Drawn, look: dict[str, Any], fine: Reals) -> None:
+    """Draw a curve over its band; of a step the interval in which it lies."""
+    curve = each.curve
+    if curve.kind == "none":
+        return
+    shade = {"color": look["color"], "alpha": 0.14, "linewidth": 0.0}
+    if curve.step is not None:
+        axes.axvspan(curve.step.low, curve.step.high, **shade)
+        at = curve.step.value
+        fine = np.sort(np.concatenate([fine, [np.nextafter(at, 0), np.nextafter(at, np.inf)]]))
+    else:
+        axes.fill_between(fine, *curve.band(fine), **shade)
+    axes.plot(fine, curve.probability(fine), color=look["color"], linestyle=look["linestyle"], linewidth=1.5, zorder=3)
+
+
+def _key(each: Drawn, look: dict[str, Any]) -> Line2D:
+    """The entry of a curve in the legend, with its numbers."""
+    curve = each.curve
+    said: str = curve.kind
+    if curve.kind == "none":
+        look = look | {"linestyle": "none"}
+        said = "no curve, " + shorten(curve.why, 70, placeholder=" ...")
+    elif curve.step is not None:
+        said += f", between {curve.step.low:.3g} and {curve.step.high:.3g}"
+    elif curve.median is not None:
+        said += f", median {curve.median.value:.3g} ({curve.median.low:.3g} to {curve.median.high:.3g})"
+        for name, spread in (("dispersion", curve.dispersion), ("scale", curve.scale)):
+            if spread is not None:
+                said += f", {name} {spread.value:.2g} ({spread.low:.2g} to {spread.high:.2g})"
+    text = f"{each.name}: {said}".replace("$", r"\$")
+    return Line2D([], [], label=text, markerfacecolor="white", **look)
+
+
+def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
+    """Draw the peak rotation of each record over the intensity, and what parts of the records stay below.
+
+    Parameters
+    ----------
+    intensity : ndarray, shape (m,)
+        Levels of shaking, ascending.
+    peaks : ndarray, shape (n, m)
+        Peak phi/phi_cr of each record at each level; NaN where it overturns.
+    label : str
+        The measure of intensity, with its unit in brackets.
+    title : str
+        Heading.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Overturning has a band of its own above the rotations, with the number of records at each level.
+    """
+    figure = style.new_figure(4.6)
+    axes = figure.subplots()
+    _head(axes, title)
+    fallen = np.isnan(peaks)
+    floor = 1.05 * max(1.0, float(np.nanmax(peaks, initial=0.0)))  # of the band
+    top = 1.15 * floor
+    middle = floor + 0.4 * (top - floor)
+    axes.axhspan(floor, top, color=style.SHADE, linewidth=0)
+    axes.axhline(1.0, color=style.FAINT, linewidth=0.8)
+    for each in np.where(fallen, middle, peaks):
+        axes.plot(intensity, each, color=style.FAINT, linewidth=0.5, alpha=0.8)
+    ranked = np.sort(np.where(fallen, np.inf, peaks), axis=0)
+    handles = [Line2D([], [], color=style.FAINT, linewidth=0.5, label="a record")]
+    for k, (fractile, name) in zip((1, 0, 2), FRACTILES, strict=True):
+        place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that so many records do not exceed
+        look = style.distinct(k) | {"marker": "none", "linewidth": 2.0}
+        line = np.minimum(ranked[place], middle)
+        line[1:][np.isinf(ranked[place][1:]) & np.isinf(ranked[place][:-1])] = np.nan  # it ends where it overturns
+        handles += axes.plot(intensity, line, label=name, **look)
+    every = max(1, int(np.ceil(intensity.size / CROWDED)))
+    for x, count in list(zip(intensity, fallen.sum(axis=0), strict=True))[::every]:
+        if count:
+            axes.annotate(f"{count}", (x, top), xytext=(0, -2), textcoords="offset points", ha="center", va="top",
+                          fontsize=7)  # fmt: skip
+    if intensity[-1] > WIDEST * intensity[0]:
+        axes.set_xscale("log")
+        _plain_numbers(axes.xaxis)
+    axes.set_xlim(float(intensity[0]), float(intensity[-1]))
+    axes.set_ylim(0.0, top)
+    axes.set_yticks([*np.arange(0.0, 1.1, 0.2), middle], [*(f"{y:.1f}" for y in np.arange(0.0, 1.1, 0.2)), "overturns"])
+    axes.set_xlabel(label, fontsize=9)
+    axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=9)
+    style.tidy(axes)
+    handles.append(Line2D([], [], linestyle="none", label=f"numbers: how many of {len(peaks)} overturn"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=8, frameon=False)
+    return figure
+
+
+def draw_surface(
+    surface: Surface, x1: Reals, x2: Reals, exceeded: Bools, labels: tuple[str, str], title: str
+) -> Figure:
+    """Draw runs in the plane of two intensities, with contours of the probability of exceedance.
+
+    Parameters
+    ----------
+    surface : Surface
+        What was fitted.
+    x1, x2 : ndarray, shape (n,)
+        Intensities of the runs.
+    exceeded : ndarray of bool, shape (n,)
+        Whether they exceed.
+    labels : tuple of str
+        The two measures, with their units in brackets.
+    title : str
+        Heading.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(4.9)
+    axes = figure.subplots()
+    _head(axes, title)
+    handles: list[Any] = [
+        axes.scatter(x1[~exceeded], x2[~exceeded], s=14, facecolors="none", edgecolors="#1f77b4", linewidths=0.8,
+                     label=f"does not exceed ({(~exceeded).sum()})"),
+        axes.scatter(x1[exceeded], x2[exceeded], s=16, marker="x", color="#b35900", linewidths=1.0,
+                     label=f"exceeds ({exceeded.sum()})"),
+    ]  # fmt: skip
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    across, up = (np.geomspace(x.min() / 1.15, x.max() * 1.15, FINE) for x in (x1, x2))
+    if surface.kind == "none":
+        style.note(axes, shorten(f"no surface: {surface.why}", 110, placeholder=" ..."))
+    else:
+        found = axes.contour(
+            across, up, surface.probability(*np.meshgrid(across, up)), levels=LEVELS, colors=style.INK,
+            linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],
+        )  # fmt: skip
+        axes.clabel(found, fmt=lambda level: f"{level:.0%}", fontsize=8)
+        handles.append(Line2D([], [], color=style.INK, label="probability of exceedance"))
+    for axis in (axes.xaxis, axes.yaxis):
+        _plain_numbers(axis)
+    axes.set_xlim(across[0], across[-1])
+    axes.set_ylim(up[0], up[-1])
+    axes.set_xlabel(labels[0], fontsize=9)
+    axes.set_ylabel(labels[1], fontsize=9)
+    style.tidy(axes)
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    return figure
+
+
+def _head(axes: Axes, title: str) -> None:
+    axes.set_title(shorten(title, LONGEST, placeholder=" ..."), loc="left", fontsize=10, parse_math=False)
+
+
+def _plain_numbers(axis: Any) -> None:
+    """Plain numbers along a logarithmic axis."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())

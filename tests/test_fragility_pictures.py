@@ -1,0 +1,125 @@
+"""Pictures of fragility show the data, the curves, and what could not be fitted."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from scipy.stats import binomtest
+
+from rocking_cli.plotting.fragility import Drawn, draw_curves, draw_ida, draw_surface
+from rocking_cli.studies.fragility.curves import Observations, fit_curve, fit_surface
+
+LEVELS = np.array([0.2, 0.4, 0.6, 0.8])
+
+
+def stripes(counts, runs=20):
+    exceeded = np.concatenate([np.arange(runs) < count for count in counts])
+    return Observations(np.repeat(LEVELS, runs), exceeded, np.arange(exceeded.size))
+
+
+def drawn(name, seen):
+    return Drawn(name, fit_curve(seen), seen)
+
+
+def words(figure):
+    (legend,) = figure.legends
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def rendered(figure):
+    figure.savefig(io.BytesIO(), format="png", dpi=30)
+    return figure
+
+
+def test_stripes_are_marked_with_counts_and_wilsons_intervals_under_the_curve():
+    each = drawn("overturning", stripes([1, 5, 12, 19]))
+    figure = rendered(draw_curves([each], "PGA [g]", "a block"))
+    (axes,) = figure.axes
+    assert axes.get_xlabel() == "PGA [g]" and axes.get_title(loc="left") == "a block"
+    assert [text.get_text() for text in axes.texts] == ["1/20", "5/20", "12/20", "19/20"]
+    (marks,) = axes.containers
+    np.testing.assert_allclose(marks[0].get_xdata(), LEVELS)
+    np.testing.assert_allclose(marks[0].get_ydata(), np.array([1, 5, 12, 19]) / 20)
+    ends = np.array([segment[:, 1] for segment in marks[2][0].get_segments()])
+    expected = [binomtest(k, 20).proportion_ci(0.95, method="wilson") for k in (1, 5, 12, 19)]
+    np.testing.assert_allclose(ends, [[ci.low, ci.high] for ci in expected])
+    (line,) = [line for line in axes.get_lines() if len(line.get_xdata()) > 10]
+    np.testing.assert_array_equal(line.get_ydata(), each.curve.probability(line.get_xdata()))
+    low, high = each.curve.band(line.get_xdata())
+    band = next(each for each in axes.collections if each.get_alpha() == 0.14).get_paths()[0].vertices[:, 1]
+    assert {round(value, 12) for value in band} == {round(value, 12) for value in np.concatenate([low, high])}
+    assert f"median {each.curve.median.value:.3g}" in words(figure)[0] and "95 %" in words(figure)[1]
+
+
+def test_a_step_a_curve_and_nothing_share_a_picture():
+    entries = [
+        drawn("uplift $1", stripes([0, 20, 20, 20])),
+        drawn("phi/phi_cr > 0.5", stripes([1, 5, 12, 19])),
+        drawn("overturning", stripes([0, 0, 0, 0])),
+    ]
+    figure = rendered(draw_curves(entries, "PGA [g]", "$ of a block"))
+    (axes,) = figure.axes
+    said = words(figure)
+    assert "step, between 0.2 and 0.4" in said[0] and "lognormal" in said[1]
+    assert "no curve, none of the 80 runs exceed" in said[2]
+    assert len([line for line in axes.get_lines() if len(line.get_xdata()) > 10]) == 2
+    assert len(axes.containers) == 3 and not axes.texts
+    step = next(line for line in axes.get_lines() if len(line.get_xdata()) > 10)
+    jump = step.get_xdata()[np.flatnonzero(np.diff(step.get_ydata()))]
+    np.testing.assert_allclose(jump, entries[0].curve.step.value)
+
+
+def test_a_wide_cloud_is_drawn_in_tenths_over_logarithms():
+    random = np.random.default_rng(1)
+    x = np.exp(1.2 * random.normal(size=200))
+    figure = rendered(draw_curves([drawn("a", Observations(x, x > np.exp(random.normal(size=200)), np.arange(200)))],
+                                  "PGV [m/s]", "a cloud"))  # fmt: skip
+    (axes,) = figure.axes
+    assert axes.get_xscale() == "log"
+    np.testing.assert_allclose(axes.containers[0][0].get_xdata(), np.sort(x).reshape(10, 20).mean(axis=1))
+
+
+def test_the_records_of_an_ida_rise_into_the_band_of_overturning():
+    peaks = np.array(
+        [[0.1, 0.3, 0.7, np.nan], [0.1, 0.4, np.nan, np.nan], [0.0, 0.2, 0.4, 0.6], [0.2, 0.5, 1.1, np.nan]]
+    )
+    figure = rendered(draw_ida(LEVELS, peaks, "PGA [g]", "a wall"))
+    (axes,) = figure.axes
+    lines = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
+    height = axes.get_yticks()[-1]
+    assert axes.get_yticklabels()[-1].get_text() == "overturns" and height > 1.05 * 1.1
+    np.testing.assert_allclose(lines["median"], [0.1, 0.3, 0.7, height])
+    np.testing.assert_allclose(lines["16 %"], [0.0, 0.2, 0.4, 0.6])
+    np.testing.assert_allclose(lines["84 %"], [0.2, 0.5, height, np.nan])
+    assert [(text.get_text(), text.xy[0]) for text in axes.texts] == [("1", 0.6), ("3", 0.8)]
+    assert any("of 4 overturn" in each for each in words(figure))
+
+
+@pytest.mark.parametrize("peak", [0.0, np.nan])
+def test_an_ida_at_rest_and_one_that_always_overturns(peak):
+    rendered(draw_ida(np.array([0.01, 1.0]), np.full((3, 2), peak), "PGA [g]", "a wall"))
+
+
+def test_a_surface_is_drawn_as_contours_between_the_runs():
+    random = np.random.default_rng(2)
+    x1, x2 = np.exp(random.normal(size=(2, 150)))
+    exceeded = np.log(x1) + np.log(x2) > 0.4 * random.normal(size=150)
+    surface = fit_surface(x1, x2, exceeded, np.arange(150))
+    figure = rendered(draw_surface(surface, x1, x2, exceeded, ("PGA/(g lambda)", "p PGV/(g lambda)"), "a frame"))
+    (axes,) = figure.axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGA/(g lambda)", "p PGV/(g lambda)")
+    below, above, contours = axes.collections
+    np.testing.assert_allclose(above.get_offsets(), np.column_stack([x1, x2])[exceeded])
+    np.testing.assert_allclose(below.get_offsets(), np.column_stack([x1, x2])[~exceeded])
+    middle = contours.get_paths()[list(contours.levels).index(0.5)].vertices
+    np.testing.assert_allclose(surface.probability(*middle.T), 0.5, atol=0.01)
+    assert words(figure)[0] == f"does not exceed ({(~exceeded).sum()})"
+
+
+def test_runs_without_a_surface_are_drawn_with_the_reason():
+    x = np.geomspace(0.1, 1, 20)
+    surface = fit_surface(x, x**2, x > 0.3, np.arange(20))
+    (axes,) = rendered(draw_surface(surface, x, x**2, x > 0.3, ("PGA [g]", "PGV [m/s]"), "a frame")).axes
+    assert len(axes.collections) == 2 and "proportion" in axes.texts[0].get_text()
