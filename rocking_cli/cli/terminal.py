@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from time import monotonic
-from typing import Any
+from typing import Any, Protocol
 
 import click
 
@@ -47,8 +47,15 @@ def width() -> int:
     return Console().width
 
 
+class Advance(Protocol):
+    """What moves a bar of work."""
+
+    def __call__(self, count: int, failed: int = 0) -> None:
+        """Tell how many pieces are done since the last call, and how many of these failed."""
+
+
 @contextmanager
-def progress(total: int, what: str) -> Iterator[Callable[[int], None]]:
+def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterator[Advance]:
     """A bar of work that takes more than a second, on standard error if that is a terminal.
 
     Parameters
@@ -57,23 +64,44 @@ def progress(total: int, what: str) -> Iterator[Callable[[int], None]]:
         How many pieces of work there are.
     what : str
         What they are.
+    done, failed : int
+        Pieces done, and those that failed, before.
 
     Yields
     ------
-    callable
-        To be called with the number of pieces done since the last call.
+    Advance
+        To be called as work is done.
     """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
     console = Console(stderr=True)
-    bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
-    task = bar.add_task(what, total=total)
-    began = monotonic()
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TextColumn("{task.fields[failures]}", style="red"),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+    )
+    bad, new, began = failed, 0, monotonic()
 
-    def advance(count: int) -> None:
-        bar.advance(task, count)
+    def told() -> dict[str, Any]:
+        rate = new / max(monotonic() - began, 1e-9)
+        return {
+            "rate": f"{rate:.3g}/s" if rate < 1000 else f"{rate:,.0f}/s",
+            "failures": f"{bad} failed" if bad else "",
+        }
+
+    task = bar.add_task(what, total=total, completed=done, **told())
+
+    def advance(count: int, failed: int = 0) -> None:
+        nonlocal bad, new
+        bad, new = bad + failed, new + count
+        bar.update(task, advance=count, **told())
         if not bar.live.is_started and monotonic() - began > PATIENCE:
             bar.start()
 
