@@ -42,6 +42,7 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 	-$(BIN)/python -m pip install --quiet ".[bench]"
 	$(BIN)/python benchmarks/histories.py $(RECORD)
 	$(BIN)/python benchmarks/maps.py
+	$(BIN)/python benchmarks/fragility.py
 
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py

@@ -60,13 +60,10 @@ def _place(data: Any, error: ErrorDetails) -> Place:
 
 
 def _concerns(data: Any, place: Place, error: ErrorDetails) -> bool:
-    """Whether an error speaks of the branch of a union that the user meant: a mapping, or a plain value."""
+    """Whether an error speaks of the branch of a union that the user meant: of a mapping, not that it is no number."""
     for part in place:
         data = data.get(part) if isinstance(data, dict) else data[part]
-    return not (
-        (isinstance(data, dict) and error["type"] in ("float_type", "int_type"))
-        or (not isinstance(data, dict) and error["type"] in ("model_type", "model_attributes_type"))
-    )
+    return not (isinstance(data, dict) and error["type"] in ("float_type", "int_type"))
 
 
 BOUNDS = {
@@ -138,13 +135,9 @@ def _fields(model: type[BaseModel], place: Place) -> dict[str, Any]:
     """The fields that may stand at a place, of whichever models it may hold."""
     models: list[Any] = [model]
     for part in place:
-        if isinstance(part, str):
-            models = [
-                inner
-                for each in models
-                if part in each.model_fields
-                for inner in _models(each.model_fields[part].annotation)
-            ]
+        held = [each.model_fields[part].annotation for each in models if part in each.model_fields]
+        if held:  # else it is a place in a list, or a key that the user chooses
+            models = [inner for annotation in held for inner in _models(annotation)]
     return {name: info for each in models for name, info in each.model_fields.items()}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import BinaryIO
 
 
@@ -18,10 +18,17 @@ def write_table_csv(stream: BinaryIO, columns: Mapping[str, Sequence[object]]) -
     columns : mapping of str to sequence
         Words, whole numbers, and other numbers, which are written with nine digits, NaN as an empty field.
     """
+    write_blocks_csv(stream, [columns])
+
+
+def write_blocks_csv(stream: BinaryIO, blocks: Iterable[Mapping[str, Sequence[object]]]) -> None:
+    """Write a long table block by block; each has the same columns. See `write_table_csv`."""
     text = io.TextIOWrapper(stream, encoding="utf-8", newline="", write_through=True)
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*([_field(value) for value in column] for column in columns.values()), strict=True))
+    for k, columns in enumerate(blocks):
+        if k == 0:
+            writer.writerow(columns)
+        writer.writerows(zip(*([_field(value) for value in column] for column in columns.values()), strict=True))
     text.detach()
 
 

@@ -239,6 +239,20 @@ class TestCoverage:
         fits = [fit_capacities(*brackets(random, 80)).fit for _ in range(1000)]
         assert_covers(fits)
 
+    def test_of_several_capacities_of_a_record_where_the_naive_interval_fails(self):
+        random = np.random.default_rng(14)
+        record = np.repeat(np.arange(120), 4)  # most of the scatter is from record to record
+        ends = np.concatenate([[0.0], np.geomspace(0.2, 5, 12), [np.inf]])
+        robust, naive = [], []
+        for k in range(500):
+            shared = 0.9 * random.normal(size=120)[record] + np.sqrt(1 - 0.9**2) * random.normal(size=480)
+            place = np.searchsorted(ends, MEDIAN * np.exp(DISPERSION * shared)) - 1
+            robust.append(fit_capacities(ends[place], ends[place + 1], record).fit)
+            if k < 150:
+                naive.append(fit_capacities(ends[place], ends[place + 1]).fit)
+        assert_covers(robust)
+        assert covered(naive)[0] < binom.ppf(1e-4, len(naive), 0.95)
+
 
 class TestBand:
     def test_stays_within_0_and_1_around_the_curve_and_crosses_one_half_at_the_ends_of_the_median(self):

@@ -15,18 +15,9 @@ from rocking_cli.cli import terminal
 from rocking_cli.errors import RockingError
 
 COMMANDS = (
-    "equiv",
-    "error",
-    "record",
-    "respond",
-    "pulse",
-    "overturning",
-    "spectrum",
-    "equivalent",
-    "figure",
-    "mechanisms",
-    "new",
-)
+    "equiv", "error", "record", "respond", "pulse", "overturning", "spectrum", "equivalent", "fragility", "results",
+    "figure", "mechanisms", "new",
+)  # fmt: skip
 
 
 class LazyGroup(click.Group):

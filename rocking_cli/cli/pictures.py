@@ -11,9 +11,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def write_picture(path: Path, figure: Figure) -> None:
-    """Write a figure whole or not at all, in the format of the path's suffix, and say so."""
+def save(path: Path, figure: Figure) -> None:
+    """Write a figure whole or not at all, in the format of the path's suffix."""
     from rocking_cli.files import write_whole
 
     write_whole(path, lambda stream: figure.savefig(stream, format=path.suffix[1:].lower()))
+
+
+def write_picture(path: Path, figure: Figure) -> None:
+    """Write a figure, and say so."""
+    save(path, figure)
     terminal.note(f"wrote {path}")

@@ -193,7 +193,9 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
     return replace(curves.get(kind, bare), why=why, aic=aic)
 
 
-def fit_capacities(lower: Reals, upper: Reals, *, confidence: float = 0.95) -> Curve:
+def fit_capacities(
+    lower: Reals, upper: Reals, record: Integers | None = None, *, confidence: float = 0.95
+) -> Curve:  # fmt: skip
     """Fit a lognormal curve to the capacities of records: incremental dynamic analysis.
 
     Parameters
@@ -201,6 +203,8 @@ def fit_capacities(lower: Reals, upper: Reals, *, confidence: float = 0.95) -> C
     lower, upper : ndarray, shape (n,)
         For each record the last level that does not exceed the limit state, 0 if the first one does; and the first that
         does, infinite if none does. The capacity is known to lie between them, and taken as no more than that.
+    record : ndarray of int, shape (n,), optional
+        The record each is of, where one has several: of either polarity, of several samples. They are not independent.
     confidence : float
         Of the intervals and the band.
 
@@ -229,12 +233,15 @@ def fit_capacities(lower: Reals, upper: Reals, *, confidence: float = 0.95) -> C
         return special
     with np.errstate(divide="ignore"):
         logs = np.log(lower), np.log(upper)
-    fit = fit_brackets(*logs, confidence)
+    if record is None:
+        record = np.arange(lower.size)
+    few = too_few(record, 2)
+    fit = fit_brackets(*logs, record, confidence) if not few else None
     if fit is None:
-        return replace(bare, why=_NO_MAXIMUM)
+        return replace(bare, why=few or _NO_MAXIMUM)
     if fit.coefficients[1] <= 0:
         return replace(bare, why=_DECREASING)
-    goodness = goodness_of_brackets(fit, *logs)
+    goodness = goodness_of_brackets(fit, *logs, record)
     curve = replace(bare, kind="lognormal", fit=fit, goodness=goodness, aic={"lognormal": fit.aic})
     return replace(curve, why=f"capacities are taken as lognormal; {_tested(curve)}")
 
@@ -254,8 +261,8 @@ def _step_or_none(bare: Curve, below: Reals, above: Reals) -> Curve | None:
     low, high = float(below.max()), float(above.min())
     if low < high:
         step = Estimate(float(np.sqrt(low * high)), low, high)
-        why = f"none exceeds up to {low:.4g} and all do from {high:.4g} on: the data know no scatter"
-        return replace(bare, kind="step", step=step, why=f"{why}; runs between them could")
+        why = f"none exceeds up to {low:.4g} and all do from {high:.4g} on: the data show no scatter"
+        return replace(bare, kind="step", step=step, why=f"{why}; levels between these two would")
     under, over = below[below < low], above[above > low]
     if not (under.size and over.size):
         side = "none exceeds below" if under.size else "all exceed above"

@@ -83,7 +83,7 @@ def goodness_of_runs(fit: Fit, x: Reals, design: Reals, exceeded: Bools, record:
     return _weighted(name, standard, covariance)
 
 
-def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals) -> Goodness:
+def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, record: Integers) -> Goodness:
     """Test a distribution of capacities against their number in cells whose bounds cut no bracket.
 
     Parameters
@@ -92,6 +92,8 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals) -> Goodness:
         The distribution, over u.
     lower, upper : ndarray, shape (n,)
         The brackets of u; minus and plus infinity where open.
+    record : ndarray of int, shape (n,)
+        The record of each: where one has several nothing is tested.
 
     Notes
     -----
@@ -99,6 +101,8 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals) -> Goodness:
     the brackets V has m - 3 eigenvalues, all one.
     """
     name = "chi-square of the capacities"
+    if np.unique(record).size < record.size:
+        return Goodness(name, why="there are several capacities of a record, which are alike")
     ends = np.unique(np.concatenate([lower, upper]))
     ends = ends[np.isfinite(ends)]
     whole = np.array([end for end in ends if not ((lower < end) & (end < upper)).any()])

@@ -169,13 +169,15 @@ def too_few(record: Integers, coefficients: int) -> str:
     )
 
 
-def fit_brackets(lower: Reals, upper: Reals, confidence: float) -> Fit | None:
+def fit_brackets(lower: Reals, upper: Reals, record: Integers, confidence: float) -> Fit | None:
     """Fit eta = a + b u to capacities u that are normal with mean -a/b and deviation 1/b, and known to within brackets.
 
     Parameters
     ----------
     lower, upper : ndarray, shape (n,)
         The brackets; minus and plus infinity where open. The caller has made sure that no point lies in all of them.
+    record : ndarray of int, shape (n,)
+        The record that a capacity is of. Where one has several the covariance is cluster-robust, as in `fit_binomial`.
     confidence : float
         Of the intervals.
 
@@ -183,7 +185,8 @@ def fit_brackets(lower: Reals, upper: Reals, confidence: float) -> Fit | None:
     -------
     Fit or None
         None if the iteration does not settle. The covariance is that of the observed information; intervals are by
-        Student's distribution of n - 1 degrees of freedom, as they are for the mean of capacities known exactly.
+        Student's distribution of one degree of freedom less than there are records, as they are for the mean of
+        capacities known exactly.
 
     Notes
     -----
@@ -192,23 +195,35 @@ def fit_brackets(lower: Reals, upper: Reals, confidence: float) -> Fit | None:
     """
     ends = np.concatenate([lower[np.isfinite(lower)], upper[np.isfinite(upper)]])
     coefficients = np.array([-ends.mean(), 1.0]) / ends.std()
-    value, gradient, hessian = _bracketed(coefficients, lower, upper)
+    value, scores, hessian = _bracketed(coefficients, lower, upper)
     for _ in range(STEPS):
+        gradient = scores.sum(axis=0)
         step = np.linalg.solve(-hessian, gradient)
         gain = float(gradient @ step)
         if gain < DECREMENT * lower.size:
-            covariance: Reals = np.linalg.inv(-hessian).astype(np.float64)
-            return Fit("probit", coefficients + step, covariance, value, confidence, lower.size - 1.0)
+            covariance, records = _clustered(np.linalg.inv(-hessian).astype(np.float64), scores, record)
+            return Fit("probit", coefficients + step, covariance, value, confidence, records - 1.0)
         part = 1.0
         while _bracketed(coefficients + part * step, lower, upper)[0] < value and part > SHORTEST:
             part /= 2
         coefficients = coefficients + part * step
-        value, gradient, hessian = _bracketed(coefficients, lower, upper)
+        value, scores, hessian = _bracketed(coefficients, lower, upper)
     return None
 
 
+def _clustered(covariance: Reals, scores: Reals, record: Integers) -> tuple[Reals, int]:
+    """The covariance that allows for records that repeat to be alike, and how many records there are."""
+    which, group = np.unique(record, return_inverse=True)
+    if which.size == record.size:
+        return covariance, which.size
+    sums = np.zeros((which.size, scores.shape[1]))
+    np.add.at(sums, group, scores)
+    sums -= sums.mean(axis=0)  # what the last step of the iteration left
+    return covariance @ (sums.T @ sums) @ covariance * which.size / (which.size - 1), which.size
+
+
 def _bracketed(coefficients: Reals, lower: Reals, upper: Reals) -> tuple[float, Reals, Reals]:
-    """Log-likelihood of brackets with its gradient and Hessian; minus infinity where a bracket is turned round."""
+    """Log-likelihood of brackets, its gradient bracket by bracket, and its Hessian; minus infinity if one is turned."""
     from scipy.special import log_ndtr
 
     a, b = coefficients
@@ -216,7 +231,7 @@ def _bracketed(coefficients: Reals, lower: Reals, upper: Reals) -> tuple[float, 
     low = np.where(np.isfinite(lower), a + b * u, -np.inf)
     high = np.where(np.isfinite(upper), a + b * v, np.inf)
     if (low >= high).any():
-        return -np.inf, np.zeros(2), np.eye(2)
+        return -np.inf, np.zeros((lower.size, 2)), np.eye(2)
     flip = low > 0  # the tail in which a difference of small numbers loses nothing
     top, bottom = log_ndtr(np.where(flip, -low, high)), log_ndtr(np.where(flip, -high, low))
     log_part = top + np.log(-np.expm1(bottom - top))
@@ -225,7 +240,7 @@ def _bracketed(coefficients: Reals, lower: Reals, upper: Reals) -> tuple[float, 
     low, high = (np.where(np.isfinite(end), end, 0.0) for end in (low, high))
     by_high, by_low = -high * at_high - at_high**2, low * at_low - at_low**2
     both = at_high * at_low
-    gradient = np.array([(at_high - at_low).sum(), (at_high * v - at_low * u).sum()])
+    scores = np.column_stack([at_high - at_low, at_high * v - at_low * u])
     mixed = (by_high * v + by_low * u + both * (u + v)).sum()
     hessian = np.array(
         [
@@ -233,7 +248,7 @@ def _bracketed(coefficients: Reals, lower: Reals, upper: Reals) -> tuple[float, 
             [mixed, (by_high * v * v + by_low * u * u + 2 * both * u * v).sum()],
         ]
     )
-    return float(log_part.sum()), gradient, hessian
+    return float(log_part.sum()), scores, hessian
 
 
 def separable(design: Reals, exceeded: Bools) -> bool:

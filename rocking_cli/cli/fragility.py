@@ -1,0 +1,137 @@
+"""`rocking fragility`: run a study of many structures, records and intensities, and fit its curves."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rocking_cli.cli import options, terminal
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.fragility.campaign import Prepared
+    from rocking_cli.studies.fragility.engines import Engine
+    from rocking_cli.studies.fragility.store import Store
+    from rocking_cli.studies.fragility.study import Study
+
+INTERRUPTED = 130  # the exit code that shells give an interrupt
+
+
+@click.command(short_help="Run a study of many records and intensities, and fit fragility curves.")
+@click.argument("file", metavar="STUDY.yaml", type=click.Path())
+@click.option("--check", is_flag=True, help="Say what would be run, and run nothing.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processors to use.  [default: all]")
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the dask.distributed cluster of this scheduler.")
+@click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
+@click.option("--restart", is_flag=True, help="Throw the kept runs away and begin anew.")
+@click.option("--pictures", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@options.as_json
+@click.pass_context
+def command(
+    ctx: click.Context,
+    file: str,
+    check: bool,
+    jobs: int | None,
+    scheduler: str | None,
+    store: str | None,
+    restart: bool,
+    pictures: str | None,
+    as_json: bool,
+) -> None:
+    """Run a fragility study, and fit its curves.
+
+    STUDY.yaml names structures, records, intensity levels and limit states; docs/fragility.md has the fields. Every
+    finished run is kept in a store, an SQLite file beside the study. Stop the work at any time, in any way: the same
+    command goes on with what is missing, and ends with the same store. `rocking results` shows and exports it.
+
+    A record that cannot be used is reported, the others are run, and the exit code is 5.
+
+    \b
+    Example:
+      rocking fragility study.yaml --check
+      rocking fragility study.yaml --pictures pictures
+      rocking fragility study.yaml --scheduler tcp://10.0.0.1:8786
+      rocking results study.db --out runs.csv
+    """
+    if scheduler is not None and jobs is not None:
+        raise click.UsageError("--jobs is for this machine: a cluster has as many workers as it has.")
+    from rocking_cli.cli import fragility_results as results
+    from rocking_cli.cli.fragility_pictures import ready
+    from rocking_cli.files import check_writable, keep_apart
+    from rocking_cli.studies.fragility.store import Store
+    from rocking_cli.studies.fragility.study import load_study
+
+    place = Path(store) if store is not None else Path(file).with_suffix(".db")
+    keep_apart([("--store", place if store is not None else None)], [file])
+    study = load_study(file)
+    if check:
+        results.print_check(study, as_json=as_json)
+        return
+    check_writable(place)
+    folder = ready(pictures)
+    if restart:
+        _forget(place)
+    try:
+        with Store.writing(place) as kept:
+            _run(study, kept, jobs, scheduler)
+    except KeyboardInterrupt:
+        terminal.error(f"interrupted: what was finished is in {place}; the same command goes on from there")
+        ctx.exit(INTERRUPTED)
+    with Store.reading(place) as kept:
+        complete = results.give(kept, None, folder, as_json=as_json)
+    if not complete:
+        ctx.exit(results.INCOMPLETE)
+
+
+def _forget(place: Path) -> None:
+    """Remove a store, if it is one."""
+    from rocking_cli.studies.fragility.store import Store
+
+    if place.exists():
+        with Store.writing(place):
+            pass  # not another file, and nobody is at work on it
+        place.unlink()
+
+
+def _run(study: Study, store: Store, jobs: int | None, scheduler: str | None) -> None:
+    from rocking_cli.cli import work
+    from rocking_cli.studies.fragility.campaign import prepare, run
+
+    with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
+        prepared = prepare(study, store, examined)
+    _report(prepared)
+    if prepared.finished == prepared.plan.total:
+        return
+    if scheduler is None:
+        work.say_if_compiling()
+    with (
+        _engine(jobs, scheduler) as engine,
+        terminal.progress(
+            prepared.plan.total, "runs", done=prepared.finished, failed=prepared.failed
+        ) as advance,
+    ):  # fmt: skip
+        run(prepared, store, engine, advance)
+
+
+def _engine(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Engine]:
+    from rocking_cli.studies.fragility import engines
+
+    return engines.cluster(scheduler) if scheduler is not None else engines.threads(jobs)
+
+
+def _report(prepared: Prepared) -> None:
+    """Say what cannot be used, what is doubtful, and where the work goes on."""
+    from rocking_cli.cli import fragility_results as results
+
+    plan = prepared.plan
+    results.report_useless(plan)
+    doubtful = [each.name for each in plan.records if each.doubts]
+    if doubtful:
+        named = ", ".join(doubtful[:3]) + (" ..." if len(doubtful) > 3 else "")
+        terminal.warning(f"{len(doubtful)} records are doubtful: `rocking record FILE` says why: {named}")
+    for name in prepared.mended:
+        terminal.note(f"{name}: could not be used when the study was begun, and is run now")
+    if prepared.finished:
+        terminal.note(f"{prepared.finished} of {plan.total} runs are in the store already")

@@ -1,0 +1,89 @@
+"""The pictures of a fragility study, one file each in a folder."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rocking_cli.cli import terminal
+from rocking_cli.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.studies.fragility.assess import Bivariate, Fragility
+    from rocking_cli.studies.fragility.definition import Definition
+    from rocking_cli.studies.fragility.store import Store
+
+
+def ready(folder: str | None) -> Path | None:
+    """The folder for pictures, made if it is not there: before any work, as it may be refused."""
+    if folder is None:
+        return None
+    path = Path(folder)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(Problem(f"cannot be a folder of pictures: {error.strerror or error}", folder)) from None
+    return path
+
+
+def draw_all(
+    folder: Path,
+    store: Store,
+    definition: Definition,
+    curves: Sequence[Fragility],
+    surfaces: Sequence[Bivariate],
+) -> None:
+    """Draw the curves of each structure, the structures beside each other, analyses by increments, and surfaces."""
+    from rocking_cli.cli.fragility_results import limit_name
+    from rocking_cli.cli.pictures import save
+    from rocking_cli.plotting import fragility as plotting
+    from rocking_cli.studies.fragility.intensity import label
+
+    drawn: dict[str, Figure] = {}
+
+    def add(name: str, figure: Figure) -> None:
+        drawn[re.sub(r"[^\w>.]+", "-", name).strip("-").replace(">", "over") + ".png"] = figure
+
+    structures = list(dict.fromkeys(each.structure for each in curves))
+    for measure in definition.fitted_measures:
+        these = [each for each in curves if each.measure == measure]
+        for structure in structures:
+            own = [each for each in these if each.structure == structure]
+            lines = [plotting.Drawn(limit_name(each.limit), each.curve, each.seen) for each in own]
+            add(f"{structure} {measure}", plotting.draw_curves(lines, label(measure), structure))
+        for limit in definition.limit_states if len(structures) > 1 else []:
+            own = [each for each in these if each.limit == limit]
+            lines = [plotting.Drawn(each.structure, each.curve, each.seen) for each in own]
+            add(f"{limit_name(limit)} {measure}", plotting.draw_curves(lines, label(measure), limit_name(limit)))
+    if definition.method == "ida":
+        for structure in structures:
+            add(f"{structure} ida", _increments(store, structure, definition))
+    for each in surfaces:
+        name = f"{each.structure}, {limit_name(each.limit)}"
+        one, other = each.measures
+        figure = plotting.draw_surface(each.surface, each.x1, each.x2, each.exceeded, (label(one), label(other)), name)
+        add(f"{name} {one} {other}", figure)
+    with terminal.progress(len(drawn), "pictures") as advance:
+        for file, figure in drawn.items():
+            save(folder / file, figure)
+            advance(1)
+    terminal.note(f"wrote {len(drawn)} pictures to {folder}")
+
+
+def _increments(store: Store, structure: str, definition: Definition) -> Figure:
+    import numpy as np
+
+    from rocking_cli.plotting.fragility import draw_ida
+    from rocking_cli.studies.fragility import assess
+    from rocking_cli.studies.fragility.definition import SCALE
+    from rocking_cli.studies.fragility.intensity import label
+
+    plan = store.plan()
+    found = assess.find(store, plan, structure)
+    measure = definition.levels.measure
+    across = "factor on the records" if measure == SCALE else label(measure)
+    return draw_ida(np.array(plan.levels), assess.peaks(found), across, structure)

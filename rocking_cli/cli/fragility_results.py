@@ -1,0 +1,269 @@
+"""How a fragility study is shown: what would be run, and what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking_cli.cli import terminal
+from rocking_cli.errors import INCOMPLETE as INCOMPLETE
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.fragility.assess import Bivariate, Fragility
+    from rocking_cli.studies.fragility.curves import Curve, Estimate
+    from rocking_cli.studies.fragility.definition import Definition, Limit
+    from rocking_cli.studies.fragility.hazard import Rate
+    from rocking_cli.studies.fragility.plan import Plan
+    from rocking_cli.studies.fragility.store import Store
+    from rocking_cli.studies.fragility.study import Study
+
+NAMED = 10  # bad records or samples named one by one
+
+
+def print_check(study: Study, *, as_json: bool) -> None:
+    """Say what a study would run."""
+    given = study.definition
+    counts = {
+        "structures": len(study.structures),
+        "samples": len(study.samples),
+        "records": len(study.sources),
+        "eta": len(given.eta or [None]),
+        "levels": len(given.levels.levels()),
+        "polarities": len(given.polarities),
+    }
+    runs = 1
+    for name, count in counts.items():
+        runs *= count if name != "structures" else 1
+    if as_json:
+        terminal.print_json({"study": study.name, **counts, "runs": runs})
+        return
+    rows = [[name, f"{count}"] for name, count in counts.items()]
+    terminal.table(study.name, ["", "number"], [*rows, ["runs", f"{runs:,}"]], numbers=(1,))
+
+
+def give(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool) -> bool:
+    """Show what a store holds, write its runs and draw its curves.
+
+    Returns
+    -------
+    bool
+        Whether all records, samples and runs could be used, and all are there.
+    """
+    import numpy as np
+
+    from rocking_cli.studies.fragility import assess
+    from rocking_cli.studies.fragility.definition import Definition
+    from rocking_cli.studies.fragility.hazard import HazardCurve
+
+    plan = store.plan()
+    definition = Definition.model_validate(store.fact("definition"))
+    points = store.fact("hazard")
+    hazard = HazardCurve(*np.array(points)) if points is not None else None
+    finished, failed = store.count()
+    curves: list[Fragility] = []
+    surfaces: list[Bivariate] = []
+    for structure in assess.structures(plan):
+        found = assess.find(store, plan, structure)
+        if len(found.rows):
+            curves += assess.curves(found, structure, definition, hazard)
+            surfaces += assess.surfaces(found, structure, definition)
+    if out is not None:
+        _write(out, store, plan)
+    if pictures is not None:
+        from rocking_cli.cli.fragility_pictures import draw_all
+
+        draw_all(pictures, store, definition, curves, surfaces)
+    if as_json:
+        terminal.print_json(_as_json(store, plan, finished, failed, curves, surfaces))
+    else:
+        _print(store.fact("name"), definition, plan, finished, failed, curves, surfaces)
+    if failed:
+        terminal.error(f"{failed} runs could not be followed, and are left out of the curves")
+    return finished == plan.total and not failed and not _useless(plan)
+
+
+def report_useless(plan: Plan) -> None:
+    """Name the records and the samples that cannot be run."""
+    bad = _useless(plan)
+    for each in bad[:NAMED]:
+        terminal.error(each)
+    if len(bad) > NAMED:
+        terminal.error(f"and {len(bad) - NAMED} more: `rocking results STORE --json` names all")
+
+
+def _useless(plan: Plan) -> list[str]:
+    records = [f"the record {each.name} is left out: {each.reason}" for each in plan.records if each.reason is not None]
+    return records + [
+        f"sample {each.number} of {each.structure} is left out: {each.reason}"
+        for each in plan.trials
+        if each.reason is not None
+    ]
+
+
+def _write(out: Path, store: Store, plan: Plan) -> None:
+    from rocking_cli.files import write_whole
+    from rocking_cli.studies.fragility.table import blocks
+    from rocking_cli.table_csv import write_blocks_csv
+    from rocking_cli.table_parquet import write_blocks_parquet
+
+    write = write_blocks_parquet if out.suffix.lower() == ".parquet" else write_blocks_csv
+    write_whole(out, lambda stream: write(stream, blocks(store, plan)))
+    terminal.note(f"wrote {out}")
+
+
+def _print(
+    name: str,
+    definition: Definition,
+    plan: Plan,
+    finished: int,
+    failed: int,
+    curves: Sequence[Fragility],
+    surfaces: Sequence[Bivariate],
+) -> None:
+    bad = sum(each.reason is not None for each in plan.records)
+    records = f"{len(plan.records) - bad} records" + (f" ({bad} more cannot be used)" if bad else "")
+    so_far = "" if finished == plan.total else f" of {plan.total:,}, so far"
+    terminal.result(f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}, seed {definition.seed}")
+    for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):
+        these = [each for each in curves if (each.structure, each.measure) == (structure, measure)]
+        _print_curves(structure, measure, these, definition.confidence)
+    for structure, measures in dict.fromkeys((each.structure, each.measures) for each in surfaces):
+        those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
+        _print_surfaces(structure, measures, those, definition.confidence)
+
+
+def _print_curves(structure: str, measure: str, curves: Sequence[Fragility], confidence: float) -> None:
+    from rocking_cli.studies.fragility.intensity import label
+
+    interval = f"{100 * confidence:g} %"
+    columns = ["limit state", "curve", f"median\n{interval}", f"spread\n{interval}", "fit p"]
+    rated = any(each.rate is not None for each in curves)
+    rows = [
+        [
+            limit_name(each.limit),
+            each.curve.kind,
+            _estimate(each.curve.median),
+            _estimate(spread(each.curve)),
+            terminal.number(None if each.curve.goodness is None else each.curve.goodness.p_value, 2),
+            *([terminal.number(None if each.rate is None else each.rate.rate, 3)] if rated else []),
+        ]
+        for each in curves
+    ]
+    terminal.result()
+    headings = [*columns, "a year"] if rated else columns
+    terminal.table(f"{structure}, over {label(measure)}", headings, rows, numbers=range(2, len(headings)))
+    for each in curves:
+        terminal.result(f"{limit_name(each.limit)}: {each.curve.why}.{_in_years(each.rate)}")
+
+
+def _in_years(rate: Rate | None) -> str:
+    if rate is None or rate.rate == 0:
+        return ""
+    return (
+        f" Once in {rate.return_period:,.0f} years ({rate.low:.3g} to {rate.high:.3g} a year), "
+        f"{100 * rate.in_50_years:.2g} % in 50 years."
+    )
+
+
+def _print_surfaces(
+    structure: str, measures: tuple[str, str], surfaces: Sequence[Bivariate], confidence: float
+) -> None:  # fmt: skip
+    one, other = measures
+    interval = f"{100 * confidence:g} %"
+    rows = [
+        [limit_name(each.limit), *(_estimate(c) for c in each.surface.coefficients or (None, None, None))]
+        for each in surfaces
+    ]
+    terminal.result()
+    terminal.table(
+        f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))",
+        ["limit state", *(f"{name}\n{interval}" for name in ("c0", "c1", "c2"))],
+        rows,
+        numbers=(1, 2, 3),
+    )
+    for each in surfaces:
+        terminal.result(f"{limit_name(each.limit)}: {each.surface.why}.")
+
+
+def limit_name(limit: Limit) -> str:
+    """A limit state as people read it."""
+    return limit if isinstance(limit, str) else f"> {limit:g} phi_cr"
+
+
+def spread(curve: Curve) -> Estimate | None:
+    """The dispersion of a lognormal curve, or the scale of a logistic one."""
+    return curve.dispersion or curve.scale
+
+
+def _estimate(estimate: Estimate | None) -> str:
+    """A number above its interval."""
+    return terminal.ABSENT if estimate is None else f"{estimate.value:.4g}\n{estimate.low:.3g} - {estimate.high:.3g}"
+
+
+def _as_json(
+    store: Store,
+    plan: Plan,
+    finished: int,
+    failed: int,
+    curves: Sequence[Fragility],
+    surfaces: Sequence[Bivariate],
+) -> dict[str, Any]:
+    return {
+        "study": store.fact("name"),
+        "store": str(store.path),
+        "hash": store.fact("hash"),
+        "versions": store.fact("versions"),
+        "libraries": store.fact("libraries"),
+        "seed": store.fact("description")["seed"],
+        "runs": plan.total,
+        "finished": finished,
+        "failed": failed,
+        "left_out": _useless(plan),
+        "records": [asdict(each) for each in plan.records],
+        "curves": [_curve_json(each) for each in curves],
+        "surfaces": [
+            {
+                "structure": each.structure,
+                "limit_state": each.limit,
+                "measures": list(each.measures),
+                "kind": each.surface.kind,
+                "why": each.surface.why,
+                "coefficients": [asdict(c) for c in each.surface.coefficients or []],
+                "aic": each.surface.aic,
+                "p_values": each.surface.p_values,
+                "runs": each.surface.runs,
+                "exceedances": each.surface.exceedances,
+            }
+            for each in surfaces
+        ],
+    }
+
+
+def _curve_json(found: Fragility) -> dict[str, Any]:
+    curve = found.curve
+    return {
+        "structure": found.structure,
+        "limit_state": found.limit,
+        "measure": found.measure,
+        "kind": curve.kind,
+        "why": curve.why,
+        **{
+            name: None if each is None else _finite(asdict(each))
+            for name, each in (("median", curve.median), ("dispersion", curve.dispersion), ("scale", curve.scale))
+        },
+        "confidence": curve.confidence,
+        "goodness": None if curve.goodness is None else asdict(curve.goodness),
+        "aic": curve.aic,
+        "runs": curve.runs,
+        "exceedances": curve.exceedances,
+        "annual_rate": None if found.rate is None else _finite(asdict(found.rate)),
+    }
+
+
+def _finite(data: dict[str, Any]) -> dict[str, Any]:
+    """Plain data with null for what is infinite: JSON has no such number."""
+    return {
+        key: None if isinstance(value, float) and abs(value) == float("inf") else value for key, value in data.items()
+    }

@@ -1,0 +1,47 @@
+"""`rocking results`: what is in the store of a study."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rocking_cli.cli import options
+
+
+@click.command(short_help="Summarise and export the store of a study.")
+@click.argument("file", metavar="STORE.db", type=click.Path())
+@click.option(
+    "--out",
+    callback=options.output_path(".csv", ".parquet"),
+    metavar="FILE.csv",
+    help="Write every run (.csv, .parquet).",
+)
+@click.option("--pictures", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@options.as_json
+@click.pass_context
+def command(ctx: click.Context, file: str, out: Path | None, pictures: str | None, as_json: bool) -> None:
+    """Fragility curves and runs of a study, from its store.
+
+    It needs none of the study's other files, and can look at a study while it runs.
+
+    \b
+    Example:
+      rocking results study.db
+      rocking results study.db --out runs.parquet --pictures pictures
+    """
+    from rocking_cli.cli import fragility_results as results
+    from rocking_cli.cli.fragility_pictures import ready
+    from rocking_cli.files import keep_apart
+    from rocking_cli.studies.fragility.store import Store
+
+    keep_apart([("--out", out)], [file])
+    if out is not None and out.suffix.lower() == ".parquet":
+        from rocking_cli.history_parquet import check_parquet
+
+        check_parquet(out)
+    folder = ready(pictures)
+    with Store.reading(Path(file)) as store:
+        complete = results.give(store, out, folder, as_json=as_json)
+    if not complete:
+        ctx.exit(results.INCOMPLETE)

@@ -1,0 +1,243 @@
+"""Running a study: examine its records and structures, and bring its store up to date."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from math import nan
+from typing import Any
+
+from rocking_cli import __version__
+from rocking_cli.core import equivalent_block
+from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.registry import Registry
+from rocking_cli.studies.fragility.engines import Engine
+from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
+from rocking_cli.studies.fragility.sources import Motions, Record, Source, examine
+from rocking_cli.studies.fragility.store import Store
+from rocking_cli.studies.fragility.study import Sample, Study, digest
+from rocking_cli.studies.fragility.work import carry_out, unit_size, units
+
+Progress = Callable[[int, int], None]
+"""Called with how many runs have finished since the last call, and how many of these failed."""
+Examined = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A study and its store, ready to run.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    plan : Plan
+        Its runs.
+    finished, failed : int
+        Runs that the store holds already, and those of them that could not be followed.
+    mended : tuple of str
+        Records that could not be used when the study was begun, and now can.
+    """
+
+    study: Study
+    plan: Plan
+    finished: int
+    failed: int
+    mended: tuple[str, ...]
+
+
+def prepare(study: Study, store: Store, examined: Examined | None = None) -> Prepared:
+    """Examine what a study runs, and begin its store or hold it against what the store was begun with.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    store : Store
+        Open to write.
+    examined : callable, optional
+        Called with the number of records and structures examined since the last call.
+
+    Raises
+    ------
+    InputError
+        If anything that decides the runs has changed since the store was begun: every change is named. If no
+        structure or no record can be used.
+    """
+    tell = examined if examined is not None else lambda count: None
+    known = store.plan() if not store.empty else None
+    records, mended = _records(study.sources, known, tell)
+    trials = []
+    for sample in study.samples:
+        trials.append(_trial(study, sample))
+        tell(1)
+    given = study.definition
+    plan = Plan(
+        trials,
+        records,
+        given.eta if given.eta is not None else [nan],
+        given.levels.measure,
+        given.levels.levels(),
+        given.polarities,
+    )
+    facts = {"description": study.description(), "versions": versions(study), "hash": digest(study.description())}
+    if known is None:
+        _refuse_useless(plan)
+        store.begin(plan, {**facts, "libraries": libraries()})
+    else:
+        _refuse_changes(store, facts, known, records)
+        for k in mended:
+            store.replace_record(k, records[k])
+    store.note(
+        {"name": study.name, "definition": given.model_dump(mode="json", exclude_unset=True), "hazard": _hazard(study)}
+    )
+    store.commit()
+    finished, failed = store.count()
+    return Prepared(study, plan, finished, failed, tuple(records[k].name for k in mended))
+
+
+def run(prepared: Prepared, store: Store, engine: Engine, progress: Progress | None = None) -> None:
+    """Run what the store does not hold yet, and put it there.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        See `prepare`.
+    store : Store
+        Open to write.
+    engine : Engine
+        Where to run it: results do not depend on it.
+    progress : callable, optional
+        See `Progress`.
+    """
+    study, plan = prepared.study, prepared.plan
+    size = unit_size(plan.total - prepared.finished, engine.workers)
+    motions = Motions(study.sources, plan.records)
+    to_do = units(plan, study.samples, motions, study.definition.model, store.finished, size)
+    for rows in engine.map(carry_out, to_do):
+        store.add(rows)
+        if progress is not None:
+            progress(len(rows), rows.failed)
+
+
+def versions(study: Study) -> dict[str, str]:
+    """Of this program and of the packages that its structures come from."""
+    registry = Registry()
+    plugins = {f"mechanism {each.mechanism}": registry.package_of(each.mechanism) for each in study.structures}
+    return {"rocking-cli": __version__, **plugins}
+
+
+def libraries() -> dict[str, str]:
+    """Versions of what else has a say in the last bits: kept for whoever compares two stores."""
+    return {"python": platform.python_version(), **{name: version(name) for name in ("numpy", "numba", "scipy")}}
+
+
+def _records(
+    sources: Sequence[Source], known: Plan | None, tell: Examined
+) -> tuple[list[Record], list[int]]:  # fmt: skip
+    """What there is to know of the records, read only where the store does not know; and which are new to it."""
+    records: list[Record] = []
+    mended = []
+    before = {each.name: each for each in known.records} if known is not None else {}
+    for k, source in enumerate(sources):
+        old = before.get(source.name)
+        if old is not None and old.reason is None:
+            records.append(replace(old, checksum=_checksum(source)))
+        else:
+            records.append(examine(source))
+            if old is not None and records[-1].reason is None:
+                mended.append(k)
+        tell(1)
+    return records, mended
+
+
+def _checksum(source: Source) -> str:
+    try:
+        return source.checksum()
+    except InputError:
+        return ""
+
+
+def _trial(study: Study, sample: Sample) -> Trial:
+    structure = study.structures[sample.structure]
+    start = Trial(structure.name or structure.mechanism, sample.number, sample.drawn)
+    try:
+        equivalence = equivalent_block(sample.mechanism)
+        if study.definition.eta is None and min(equivalence.positive.eta, equivalence.negative.eta) <= 0:
+            raise InputError("its kinematics give no restitution: it is too stocky to start rocking the other way")
+    except RockingError as error:
+        return replace(start, reason=str(error))
+    p, lambda_ = weaker(equivalence, study.definition.model)
+    return replace(
+        start,
+        p=p,
+        lambda_=lambda_,
+        gravity=sample.mechanism.gravity,
+        phi_cr_positive=equivalence.positive.phi_cr,
+        phi_cr_negative=equivalence.negative.phi_cr,
+    )
+
+
+def _hazard(study: Study) -> list[list[float]] | None:
+    """The hazard curve as plain data: the store must do without the file."""
+    if study.hazard is None:
+        return None
+    return [list(map(float, study.hazard.intensity)), list(map(float, study.hazard.annual_rate))]
+
+
+def _refuse_useless(plan: Plan) -> None:
+    for what, those in (("structure", plan.trials), ("record", plan.records)):
+        if all(each.reason is not None for each in those):
+            reasons = dict.fromkeys(each.reason or "" for each in those)
+            raise InputError(*(Problem(f"no {what} can be used: {reason}") for reason in list(reasons)[:10]))
+
+
+def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, records: Sequence[Record]) -> None:
+    """Raise with every difference between what the store was begun with and what there is now."""
+    found = [*differences(store.fact("description"), facts["description"])]
+    found += [f"version of {each}" for each in differences(store.fact("versions"), facts["versions"])]
+    before = {each.name: each for each in known.records}
+    for record in records:
+        old = before.get(record.name)
+        if old is not None and old.reason is None and old.checksum != record.checksum:
+            found.append(f"the record {record.name} has changed, or cannot be read any more")
+    if found:
+        hint = "give --restart to run all anew, or --store OTHER.db to keep both"
+        *others, last = [Problem(each, field="changed since the store was begun") for each in found]
+        raise InputError(*others, replace(last, hint=hint))
+
+
+def differences(before: Any, now: Any, where: str = "") -> list[str]:
+    """Where two pieces of plain data differ, and how, as a person would say it."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        return [
+            each
+            for key in [*before, *(key for key in now if key not in before)]
+            for each in differences(before.get(key), now.get(key), f"{where}.{key}".lstrip("."))
+        ]
+    if isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
+        return [
+            each
+            for k, (one, other) in enumerate(zip(before, now, strict=True))
+            for each in differences(one, other, f"{where}[{k + 1}]")
+        ]
+    if isinstance(before, list) and isinstance(now, list):
+        gone = [each for each in before if each not in now]
+        new = [each for each in now if each not in before]
+        parts = [f"without {_told(gone)}"] if gone else []
+        parts += [f"with {_told(new)}"] if new else []
+        return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
+    return [] if before == now else [f"{where} was {_one(before)}, is now {_one(now)}"]
+
+
+def _told(values: list[Any], most: int = 3) -> str:
+    named = ", ".join(_one(each) for each in values[:most])
+    return named + (f" and {len(values) - most} more" if len(values) > most else "")
+
+
+def _one(value: Any) -> str:
+    if isinstance(value, dict):
+        return str(value.get("name", value))
+    return "absent" if value is None else str(value)

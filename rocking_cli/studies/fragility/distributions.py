@@ -1,0 +1,178 @@
+"""Numbers that are not known for certain, and samples of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from rocking_cli.core.mechanism import geometry_error
+
+Reals = NDArray[np.float64]
+Positive = Annotated[float, Field(gt=0)]
+LEAST = 2.0**-54  # a random number may be zero, where a normal distribution has no quantile
+STRICT = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+class _Bounded(BaseModel):
+    model_config = STRICT
+
+    low: float | None = Field(None, description="smallest value: what lies below is not drawn")
+    high: float | None = Field(None, description="largest value: what lies above is not drawn")
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if self.low is not None and self.high is not None and self.low >= self.high:
+            raise geometry_error("high", f"must be more than low ({self.low:g}), got {self.high:g}")
+        return self
+
+
+class Normal(_Bounded):
+    """A normal distribution, truncated where `low` or `high` is given."""
+
+    mean: float = Field(description="mean, before truncation")
+    deviation: Positive = Field(description="standard deviation, before truncation")
+
+
+class Lognormal(_Bounded):
+    """A lognormal distribution, truncated where `low` or `high` is given."""
+
+    median: Positive = Field(description="median, before truncation")
+    dispersion: Positive = Field(description="standard deviation of the logarithm, before truncation")
+
+
+class Uniform(BaseModel):
+    """A uniform distribution."""
+
+    model_config = STRICT
+
+    low: float = Field(description="smallest value")
+    high: float = Field(description="largest value")
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if self.low >= self.high:
+            raise geometry_error("high", f"must be more than low ({self.low:g}), got {self.high:g}")
+        return self
+
+
+class Triangular(BaseModel):
+    """A triangular distribution."""
+
+    model_config = STRICT
+
+    low: float = Field(description="smallest value")
+    mode: float = Field(description="most likely value")
+    high: float = Field(description="largest value")
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if not self.low <= self.mode <= self.high or self.low == self.high:
+            raise geometry_error("mode", f"must lie between low ({self.low:g}) and high ({self.high:g})")
+        return self
+
+
+class Distribution(BaseModel):
+    """One of several distributions: a mapping with its name as the only key."""
+
+    model_config = STRICT
+
+    normal: Normal | None = None
+    lognormal: Lognormal | None = None
+    uniform: Uniform | None = None
+    triangular: Triangular | None = None
+    values: list[float] | None = Field(None, min_length=1, description="values that are equally likely")
+
+    @model_validator(mode="after")
+    def _exactly_one(self) -> Self:
+        if len(self.model_fields_set) != 1:
+            known = ", ".join(type(self).model_fields)
+            raise ValueError(f"give one distribution, of {known}")
+        return self
+
+    def quantile(self, probability: Reals) -> Reals:
+        """The values that are not exceeded with these probabilities, in (0, 1)."""
+        if self.normal is not None:
+            mean, deviation = self.normal.mean, self.normal.deviation
+            within = _standard(self.normal, mean, deviation, None)
+            return np.asarray(mean + deviation * _standard_normal(probability, *within))
+        if self.lognormal is not None:
+            mean, deviation = float(np.log(self.lognormal.median)), self.lognormal.dispersion
+            within = _standard(self.lognormal, mean, deviation, np.log)
+            return np.asarray(np.exp(mean + deviation * _standard_normal(probability, *within)))
+        if self.uniform is not None:
+            width = self.uniform.high - self.uniform.low
+            return np.asarray(self.uniform.low + width * probability)
+        if self.triangular is not None:
+            return _triangular(self.triangular, probability)
+        assert self.values is not None
+        place = np.minimum(probability * len(self.values), len(self.values) - 1).astype(int)
+        return np.asarray(np.array(self.values)[place])
+
+
+def _standard(
+    bounds: _Bounded, mean: float, deviation: float, transform: Callable[[float], float] | None
+) -> tuple[float, float]:
+    """The bounds in standard deviations from the mean."""
+
+    def one(bound: float | None, absent: float) -> float:
+        if bound is None:
+            return absent
+        if transform is not None:
+            if bound <= 0:
+                return -np.inf
+            bound = transform(bound)
+        return (bound - mean) / deviation
+
+    return one(bounds.low, -np.inf), one(bounds.high, np.inf)
+
+
+def _standard_normal(probability: Reals, low: float, high: float) -> Reals:
+    from scipy.special import ndtr, ndtri
+
+    if low > 0:  # by symmetry, where the distribution function has its digits
+        upper: Reals = -_standard_normal(1 - probability, -high, -low)
+        return upper
+    below, above = ndtr(low), ndtr(high)
+    return np.asarray(np.clip(ndtri(below + probability * (above - below)), low, high))
+
+
+def _triangular(shape: Triangular, probability: Reals) -> Reals:
+    width = shape.high - shape.low
+    turn = (shape.mode - shape.low) / width
+    rising = shape.low + np.sqrt(probability * width * (shape.mode - shape.low))
+    falling = shape.high - np.sqrt((1 - probability) * width * (shape.high - shape.mode))
+    return np.asarray(np.where(probability < turn, rising, falling))
+
+
+def draw(
+    distribution: Distribution,
+    count: int,
+    *,
+    seed: int,
+    stream: str,
+    method: Literal["random", "latin hypercube"],
+) -> Reals:
+    """Samples of a distribution.
+
+    Parameters
+    ----------
+    distribution : Distribution
+        What is drawn from.
+    count : int
+        How many.
+    seed : int
+        The study's.
+    stream : str
+        What is drawn: its own stream of random numbers, so that another quantity beside it changes nothing.
+    method : {"random", "latin hypercube"}
+        Independent draws, or one in each of `count` equally likely ranges, in random order.
+    """
+    rng = np.random.default_rng([seed, *stream.encode()])
+    uniform = rng.random(count)
+    if method == "latin hypercube":
+        uniform = (rng.permutation(count) + uniform) / count
+    return distribution.quantile(np.maximum(uniform, LEAST))

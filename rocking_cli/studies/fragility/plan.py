@@ -1,0 +1,123 @@
+"""The runs of a study, numbered: which structure, record, restitution, level and polarity each number stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import prod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Equivalence
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.studies.fragility.definition import SCALE
+from rocking_cli.studies.fragility.intensity import Scales, intensity
+from rocking_cli.studies.fragility.sources import Record
+from rocking_cli.studies.shaken import uplift
+
+Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What a study knows of one sample of a structure.
+
+    Parameters
+    ----------
+    structure : str
+        The structure's name.
+    number : int
+        Which sample of it, from 0.
+    drawn : dict of str to float
+        The fields that were drawn.
+    reason : str or None
+        Why it cannot be run; None if it can.
+    p : float
+        Frequency parameter [rad/s]; this and the rest are 0 if it cannot be run.
+    lambda_ : float
+        Uplift acceleration over g that the model keeps.
+    gravity : float
+        [m/s2].
+    phi_cr_positive, phi_cr_negative : float
+        Critical rotations [rad].
+    """
+
+    structure: str
+    number: int
+    drawn: dict[str, float]
+    reason: str | None = None
+    p: float = 0.0
+    lambda_: float = 0.0
+    gravity: float = 0.0
+    phi_cr_positive: float = 0.0
+    phi_cr_negative: float = 0.0
+
+
+def weaker(equivalence: Equivalence, model: ModelName) -> tuple[float, float]:
+    """p and lambda of the direction that uplifts first: what the dimensionless measures refer to."""
+    block = min((equivalence.positive, equivalence.negative), key=lambda each: uplift(each, model))
+    return block.p, uplift(block, model)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """All combinations, numbered with the polarity changing fastest, then level, restitution, record and sample.
+
+    Parameters
+    ----------
+    trials : sequence of Trial
+        The samples of the structures.
+    records : sequence of Record
+        The ground motions.
+    etas : sequence of float
+        Restitutions; NaN for the structure's own.
+    measure : str
+        What the levels are of: one of `intensity.MEASURES`, or "scale".
+    levels : sequence of float
+        The levels.
+    polarities : sequence of int
+        Of 1 and -1.
+    """
+
+    trials: Sequence[Trial]
+    records: Sequence[Record]
+    etas: Sequence[float]
+    measure: str
+    levels: Sequence[float]
+    polarities: Sequence[int]
+
+    @property
+    def shape(self) -> tuple[int, int, int, int, int]:
+        """How many samples, records, restitutions, levels and polarities there are."""
+        return len(self.trials), len(self.records), len(self.etas), len(self.levels), len(self.polarities)
+
+    @property
+    def block(self) -> int:
+        """Runs of one sample under one record: they stand together."""
+        return prod(self.shape[2:])
+
+    @property
+    def total(self) -> int:
+        """How many runs can be run: not those of samples and records that cannot be used."""
+        usable = [sum(each.reason is None for each in what) for what in (self.trials, self.records)]
+        return prod(usable) * self.block
+
+    def places(self, runs: Integers) -> tuple[Integers, Integers, Integers, Integers, Integers]:
+        """The places of sample, record, restitution, level and polarity of runs."""
+        sample, record, eta, level, polarity = np.unravel_index(runs, self.shape)
+        return sample, record, eta, level, polarity
+
+    def scales(self, sample: Integers) -> Scales:
+        """What the dimensionless measures refer to, for samples by their places."""
+        columns = np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])[sample]
+        return Scales(columns[:, 0], columns[:, 1], columns[:, 2])
+
+    def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
+        """Factors on the records that bring them to the levels, for places of one shape."""
+        wanted = np.array(self.levels)[level]
+        if self.measure == SCALE:
+            return wanted
+        peaks = np.array([(each.pga, each.pgv) for each in self.records])[record]
+        return np.asarray(wanted / intensity(self.measure, peaks[:, 0], peaks[:, 1], self.scales(sample)))

@@ -1,0 +1,144 @@
+"""The ground motions of a study: where each comes from, its checksum, and its samples when they are needed."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.doubts import doubts
+from rocking_cli.excitation.measures import measure
+from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.excitation.records import read_record
+from rocking_cli.studies.fragility.definition import RecordEntry
+
+KEPT = 32_000_000  # samples of records held in memory at most, a quarter of a gigabyte
+
+
+@dataclass(frozen=True)
+class Source:
+    """One ground motion of a study.
+
+    Parameters
+    ----------
+    name : str
+        What to call it: the file as the study names it, or the pulse's specification.
+    entry : RecordEntry
+        How to read it.
+    path, vertical : Path, optional
+        Its files.
+    """
+
+    name: str
+    entry: RecordEntry
+    path: Path | None = None
+    vertical: Path | None = None
+
+    def checksum(self) -> str:
+        """SHA-256 of its files' bytes, or of the pulse's specification. Raises `InputError` if one is not there."""
+        found = hashlib.sha256()
+        for path in (self.path, self.vertical):
+            if path is None:
+                continue
+            try:
+                with path.open("rb") as file:
+                    found.update(hashlib.file_digest(file, "sha256").digest())
+            except OSError as error:
+                raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from None
+        if self.path is None:
+            found.update(self.name.encode())
+        return found.hexdigest()
+
+    def read(self) -> GroundMotion:
+        """The motion, unscaled. Raises `InputError` if it cannot be read."""
+        if self.path is None:
+            assert self.entry.pulse is not None
+            return parse_pulse(self.entry.pulse).sampled()
+        asked = self.entry
+        motion = read_record(self.path, dt=asked.dt, units=asked.units, channel=asked.channel)
+        if self.vertical is not None:
+            motion = replace(motion, vertical=read_record(self.vertical, dt=asked.dt, units=asked.units))
+        return motion
+
+
+@dataclass(frozen=True)
+class Record:
+    """What a study knows of one of its ground motions.
+
+    Parameters
+    ----------
+    name, checksum : str
+        See `Source`; the checksum of a file that cannot be read is empty.
+    reason : str or None
+        Why it cannot be used; None if it can.
+    dt : float
+        Sample interval [s]; this and the rest are 0 if it cannot be used.
+    npts : int
+        Number of samples.
+    pga, pgv : float
+        Peaks [standard gravity], [m/s].
+    doubts : int
+        How many things are doubtful about it; `rocking record` names them.
+    """
+
+    name: str
+    checksum: str
+    reason: str | None = None
+    dt: float = 0.0
+    npts: int = 0
+    pga: float = 0.0
+    pgv: float = 0.0
+    doubts: int = 0
+
+
+def examine(source: Source) -> Record:
+    """Read a ground motion and measure it; one that cannot be used says why."""
+    checksum = ""
+    try:
+        checksum = source.checksum()
+        motion = source.read()
+        measured = measure(motion)
+    except InputError as error:
+        return Record(source.name, checksum, reason=str(error).splitlines()[0])
+    if measured.pga == 0:
+        return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale")
+    doubtful = len(doubts(motion, measured)) if source.path is not None else 0  # what a formula gives is meant
+    return Record(
+        source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful
+    )  # fmt: skip
+
+
+class Motions:
+    """The samples of a study's ground motions, the ones last used kept in memory.
+
+    Parameters
+    ----------
+    sources : iterable of Source
+        The motions.
+    records : iterable of Record
+        What is known of them: a file that has changed since is refused.
+    """
+
+    def __init__(self, sources: Iterable[Source], records: Iterable[Record]) -> None:
+        self._known = list(zip(sources, records, strict=True))
+        self._kept: OrderedDict[int, GroundMotion] = OrderedDict()
+        self._size = 0
+
+    def __getitem__(self, k: int) -> GroundMotion:
+        """A motion by its place. Raises `InputError` if its file has changed."""
+        if k in self._kept:
+            self._kept.move_to_end(k)
+            return self._kept[k]
+        source, record = self._known[k]
+        if source.checksum() != record.checksum:
+            raise InputError(Problem("has changed while the study ran", source.name, hint="begin the study anew"))
+        motion = self._kept[k] = source.read()
+        self._size += motion.npts
+        while self._size > KEPT and len(self._kept) > 1:
+            _, dropped = self._kept.popitem(last=False)
+            self._size -= dropped.npts
+        return motion

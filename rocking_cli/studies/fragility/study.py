@@ -1,0 +1,257 @@
+"""A fragility study with all that its file names: structures, samples of them, and where the records are."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import nan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from rocking_cli.core import Mechanism
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.excitation.selection import select
+from rocking_cli.plugins import did_you_mean
+from rocking_cli.structure import load_structure
+from rocking_cli.studies.fragility.definition import (
+    Definition,
+    RecordEntry,
+    StructureEntry,
+    read_definition,
+    sound_entries,
+)
+from rocking_cli.studies.fragility.distributions import Distribution, draw
+from rocking_cli.studies.fragility.hazard import HazardCurve, read_hazard
+from rocking_cli.studies.fragility.sources import Source
+from rocking_cli.yaml_file import Document, Place
+
+RESTITUTION = "restitution"
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One structure as it is run.
+
+    Parameters
+    ----------
+    structure : int
+        Its place among the study's structures.
+    number : int
+        Which sample of it, from 0.
+    drawn : dict of str to float
+        The fields that were drawn.
+    mechanism : Mechanism
+        The structure with these.
+    """
+
+    structure: int
+    number: int
+    drawn: dict[str, float]
+    mechanism: Mechanism
+
+    @property
+    def geometry(self) -> tuple[tuple[str, float], ...]:
+        """What was drawn apart from restitution, which needs no new tables."""
+        return tuple(each for each in self.drawn.items() if each[0] != RESTITUTION)
+
+    @property
+    def eta(self) -> float:
+        """The restitution that was drawn; NaN if it was not."""
+        return self.drawn.get(RESTITUTION, nan)
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """A study ready to run.
+
+    Parameters
+    ----------
+    name : str
+        What to call it.
+    definition : Definition
+        What its file says.
+    structures : tuple of Mechanism
+        The structures, named.
+    samples : tuple of Sample
+        Those to run: of each structure one, or as many as are drawn, one structure after the other.
+    sources : tuple of Source
+        The ground motions.
+    hazard : HazardCurve, optional
+        How often intensities are exceeded.
+    """
+
+    name: str
+    definition: Definition
+    structures: tuple[Mechanism, ...]
+    samples: tuple[Sample, ...]
+    sources: tuple[Source, ...]
+    hazard: HazardCurve | None
+
+    def description(self) -> dict[str, Any]:
+        """All that decides what is run, apart from what is in the records, as plain data."""
+        given = self.definition
+        return {
+            "structures": [
+                {
+                    "mechanism": structure.mechanism,
+                    **structure.model_dump(exclude_none=True),
+                    "vary": entry.model_dump(exclude_none=True)["vary"],
+                }
+                for structure, entry in zip(self.structures, given.structures, strict=True)
+            ],
+            "records": [
+                {"name": source.name, **source.entry.model_dump(exclude_none=True, exclude={"file"})}
+                for source in self.sources
+            ],
+            "levels": {"measure": given.levels.measure, "values": given.levels.levels()},
+            "polarities": list(given.polarities),
+            "eta": given.eta,
+            "model": given.model,
+            "samples": given.samples,
+            "sampling": given.sampling,
+            "seed": given.seed,
+        }
+
+
+def digest(description: dict[str, Any]) -> str:
+    """SHA-256 of a description, the same whatever the order of its keys."""
+    return hashlib.sha256(json.dumps(description, sort_keys=True).encode()).hexdigest()
+
+
+def load_study(path: str | Path) -> Study:
+    """Read a study and the structures it names; of the records only the names.
+
+    Parameters
+    ----------
+    path : str or Path
+        The study file; the files that it names are relative to its folder.
+
+    Raises
+    ------
+    InputError
+        With every problem of the study and of the structure files.
+    MechanismError
+        If a mechanism's plugin cannot be used.
+    """
+    path = Path(path)
+    document, definition = read_definition(path)
+    structures = [
+        _structure(document, ("structures", k), path.parent, entry)
+        for k, entry in sound_entries(document, "structures", StructureEntry)
+    ]
+    sources = [
+        source
+        for k, entry in sound_entries(document, "records", RecordEntry)
+        for source in _sources(document, ("records", k), path.parent, entry)
+    ]
+    _refuse_repeated(document, "records", [source.name for source in sources])
+    _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
+    hazard = _hazard(document, path.parent, definition) if definition is not None else None
+    samples: list[Sample] = []
+    if definition is not None:
+        for k, structure in enumerate(structures):
+            if structure is not None:
+                samples += _samples(document, definition, k, structure)
+    document.check()
+    assert definition is not None
+    known = tuple(each for each in structures if each is not None)
+    return Study(definition.name or path.stem, definition, known, tuple(samples), tuple(sources), hazard)
+
+
+def _structure(document: Document, place: Place, folder: Path, entry: StructureEntry) -> Mechanism | None:
+    try:
+        structure = load_structure(folder / entry.file)
+    except InputError as error:
+        document.problems += error.problems
+        return None
+    except MechanismError as error:
+        raise MechanismError(f"{entry.file}: {error}") from error
+    fields = [name for name, info in type(structure).model_fields.items() if info.annotation in (float, float | None)]
+    known = [*fields, RESTITUTION]
+    for name in entry.vary:
+        if name not in known:
+            what = f"is not a number among the fields of {structure.mechanism}"
+            document.problems.append(document.at((*place, "vary", name), what, did_you_mean(name, known), key=True))
+    return structure.model_copy(update={"name": entry.name}) if entry.name else structure
+
+
+def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry) -> list[Source]:
+    try:
+        if entry.pulse is not None:
+            parse_pulse(entry.pulse)
+            return [Source(entry.pulse, entry)]
+        assert entry.file is not None
+        vertical = select(entry.vertical, folder)[0] if entry.vertical is not None else None
+        return [
+            Source(_shown(each, folder), entry, each, vertical) for each in select(entry.file, folder)
+        ]  # fmt: skip
+    except (InputError, MechanismError) as error:
+        found = error.problems if isinstance(error, InputError) else (Problem(str(error)),)
+        held = place in document.values and isinstance(document.data["records"][place[-1]], dict)
+        key: Place = (*place, "pulse" if entry.pulse is not None else "file") if held else place
+        for problem in found:
+            what = f"{problem.file}: {problem.message}" if problem.file else problem.message
+            document.problems.append(document.at(key, what, problem.hint))
+        return []
+
+
+def _shown(path: Path, folder: Path) -> str:
+    """A file as the study names it, alike on every system."""
+    return (path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix()
+
+
+def _refuse_repeated(document: Document, field: str, names: Sequence[str]) -> None:
+    for name in dict.fromkeys(name for name in names if names.count(name) > 1):
+        hint = "give one of them a `name`" if field == "structures" else None
+        document.problems.append(document.at((field,), f"two of them are called {name}", hint, key=True))
+
+
+def _hazard(document: Document, folder: Path, definition: Definition) -> HazardCurve | None:
+    given = definition.hazard
+    if given is None:
+        return None
+    try:
+        if given.file is not None:
+            return read_hazard(folder / given.file)
+        assert given.points is not None
+        return HazardCurve(*np.array(given.points).T)
+    except InputError as error:
+        document.problems += [
+            each if each.file else document.at(("hazard", "points"), each.message, each.hint) for each in error.problems
+        ]
+        return None
+
+
+def _samples(document: Document, definition: Definition, k: int, structure: Mechanism) -> list[Sample]:
+    """The samples of a structure; those that cannot be built are a problem of what it varies."""
+    entry = definition.structures[k]
+    if not entry.vary or any(name not in type(structure).model_fields for name in entry.vary):
+        return [Sample(k, 0, {}, structure)]
+    columns = {name: _drawn(definition, structure, name, each) for name, each in entry.vary.items()}
+    samples, wrong = [], []
+    for number in range(definition.samples):
+        drawn = {name: values[number] for name, values in columns.items()}
+        try:
+            samples.append(Sample(k, number, drawn, structure.model_copy(update=drawn)))
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            wrong.append(f"{'.'.join(map(str, first['loc']))}: {first['msg']}, got {first['input']}")
+    if wrong:
+        what = f"{len(wrong)} of {definition.samples} samples cannot be built; the first: {wrong[0]}"
+        hint = "bound the distributions with `low` and `high`"
+        document.problems.append(document.at(("structures", k, "vary"), what, hint))
+    return samples
+
+
+def _drawn(definition: Definition, structure: Mechanism, name: str, distribution: Distribution) -> list[float]:
+    stream = f"{structure.name}.{name}"
+    values = draw(
+        distribution, definition.samples, seed=definition.seed, stream=stream, method=definition.sampling
+    )  # fmt: skip
+    return [float(each) for each in values]

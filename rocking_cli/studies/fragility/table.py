@@ -1,0 +1,62 @@
+"""The runs of a study as a table, a block at a time: a long study never stands in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from rocking_cli.studies.fragility.intensity import MEASURES, intensity, label
+from rocking_cli.studies.fragility.plan import Plan
+from rocking_cli.studies.fragility.store import FAILED, STANDS, Rows, Store
+
+ROWS = 100_000  # runs of a block
+
+
+def blocks(store: Store, plan: Plan) -> Iterator[Mapping[str, Sequence[object]]]:
+    """The finished runs, in the order of their numbers.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        Its runs.
+
+    Yields
+    ------
+    mapping of str to sequence
+        The columns, with units; the first block is there even if no run is.
+    """
+    end = int(np.prod(plan.shape))
+    for first in range(0, end, ROWS):
+        rows = store.runs(first, min(first + ROWS, end))
+        if len(rows) or first == 0:
+            yield _columns(plan, rows)
+
+
+def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
+    sample, record, _, level, polarity = plan.places(rows.id)
+    trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
+    pga = rows.scale * np.array([each.pga for each in records])
+    pgv = rows.scale * np.array([each.pgv for each in records])
+    scales = plan.scales(sample)
+    outcomes = {STANDS: "stands", FAILED: "failed"}
+    return {
+        "run": rows.id.tolist(),
+        "structure": [each.structure for each in trials],
+        "sample": [each.number for each in trials],
+        "record": [each.name for each in records],
+        "level": np.array(plan.levels)[level].tolist(),
+        "polarity": np.array(plan.polarities)[polarity].tolist(),
+        "eta": rows.eta.tolist(),
+        "scale": rows.scale.tolist(),
+        **{label(name): intensity(name, pga, pgv, scales).tolist() for name in MEASURES},
+        "outcome": [outcomes.get(code, "overturns") for code in rows.outcome.tolist()],
+        "fell_to": np.where(np.abs(rows.outcome) == 1, rows.outcome, 0).tolist(),
+        "phi/phi_cr": rows.peak_ratio.tolist(),
+        "phi positive [rad]": rows.peak_positive.tolist(),
+        "phi negative [rad]": rows.peak_negative.tolist(),
+        "uplift [s]": rows.uplift_time.tolist(),
+        "overturning [s]": rows.overturning_time.tolist(),
+    }

@@ -1,0 +1,168 @@
+"""A piece of a study that can be run anywhere: it holds all that its runs need."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from math import ceil, isnan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.model import Model, ModelName, build_model
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.studies.fragility.plan import Plan
+from rocking_cli.studies.fragility.sources import Motions
+from rocking_cli.studies.fragility.store import FAILED, Rows
+from rocking_cli.studies.fragility.study import RESTITUTION, Sample
+
+Integers = NDArray[np.int64]
+
+SMALLEST, LARGEST = 64, 4096  # runs of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
+SHARE = 16  # units for each worker at least, so that all end together
+SAMPLES = 4_000_000  # of the records of a unit, at most: 64 megabytes
+
+
+@dataclass(frozen=True, eq=False)
+class Unit:
+    """Runs with their models and ground motions.
+
+    Parameters
+    ----------
+    id : ndarray of int
+        Numbers of the runs in the study.
+    runs : Runs
+        What they are; their models and records are places in the tuples below.
+    models : tuple of Model
+    motions : tuple of GroundMotion
+    """
+
+    id: Integers
+    runs: Runs
+    models: tuple[Model, ...]
+    motions: tuple[GroundMotion, ...]
+
+
+def carry_out(unit: Unit) -> Rows:
+    """Run a unit on one processor; the same to the last bit wherever and with whatever else it is run."""
+    found = respond_many(unit.models, unit.motions, unit.runs, threads=1, only_peaks=True)
+
+    def known(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.where(found.failed, np.nan, values)
+
+    return Rows(
+        id=unit.id,
+        scale=unit.runs.scale,
+        eta=unit.runs.eta,
+        outcome=np.where(found.failed, FAILED, found.fell_to).astype(np.int64),
+        peak_ratio=known(found.peak_ratio),
+        peak_positive=known(found.peak_positive),
+        peak_negative=known(found.peak_negative),
+        uplift_time=known(found.uplift_time),
+        overturning_time=known(found.overturning_time),
+    )
+
+
+def units(
+    plan: Plan,
+    samples: Sequence[Sample],
+    motions: Motions,
+    model: ModelName,
+    finished: Callable[[int, int], Integers],
+    size: int,
+) -> Iterator[Unit]:
+    """The runs that are still to do, in units made one at a time.
+
+    Parameters
+    ----------
+    plan : Plan
+        All runs.
+    samples : sequence of Sample
+        The structures of its trials.
+    motions : Motions
+        The ground motions of its records.
+    model : {"nonlinear", "linear1", "linear2"}
+        The equation of motion.
+    finished : callable
+        Gives the numbers of the finished runs from one to before another.
+    size : int
+        Runs of a unit, at most.
+    """
+    models = _Models(samples, plan.etas, model)
+    waiting: list[Integers] = []
+    held = 0  # samples of the records of the waiting runs
+    for missing in _missing(plan, finished):
+        for start in range(0, len(missing), size):
+            part = missing[start : start + size]
+            npts = plan.records[int(part[0]) // plan.block % len(plan.records)].npts
+            if waiting and (sum(map(len, waiting)) + len(part) > size or held + npts > SAMPLES):
+                yield _unit(plan, np.concatenate(waiting), models, motions)
+                waiting, held = [], 0
+            waiting.append(part)
+            held += npts
+    if waiting:
+        yield _unit(plan, np.concatenate(waiting), models, motions)
+
+
+def unit_size(runs: int, workers: int) -> int:
+    """Runs of a unit, for so many runs on so many workers."""
+    return min(max(ceil(runs / (SHARE * workers)), SMALLEST), LARGEST)
+
+
+def _missing(plan: Plan, finished: Callable[[int, int], Integers]) -> Iterator[Integers]:
+    """The runs to do of each sample under each record, of those that can be used."""
+    records = len(plan.records)
+    for k, trial in enumerate(plan.trials):
+        if trial.reason is not None:
+            continue
+        first = k * records * plan.block
+        done = np.zeros(records * plan.block, dtype=bool)
+        done[finished(first, first + done.size) - first] = True
+        for r, record in enumerate(plan.records):
+            to_do = np.flatnonzero(~done[r * plan.block : (r + 1) * plan.block])
+            if record.reason is None and to_do.size:
+                yield first + r * plan.block + to_do
+
+
+def _unit(plan: Plan, runs: Integers, models: _Models, motions: Motions) -> Unit:
+    sample, record, eta, level, polarity = plan.places(runs)
+    trials, model = np.unique(sample, return_inverse=True)
+    records, motion = np.unique(record, return_inverse=True)
+    given = np.array(plan.etas)[eta]
+    drawn = np.array([models.samples[k].eta for k in trials])[model]
+    return Unit(
+        runs,
+        Runs.of(
+            model,
+            motion,
+            scale=plan.factors(sample, record, level),
+            polarity=np.array(plan.polarities)[polarity],
+            eta=np.where(np.isnan(given), drawn, given),
+        ),
+        tuple(models[int(k)] for k in trials),
+        tuple(motions[int(k)] for k in records),
+    )
+
+
+class _Models:
+    """Models of samples, the last few kept: samples that differ in their restitution only share one."""
+
+    KEPT = 64
+
+    def __init__(self, samples: Sequence[Sample], etas: Sequence[float], name: ModelName) -> None:
+        self.samples = samples
+        self._name = name
+        self._eta = None if isnan(etas[0]) else etas[0]
+        self._kept: dict[tuple[object, ...], Model] = {}
+
+    def __getitem__(self, k: int) -> Model:
+        sample = self.samples[k]
+        key = (sample.structure, *sample.geometry)
+        if key not in self._kept:
+            if len(self._kept) == self.KEPT:
+                del self._kept[next(iter(self._kept))]
+            # With a restitution that every run replaces, so that none is asked of the kinematics, which may have none.
+            given = {} if self._eta is None else {RESTITUTION: self._eta}
+            self._kept[key] = build_model(sample.mechanism.model_copy(update=given), self._name)
+        return self._kept[key]

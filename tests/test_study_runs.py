@@ -1,0 +1,543 @@
+"""Running studies: the same runs whatever stops them, however many workers there are, and wherever they run."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import sqlite3
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy.optimize import brentq
+
+from rocking_cli import GroundMotion, equivalent_block, exact_response, load_structure, parse_pulse, respond
+from rocking_cli.cli.main import main
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.studies.fragility import assess, engines, store, work
+from rocking_cli.studies.fragility.campaign import differences, prepare, run
+from rocking_cli.studies.fragility.intensity import MEASURES, Scales, intensity
+from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
+from rocking_cli.studies.fragility.study import load_study
+from tests.conftest import EXAMPLES
+
+STUDY = f"""\
+structures:
+  - {EXAMPLES / "frame.yaml"}
+  - file: {EXAMPLES / "block.yaml"}
+    name: uncertain
+    vary:
+      width: {{normal: {{mean: 0.7, deviation: 0.05}}}}
+      restitution: {{uniform: {{low: 0.85, high: 0.95}}}}
+records:
+  - '{EXAMPLES}/*.csv'
+  - pulse: sine:0.6g:0.8s
+  - pulse: ricker:0.6g:1.2s
+method: stripes
+levels: {{measure: PGA/(g lambda), least: 0.8, most: 4, count: COUNT}}
+polarities: [1, -1]
+samples: 4
+limit_states: [uplift, 0.25, overturning]
+"""
+
+
+def write(folder, text=STUDY, count=5):
+    path = folder / "study.yaml"
+    path.write_text(text.replace("COUNT", str(count)), encoding="utf-8")
+    return path
+
+
+def carry_out(path, place, engine=engines.threads, **options):
+    with Store.writing(place) as kept, engine(**options) as workers:
+        prepared = prepare(load_study(path), kept)
+        run(prepared, kept, workers)
+    return prepared
+
+
+def dump(place):
+    """All that a store holds, as text."""
+    connection = sqlite3.connect(place)
+    try:
+        return list(connection.iterdump())
+    finally:
+        connection.close()
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A study and its store, run without interruption on one worker."""
+    folder = tmp_path_factory.mktemp("whole")
+    path = write(folder)
+    return path, carry_out(path, folder / "study.db", jobs=1), folder / "study.db"
+
+
+def test_each_run_is_what_respond_gives(whole):
+    path, prepared, place = whole
+    study, plan = load_study(path), prepared.plan
+    with Store.reading(place) as kept:
+        rows = kept.runs(0, plan.total)
+    assert len(rows) == plan.total == 5 * 3 * 5 * 2
+    assert set(rows.outcome.tolist()) == {-1, 0, 1}
+    motions = [source.read() for source in study.sources]
+    for k in range(0, plan.total, 7):
+        sample, record, _, level, polarity = (int(place) for place in np.unravel_index(k, plan.shape))
+        trial, known = plan.trials[sample], plan.records[record]
+        factor = plan.levels[level] * trial.lambda_ * trial.gravity / (known.pga * STANDARD_GRAVITY)
+        motion = motions[record].scaled(plan.polarities[polarity] * factor)
+        history = respond(study.samples[sample].mechanism, motion, models=("nonlinear",))["nonlinear"]
+        assert rows.outcome[k] == (history.fell_to or 0)
+        assert rows.scale[k] == pytest.approx(factor, rel=1e-14)
+        if not history.overturned:
+            assert rows.peak_ratio[k] == pytest.approx(history.peak_ratio, rel=1e-9)
+
+
+def test_the_view_says_in_words_what_the_numbers_stand_for(whole):
+    _, prepared, place = whole
+    connection = sqlite3.connect(place)
+    rows = connection.execute("SELECT structure, sample, record, level, polarity, pga, outcome FROM runs").fetchall()
+    connection.close()
+    plan = prepared.plan
+    for k in range(0, plan.total, 11):
+        sample, record, _, level, polarity = np.unravel_index(k, plan.shape)
+        trial = plan.trials[sample]
+        assert rows[k][:5] == (
+            trial.structure, trial.number, plan.records[record].name, plan.levels[level], plan.polarities[polarity],
+        )  # fmt: skip
+        assert rows[k][5] * STANDARD_GRAVITY / (trial.gravity * trial.lambda_) == pytest.approx(plan.levels[level])
+    assert {row[-1] for row in rows} == {"stands", "overturns"}
+
+
+class TestSameResults:
+    @pytest.mark.parametrize("size", [1, 7, 64, 1000])
+    def test_whatever_the_units(self, whole, tmp_path, monkeypatch, size):
+        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: size)
+        carry_out(whole[0], tmp_path / "other.db", jobs=3)
+        assert dump(tmp_path / "other.db") == dump(whole[2])
+
+    def test_whatever_memory_there_is_for_records(self, whole, tmp_path, monkeypatch):
+        monkeypatch.setattr(work, "SAMPLES", 1)
+        monkeypatch.setattr("rocking_cli.studies.fragility.sources.KEPT", 1)
+        carry_out(whole[0], tmp_path / "other.db", jobs=2)
+        assert dump(tmp_path / "other.db") == dump(whole[2])
+
+    def test_after_an_error_in_the_middle(self, whole, tmp_path, monkeypatch):
+        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: 20)
+        done = []
+
+        def breaks(unit):
+            if len(done) == 3:
+                raise OSError("the machine is on fire")
+            done.append(unit)
+            return work.carry_out(unit)
+
+        place = tmp_path / "other.db"
+        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.carry_out", breaks)
+        with pytest.raises(OSError, match="on fire"):
+            carry_out(whole[0], place, jobs=1)
+        with Store.reading(place) as kept:
+            assert 0 < kept.count()[0] < whole[1].plan.total
+        ran = []
+        monkeypatch.setattr(
+            "rocking_cli.studies.fragility.campaign.carry_out", lambda unit: ran.append(unit) or work.carry_out(unit)
+        )
+        before = whole[1].plan.total - carry_out(whole[0], place, jobs=2).finished
+        assert sum(len(unit.id) for unit in ran) == before  # nothing twice
+        assert dump(place) == dump(whole[2])
+
+    def test_after_a_full_disk(self, whole, tmp_path, monkeypatch):
+        monkeypatch.setattr(store, "PATIENCE", 0.0)
+        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: 10)
+        place = tmp_path / "other.db"
+        with pytest.raises(StoreError, match="full"), Store.writing(place) as kept, engines.threads(1) as workers:
+            prepared = prepare(load_study(whole[0]), kept)
+            (pages,) = kept._connection.execute("PRAGMA page_count").fetchone()
+            kept._connection.execute(f"PRAGMA max_page_count = {pages + 1}")
+            run(prepared, kept, workers)
+        with Store.reading(place) as kept:
+            assert 0 < kept.count()[0] < whole[1].plan.total
+        carry_out(whole[0], place, jobs=2)
+        assert dump(place) == dump(whole[2])
+
+
+def program(*arguments, **options):
+    """The command in a process of its own."""
+    code = "from rocking_cli.cli.main import main; main()"
+    environment = {**os.environ, "PYTHONWARNINGS": "default", "PYTHONIOENCODING": "utf-8"}
+    return subprocess.Popen(
+        [sys.executable, "-c", code, *map(str, arguments)], env=environment, text=True, encoding="utf-8",
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options,
+    )  # fmt: skip
+
+
+def finished(place):
+    """How many runs a store holds so far."""
+    try:
+        connection = sqlite3.connect(place)
+        try:
+            return connection.execute("SELECT count(*) FROM run").fetchone()[0]
+        finally:
+            connection.close()
+    except sqlite3.Error:
+        return 0
+
+
+def wait_until_some_are_finished(place, process):
+    deadline = time.monotonic() + 60
+    while not finished(place):
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+LONG = 1000  # levels: some seconds of work
+
+
+@pytest.fixture(scope="module")
+def long_study(tmp_path_factory):
+    """A study of some seconds, and its uninterrupted store."""
+    folder = tmp_path_factory.mktemp("long")
+    path = write(folder, count=LONG)
+    return path, carry_out(path, folder / "whole.db"), folder / "whole.db"
+
+
+def test_killed_and_run_again_it_is_as_if_nothing_had_happened(long_study, tmp_path):
+    path, prepared, whole = long_study
+    place = tmp_path / "killed.db"
+    process = program("fragility", path, "--store", place, "--jobs", 1)
+    wait_until_some_are_finished(place, process)
+    process.kill()  # SIGKILL: no chance to tidy up
+    process.communicate()
+    had = finished(place)
+    assert 0 < had < prepared.plan.total
+    again = program("fragility", path, "--store", place)
+    said = again.communicate()[1]
+    assert again.returncode == 0
+    assert f"{had} of {prepared.plan.total} runs are in the store already" in said
+    assert dump(place) == dump(whole)
+
+
+def test_while_it_runs_others_read_and_do_not_write(long_study, tmp_path):
+    path, prepared, _ = long_study
+    place = tmp_path / "busy.db"
+    process = program("fragility", path, "--store", place, "--jobs", 1)
+    try:
+        wait_until_some_are_finished(place, process)
+        second = CliRunner().invoke(main, ["fragility", str(path), "--store", str(place)])
+        assert second.exit_code == 2 and "another process is at work" in second.stderr
+        so_far = CliRunner().invoke(main, ["results", str(place), "--json"])
+        assert so_far.exit_code == 5
+        assert 0 < json.loads(so_far.stdout)["finished"] < prepared.plan.total
+        assert process.poll() is None
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path):
+    path, prepared, whole = long_study
+    place, address = tmp_path / "cluster.db", tmp_path / "scheduler.json"
+
+    def dask(*arguments):
+        return subprocess.Popen(
+            [sys.executable, "-m", "dask", *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+
+    started = [dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--no-dashboard", "--scheduler-file", address)]
+    try:
+        common = ["--scheduler-file", address, "--nthreads", 1, "--no-nanny", "--no-dashboard", "--host", "127.0.0.1"]
+        started += [dask("worker", *common) for _ in range(3)]
+        deadline = time.monotonic() + 60
+        while not address.exists() or not address.stat().st_size:
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        process = program(
+            "fragility", path, "--store", place, "--scheduler", json.loads(address.read_text())["address"]
+        )
+        wait_until_some_are_finished(place, process)
+        started[1].kill()
+        assert finished(place) < prepared.plan.total
+        out, said = process.communicate(timeout=120)
+        assert process.returncode == 0, said
+        assert "lognormal" in out
+    finally:
+        for each in started:
+            each.kill()
+            each.wait()
+    assert dump(place) == dump(whole)
+
+
+def test_a_scheduler_that_is_not_there_is_said_so(whole, tmp_path, monkeypatch):
+    monkeypatch.setattr(engines, "PATIENCE", 0.3)
+    with pytest.raises(engines.ClusterError, match="no scheduler answers"):
+        carry_out(whole[0], tmp_path / "x.db", engines.cluster, address="tcp://127.0.0.1:9")
+
+
+class TestChanges:
+    @pytest.mark.parametrize(
+        ("old", "new", "said"),
+        [
+            ("count: 5", "count: 6", "levels.values is now"),
+            ("most: 4", "most: 5", "levels.values[5] was 4.0, is now 5.0"),
+            ("mean: 0.7", "mean: 0.8", "structures[2].vary.width.normal.mean was 0.7, is now 0.8"),
+            ("samples: 4", "samples: 4\nseed: 9", "seed was 0, is now 9"),
+            ("  - pulse: ricker:0.6g:1.2s\n", "", "records is now without ricker:0.6g:1.2s"),
+            ("samples: 4", "samples: 4\nmodel: linear2", "model was nonlinear, is now linear2"),
+        ],
+    )
+    def test_a_changed_study_is_named(self, whole, tmp_path, old, new, said):
+        place = tmp_path / "study.db"
+        place.write_bytes(whole[2].read_bytes())
+        path = write(tmp_path, STUDY.replace("COUNT", "5").replace(old, new))
+        with pytest.raises(InputError) as caught:
+            carry_out(path, place)
+        assert said in str(caught.value) and "--restart" in str(caught.value)
+        assert dump(place) == dump(whole[2])
+
+    def test_a_changed_record_is_named(self, tmp_path):
+        (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*.csv", "accel.csv"))
+        carry_out(path, tmp_path / "study.db")
+        with (tmp_path / "accel.csv").open("a", encoding="utf-8") as file:
+            file.write("\n")
+        with pytest.raises(InputError, match=r"the record accel.csv has changed"):
+            carry_out(path, tmp_path / "study.db")
+
+    def test_another_version_is_named(self, whole, tmp_path, monkeypatch):
+        place = tmp_path / "study.db"
+        place.write_bytes(whole[2].read_bytes())
+        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.__version__", "9.9")
+        with pytest.raises(InputError, match=r"version of rocking-cli was .*, is now 9.9"):
+            carry_out(whole[0], place)
+
+    def test_what_is_asked_of_the_runs_may_change(self, whole, tmp_path):
+        place = tmp_path / "study.db"
+        place.write_bytes(whole[2].read_bytes())
+        path = write(tmp_path, STUDY.replace("[uplift, 0.25, overturning]", "[0.5]").replace("COUNT", "5"))
+        result = CliRunner().invoke(main, ["fragility", str(path), "--store", str(place), "--json"])
+        assert result.exit_code == 0
+        assert {each["limit_state"] for each in json.loads(result.stdout)["curves"]} == {0.5}
+
+    def test_restart_begins_anew(self, whole, tmp_path):
+        place = tmp_path / "study.db"
+        place.write_bytes(whole[2].read_bytes())
+        path = write(tmp_path, STUDY.replace("samples: 4", "samples: 4\nseed: 9"))
+        result = CliRunner().invoke(main, ["fragility", str(path), "--restart", "--json"])
+        assert result.exit_code == 0 and json.loads(result.stdout)["seed"] == 9
+
+    def test_differences_are_said_as_people_would(self):
+        before = {"a": 1, "b": [1, 2], "c": {"d": [1, 2, 3]}, "e": 5}
+        now = {"a": 1, "b": [1, 3], "c": {"d": [1, 2]}, "f": 6}
+        assert differences(before, now) == [
+            "b[2] was 2, is now 3",
+            "c.d is now without 3",
+            "e was 5, is now absent",
+            "f was absent, is now 6",
+        ]
+
+
+class TestBadParts:
+    @pytest.fixture
+    def with_bad_record(self, tmp_path):
+        (tmp_path / "bad.csv").write_text("t,accel_g\n0,0\n0.01,x\n", encoding="utf-8")
+        return write(tmp_path, STUDY.replace("method:", "  - bad.csv\nmethod:"))
+
+    def test_a_bad_record_is_reported_and_the_others_run(self, with_bad_record, whole, tmp_path):
+        result = CliRunner().invoke(main, ["fragility", str(with_bad_record), "--json"])
+        assert result.exit_code == 5
+        assert "bad.csv" in result.stderr and ":3" in result.stderr
+        found = json.loads(result.stdout)
+        assert found["finished"] == found["runs"] == whole[1].plan.total
+        assert len(found["left_out"]) == 1 and "bad.csv" in found["left_out"][0]
+        # And again when nothing is left to run.
+        assert CliRunner().invoke(main, ["fragility", str(with_bad_record)]).exit_code == 5
+        assert CliRunner().invoke(main, ["results", str(tmp_path / "study.db")]).exit_code == 5
+
+    def test_a_record_put_right_is_run(self, with_bad_record, whole, tmp_path):
+        CliRunner().invoke(main, ["fragility", str(with_bad_record)])
+        (tmp_path / "bad.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        result = CliRunner().invoke(main, ["fragility", str(with_bad_record), "--json"])
+        assert result.exit_code == 0 and "bad.csv: could not be used" in result.stderr
+        assert json.loads(result.stdout)["finished"] == 4 * whole[1].plan.total // 3
+
+    def test_a_record_without_motion_and_one_that_is_gone(self, tmp_path):
+        (tmp_path / "zero.csv").write_text("t,accel_g\n0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
+        path = write(tmp_path, STUDY.replace("method:", "  - zero.csv\nmethod:"))
+        result = CliRunner().invoke(main, ["fragility", str(path)])
+        assert result.exit_code == 5 and "zero throughout" in result.stderr
+
+    def test_nothing_that_can_be_used(self, tmp_path):
+        (tmp_path / "zero.csv").write_text("t,accel_g\n0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
+        path = write(tmp_path, f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [zero.csv]\nmethod: cloud\n")
+        result = CliRunner().invoke(main, ["fragility", str(path)])
+        assert result.exit_code == 2 and "no record can be used" in result.stderr
+
+    def test_a_structure_too_stocky_for_its_kinematics(self, tmp_path):
+        (tmp_path / "stocky.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
+        text = STUDY.replace("structures:", "structures:\n  - stocky.yaml")
+        result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text)), "--json"])
+        assert result.exit_code == 5 and "too stocky" in result.stderr
+        assert {each["structure"] for each in json.loads(result.stdout)["curves"]} == {"valley bridge", "uncertain"}
+        given = STUDY.replace("structures:", "eta: [0.5]\nstructures:\n  - stocky.yaml").replace(
+            "restitution", "height"
+        )
+        path = write(tmp_path, given.replace("low: 0.85, high: 0.95", "low: 2, high: 3"))
+        assert CliRunner().invoke(main, ["fragility", str(path), "--restart"]).exit_code == 0
+
+
+class TestOtherFiles:
+    def test_a_text_is_no_store(self, whole, tmp_path):
+        (tmp_path / "notes.db").write_text("nothing here, but longer than a header of a database would be" * 5)
+        for command in (["results"], ["fragility", str(whole[0]), "--store"]):
+            result = CliRunner().invoke(main, [*command, str(tmp_path / "notes.db")])
+            assert result.exit_code == 2 and "not the store of a study" in result.stderr
+
+    def test_another_database_is_left_alone(self, whole, tmp_path):
+        place = tmp_path / "other.db"
+        connection = sqlite3.connect(place)
+        connection.execute("CREATE TABLE precious (x)")
+        connection.commit()
+        connection.close()
+        for more in ([], ["--restart"]):
+            result = CliRunner().invoke(main, ["fragility", str(whole[0]), "--store", str(place), *more])
+            assert result.exit_code == 2 and "another database" in result.stderr
+        assert "precious" in dump(place)[1]
+
+    def test_a_store_that_is_not_there_is_not_made(self, tmp_path):
+        result = CliRunner().invoke(main, ["results", str(tmp_path / "none.db")])
+        assert result.exit_code == 2 and "no such store" in result.stderr
+        assert not (tmp_path / "none.db").exists()
+
+    def test_a_store_of_a_later_version(self, whole, tmp_path):
+        place = tmp_path / "study.db"
+        place.write_bytes(whole[2].read_bytes())
+        connection = sqlite3.connect(place)
+        connection.execute("PRAGMA user_version = 99")
+        connection.close()
+        assert "later version" in CliRunner().invoke(main, ["results", str(place)]).stderr
+
+
+def test_intensities_are_those_of_their_definitions():
+    scales = Scales(p=np.array([2.0]), lambda_=np.array([0.25]), gravity=np.array([4.903325]))
+    found = [float(intensity(name, np.array([0.5]), np.array([0.3]), scales)[0]) for name in MEASURES]
+    assert found == pytest.approx([0.5, 0.3, 0.5 * 9.80665 / (4.903325 * 0.25), 2.0 * 0.3 / (4.903325 * 0.25)])
+
+
+def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
+    block = load_structure(EXAMPLES / "block.yaml").model_copy(update={"gravity": 3.7})
+    motion = GroundMotion("pulse", 0.01, np.concatenate([np.zeros(5), np.sin(np.linspace(0, 6.28, 100)), np.zeros(5)]))
+    lam = block.uplift(1)  # type: ignore[arg-type]
+    scales = Scales(p=1.0, lambda_=lam, gravity=block.gravity)
+    unit = float(intensity("PGA/(g lambda)", motion.pga, 1.0, scales))
+    for a, uplifts in ((0.999, False), (1.001, True)):
+        history = respond(block, motion.scaled(a / unit), models=("linear2",))["linear2"]
+        assert (history.peak_ratio != 0) == uplifts
+
+
+def test_columns_of_a_row_are_those_of_the_table(whole):
+    connection = sqlite3.connect(whole[2])
+    names = [row[1] for row in connection.execute("PRAGMA table_info(run)")]
+    connection.close()
+    assert tuple(names) == COLUMNS
+
+
+def test_a_file_that_changes_while_the_study_runs_stops_it(tmp_path, monkeypatch):
+    (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+    path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*.csv", "accel.csv"))
+    with Store.writing(tmp_path / "study.db") as kept, engines.threads(1) as workers:
+        prepared = prepare(load_study(path), kept)
+        prepared = replace(prepared)
+        (tmp_path / "accel.csv").write_text("t,accel_g\n0,0\n0.01,1\n", encoding="utf-8")
+        with pytest.raises(InputError, match="has changed while the study ran"):
+            run(prepared, kept, workers)
+
+
+def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
+    block = load_structure(EXAMPLES / "block.yaml")
+    equivalence = equivalent_block(block)
+    unit = block.gravity * equivalence.positive.lambda_
+    period = 2 * np.pi / (3 * equivalence.positive.p)  # omega/p = 3: one step below a = 3.4
+    pulse = parse_pulse(f"sine:1g:{period!r}s")
+
+    def overturns(a):
+        shaking = replace(pulse, amplitude=a * unit)
+        return exact_response(equivalence, shaking, kappa=2, gravity=block.gravity).peak_ratio is None
+
+    boundary = brentq(lambda a: 1.0 if overturns(a) else -1.0, 1.01, 3.0, xtol=1e-9)
+    path = tmp_path / "step.yaml"
+    for method in ("stripes", "ida"):
+        path.write_text(
+            f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [{{pulse: 'sine:1g:{period!r}s'}}]\nmethod: {method}\n"
+            "levels: {measure: PGA/(g lambda), least: 0.805, most: 3.005, count: 1101}\nmodel: linear2\n",
+            encoding="utf-8",
+        )
+        result = CliRunner().invoke(main, ["fragility", str(path), "--json", "--restart"])
+        assert result.exit_code == 0, result.stderr
+        uplift, overturning = json.loads(result.stdout)["curves"]
+        for curve, exact in ((uplift, 1.0), (overturning, boundary)):
+            assert curve["kind"] == "step"
+            step = curve["median"]
+            assert step["low"] < exact < step["high"] and step["high"] - step["low"] == pytest.approx(0.002)
+
+
+def test_the_example_runs_with_pictures_and_tables(tmp_path):
+    study = EXAMPLES / "study" / "near_fault.yaml"
+    where = ["--store", "near.db", "--pictures", "drawn"]
+    result = CliRunner().invoke(main, ["fragility", str(study), *where])
+    assert result.exit_code == 0, result.stderr
+    assert "a year" in result.stdout and "c2" in result.stdout
+    assert len(list((tmp_path / "drawn").glob("*.png"))) == 11
+    for name in ("runs.csv", "runs.parquet"):
+        assert CliRunner().invoke(main, ["results", "near.db", "--out", name]).exit_code == 0
+    from pyarrow import parquet
+
+    table = parquet.read_table(tmp_path / "runs.parquet").to_pydict()
+    with (tmp_path / "runs.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    with Store.reading(tmp_path / "near.db") as kept:
+        plan = kept.plan()
+        assert len(rows) == len(table["run"]) == plan.total
+        exact = kept.runs(0, plan.total)
+    assert table["phi/phi_cr"] == [None if np.isnan(each) else each for each in exact.peak_ratio.tolist()]
+    levels = {float(row["level"]) for row in rows}
+    assert sorted(levels) == pytest.approx(plan.levels, rel=1e-8)
+    for row in rows[:: len(rows) // 50]:
+        assert float(row["PGA [g]"]) == pytest.approx(float(row["level"]), rel=1e-8)
+        assert (row["phi/phi_cr"] == "") == (row["outcome"] == "overturns")
+
+
+def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
+    path = write(tmp_path, STUDY.replace("method: stripes", "method: ida"), count=6)
+    result = CliRunner().invoke(main, ["fragility", str(path), "--json", "--pictures", "drawn"])
+    assert result.exit_code == 0, result.stderr
+    with Store.reading(tmp_path / "study.db") as kept:
+        plan, definition = kept.plan(), load_study(path).definition
+        found = assess.find(kept, plan, "uncertain")
+    (_, _, overturning) = assess.curves(found, "uncertain", definition, None)
+    x, over = found.intensities("PGA/(g lambda)"), found.exceeds("overturning")
+    each = assess.ladders(found, x, over)
+    assert len(each.lower) == 4 * 3 * 2  # samples, records, polarities
+    table = over.reshape(4, 3, 6, 2)
+    for k, (sample, record, polarity) in enumerate(np.ndindex(4, 3, 2)):
+        fallen = np.flatnonzero(table[sample, record, :, polarity])
+        first = int(fallen[0]) if fallen.size else 6
+        assert each.record[k] == record
+        assert each.lower[k] == (plan.levels[first - 1] if first else 0)
+        assert each.upper[k] == (plan.levels[first] if first < 6 else np.inf)
+        seen = overturning.seen.exceeded.reshape(4, 3, 6, 2)[sample, record, :, polarity]
+        assert seen.tolist() == [level >= first for level in range(6)]
+    assert assess.peaks(found).shape == (24, 6)
+    assert (tmp_path / "drawn" / "uncertain-ida.png").exists()
+
+
+def test_check_says_what_would_be_run_and_runs_nothing(tmp_path):
+    path = write(tmp_path, count=5)
+    result = CliRunner().invoke(main, ["fragility", str(path), "--check", "--json"])
+    assert json.loads(result.stdout)["runs"] == 5 * 3 * 5 * 2
+    assert "150" in CliRunner().invoke(main, ["fragility", str(path), "--check"]).stdout
+    assert [each.name for each in tmp_path.iterdir()] == ["study.yaml"]
