@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import signal
 import sqlite3
 import subprocess
 import sys
@@ -222,6 +223,18 @@ def test_killed_and_run_again_it_is_as_if_nothing_had_happened(long_study, tmp_p
     assert dump(place) == dump(whole)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no interrupt to send to one process")
+def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path):
+    place = tmp_path / "interrupted.db"
+    process = program("fragility", long_study[0], "--store", place, "--jobs", 1)
+    wait_until_some_are_finished(place, process)
+    process.send_signal(signal.SIGINT)
+    out, said = process.communicate()
+    assert process.returncode == 130 and not out
+    assert said.endswith(f"interrupted: what was finished is in {place}; the same command goes on from there\n")
+    assert 0 < finished(place) < long_study[1].plan.total
+
+
 def test_while_it_runs_others_read_and_do_not_write(long_study, tmp_path):
     path, prepared, _ = long_study
     place = tmp_path / "busy.db"
@@ -376,6 +389,7 @@ class TestBadParts:
         path = write(tmp_path, f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [zero.csv]\nmethod: cloud\n")
         result = CliRunner().invoke(main, ["fragility", str(path)])
         assert result.exit_code == 2 and "no record can be used" in result.stderr
+        assert not (tmp_path / "study.db").exists()
 
     def test_a_structure_too_stocky_for_its_kinematics(self, tmp_path):
         (tmp_path / "stocky.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")

@@ -145,22 +145,20 @@ class Store:
         StoreError
             If the system refuses: a full disk.
         """
-        with _connected(path) as connection:
-            try:
-                connection.execute("PRAGMA busy_timeout = 0")
-                connection.execute("BEGIN IMMEDIATE")
-            except sqlite3.OperationalError as error:
-                if error.sqlite_errorcode != sqlite3.SQLITE_BUSY:
-                    raise
-                hint = "wait for it to end; `rocking results` shows what is there so far"
-                raise InputError(Problem("another process is at work on this study", str(path), hint=hint)) from None
-            connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
-            store = cls(path, connection)
-            try:
-                yield store
-            finally:
-                if connection.in_transaction:  # not after a full disk, which has undone the last one
-                    connection.execute("COMMIT")
+        unused = not path.exists()
+        try:
+            with _connected(path) as connection:
+                _lock(path, connection)
+                store = cls(path, connection)
+                try:
+                    yield store
+                finally:
+                    unused = unused and store.empty
+                    if connection.in_transaction:  # not after a full disk, which has undone the last one
+                        connection.execute("COMMIT")
+        finally:
+            if unused:  # the study was refused: leave nothing behind
+                path.unlink(missing_ok=True)
 
     @classmethod
     @contextmanager
@@ -308,6 +306,19 @@ def _connected(path: Path) -> Iterator[sqlite3.Connection]:
     finally:
         if connection is not None:
             connection.close()
+
+
+def _lock(path: Path, connection: sqlite3.Connection) -> None:
+    """Begin a transaction that keeps others from writing."""
+    try:
+        connection.execute("PRAGMA busy_timeout = 0")
+        connection.execute("BEGIN IMMEDIATE")
+    except sqlite3.OperationalError as error:
+        if error.sqlite_errorcode != sqlite3.SQLITE_BUSY:
+            raise
+        hint = "wait for it to end; `rocking results` shows what is there so far"
+        raise InputError(Problem("another process is at work on this study", str(path), hint=hint)) from None
+    connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
 
 
 def _check(path: Path, connection: sqlite3.Connection) -> None:
