@@ -8,18 +8,15 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
-from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli import motions, options, shaking, terminal
 from rocking_cli.cli.pictures import write_picture
 
 if TYPE_CHECKING:
     from rocking_cli.cli.responses import Runs
-    from rocking_cli.core import Equivalence, Mechanism
     from rocking_cli.dynamics.history import History
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.base import GroundMotion
-    from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulse_fit import PulseFit
-    from rocking_cli.excitation.pulses import Pulse
 
 # The names of the models and of the pulses that are fitted stand here again so that `--help` needs no numpy.
 NAMES = ("nonlinear", "linear1", "linear2")
@@ -190,27 +187,27 @@ def command(
 
         check_parquet(out)
     mechanism = structures.load([file] if file else [])[0]
-    equivalence = _equivalence(mechanism)
+    equivalence = shaking.equivalence(mechanism)
     as_read, factor, shape = None, 1.0, None
     if record is not None:
-        as_read = _read("record", record, dt, units, channel)
+        as_read = shaking.read("record", record, dt, units, channel)
     elif pulse is not None:
-        shape, as_read = _make(pulse)
+        shape, as_read = shaking.make(pulse)
     if as_read is not None:
         if vertical is not None:
             own = dt if vertical_dt is None else vertical_dt
-            as_read = replace(as_read, vertical=_read("vertical", vertical, own, units, vertical_channel))
-        factor = _judge(as_read, equivalence, scale, target_pga, target_pgv)
+            as_read = replace(as_read, vertical=shaking.read("vertical", vertical, own, units, vertical_channel))
+        factor = shaking.judge(as_read, equivalence, scale, target_pga, target_pgv)
     signs = (1, -1) if polarity == "both" else (int(polarity),)
-    shaking = {sign: as_read.scaled(sign * factor) if as_read is not None else None for sign in signs}
-    first = shaking[signs[0]]
+    under = {sign: as_read.scaled(sign * factor) if as_read is not None else None for sign in signs}
+    first = under[signs[0]]
     fit, alone = None, None
     if with_pulse is not None and first is not None:
         fit = _find(first, with_pulse)
         alone = fit.alone(first)
     chosen = cast("tuple[ModelName, ...]", models)
-    runs = {sign: _respond(mechanism, motion, chosen, release, tail, rtol) for sign, motion in shaking.items()}
-    pulse_run = _respond(mechanism, alone, chosen, release, tail, rtol) if alone is not None else None
+    runs = {sign: shaking.respond(mechanism, motion, chosen, release, tail, rtol) for sign, motion in under.items()}
+    pulse_run = shaking.respond(mechanism, alone, chosen, release, tail, rtol) if alone is not None else None
     if out is not None:
         _write(out, runs, pulse_run, first)
     title = structures.label(mechanism)
@@ -242,37 +239,6 @@ def command(
         terminal.result(note)
 
 
-def _equivalence(mechanism: Mechanism) -> Equivalence:
-    from rocking_cli.core import equivalent_block
-    from rocking_cli.errors import MechanismError
-
-    try:
-        return equivalent_block(mechanism)
-    except MechanismError as error:
-        raise MechanismError(f"{mechanism.name}: {error}") from error
-
-
-def _read(what: str, file: str, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
-    from rocking_cli.excitation.records import read_record
-
-    motion = read_record(file, dt=dt, units=units, channel=channel)
-    terminal.note(
-        f"{what}: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:g} s, "
-        f"in {motion.unit}, PGA = {motion.pga:.4g} g"
-    )
-    return motion
-
-
-def _make(specification: str) -> tuple[Pulse, GroundMotion]:
-    from rocking_cli.excitation.base import STANDARD_GRAVITY
-    from rocking_cli.excitation.pulses import parse_pulse
-
-    pulse = parse_pulse(specification)
-    amplitude = pulse.amplitude / STANDARD_GRAVITY
-    terminal.note(f"pulse: {pulse.title}, {amplitude:.4g} g, period {pulse.period:.4g} s, lasts {pulse.duration:.4g} s")
-    return pulse, pulse.sampled()
-
-
 def _find(motion: GroundMotion, shape: str) -> PulseFit:
     """The pulse of a shape, or of the best, that captures most energy of the velocity of a motion."""
     from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -286,55 +252,6 @@ def _find(motion: GroundMotion, shape: str) -> PulseFit:
         f"{100 * fit.captured:.0f} % of the energy of the velocity"
     )
     return fit
-
-
-def _judge(
-    motion: GroundMotion,
-    equivalence: Equivalence,
-    scale: float | None,
-    target_pga: float | None,
-    target_pgv: float | None,
-) -> float:
-    """The factor on the motion, after saying what is doubtful about a record, for this structure too."""
-    from rocking_cli.excitation.doubts import doubts
-    from rocking_cli.excitation.measures import measure
-
-    measured = measure(motion)
-    if motion.format != "pulse":  # what a formula leaves the ground with is meant
-        _warn(motion, measured, equivalence)
-    if motion.vertical is not None:
-        motions.warn(motion.vertical, doubts(motion.vertical, measure(motion.vertical)))
-    factor = motions.factor(motion, measured, scale, target_pga, target_pgv)
-    if factor != 1:
-        pga, pgv = abs(factor) * measured.pga, abs(factor) * measured.pgv
-        terminal.note(f"scaled by {factor:.6g}: PGA = {pga:.4g} g, PGV = {pgv:.4g} m/s")
-    return factor
-
-
-def _warn(motion: GroundMotion, measured: Measures, equivalence: Equivalence) -> None:
-    from rocking_cli.excitation.doubts import coarse_for, doubts
-
-    p = max(equivalence.positive.p, equivalence.negative.p)
-    motions.warn(motion, doubts(motion, measured) + coarse_for(motion, p))
-
-
-def _respond(
-    mechanism: Mechanism,
-    motion: GroundMotion | None,
-    models: tuple[ModelName, ...],
-    release: float | None,
-    tail: float,
-    rtol: float,
-) -> dict[ModelName, History]:
-    from rocking_cli.cli.work import say_if_compiling
-    from rocking_cli.dynamics.history import respond
-    from rocking_cli.errors import MechanismError
-
-    say_if_compiling()
-    try:
-        return respond(mechanism, motion, models=models, release=release, tail=tail, rtol=rtol)
-    except MechanismError as error:
-        raise MechanismError(f"{mechanism.name}: {error}") from error
 
 
 def _write(path: Path, runs: Runs, pulse_run: dict[ModelName, History] | None, motion: GroundMotion | None) -> None:
