@@ -57,6 +57,14 @@ class Ring:
         rows = np.stack([np.ones_like(angle), point.imag, -point.real, -lever.imag], axis=-1)
         return rows, lever.real
 
+    def thrust_radius(self, angle: Reals, state: Reals) -> Reals:
+        """Where on the radial joints at `angle` the line of thrust passes: the radius at which no moment acts."""
+        M0, Fx, Fy, lam = state
+        point, area, moment = self.joint(angle, 0)
+        return np.asarray(
+            (moment.real + lam * moment.imag - M0) / (point.imag * (Fx + lam * area) - point.real * (Fy - area))
+        )
+
     def excess(self, angle: Reals, face: int, state: Reals) -> Reals:
         """How far the line of thrust passes outside a face of the joints, as a moment; negative inside."""
         rows, weight = self.balance(angle, face)
@@ -154,13 +162,13 @@ def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
 def _settle(ring: Ring, hinges: Reals, joints: Reals) -> Reals:
     """Move hinges from the joints of a scan to where the line of thrust touches the ring."""
     for _ in range(ROUNDS):
-        state = _thrust(ring, hinges)
+        state = thrust(ring, hinges)
         moved = np.array([float(ring.worst(np.array(h), int(f), state)) for h, f in zip(hinges, FACES, strict=True)])
         settled = np.abs(moved - hinges).max() <= 1e-14 * ring.beta
         hinges = moved
         if settled:
             break
-    state = _thrust(ring, hinges)
+    state = thrust(ring, hinges)
     furthest = max(float(ring.excess(ring.worst(joints, face, state), face, state).max()) for face in (-1, 1))
     if furthest > 1e-9 * ring.thickness * ring.beta:
         raise MechanismError("the search for the arch's hinges did not settle")
@@ -182,7 +190,7 @@ def least_thickness(beta: float, voussoirs: int | None) -> float:
     return high
 
 
-def _thrust(ring: Ring, hinges: Reals) -> Reals:
+def thrust(ring: Ring, hinges: Reals | Hinges) -> Reals:
     """Reaction at the left springing and lambda (M0, Fx, Fy, lambda) of the line of thrust through the hinges."""
     balances = [ring.balance(np.array(angle), int(face)) for angle, face in zip(hinges, FACES, strict=True)]
     return np.linalg.solve(np.stack([rows for rows, _ in balances]), np.array([weight for _, weight in balances]))

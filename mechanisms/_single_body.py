@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2
+from math import atan2, isclose
 
-from rocking_cli.core import Direction, Mechanism, Reals, RigidMotion, rotation
+from rocking_cli.core import (
+    Angle,
+    Direction,
+    Hinge,
+    Length,
+    Mechanism,
+    Outline,
+    Reals,
+    RigidMotion,
+    Sketch,
+    rotation,
+)
 
 
 class SingleBody(Mechanism):
@@ -31,3 +42,25 @@ class SingleBody(Mechanism):
 
     def critical_rotation(self, direction: Direction) -> float:
         return self.alpha(direction)  # the centroid stands over the pivot
+
+    def outlines(self) -> Sequence[Outline]:
+        """The shapes of the body; none where they are not known."""
+        return ()
+
+    def lengths(self) -> Sequence[Length]:
+        """The fields that are lengths, to show beside R and alpha."""
+        return ()
+
+    def sketch(self) -> Sketch:
+        (body,) = self.bodies()
+        sides = {Direction.POSITIVE: "O", Direction.NEGATIVE: "O'"}
+        pivots = dict(zip(sides, reversed(self.feet()), strict=True))
+        alike = isclose(self.alpha(Direction.POSITIVE), self.alpha(Direction.NEGATIVE), rel_tol=1e-9)
+        shown = [Direction.POSITIVE] if alike else list(Direction)
+        subscript = {Direction.POSITIVE: "" if alike else "₊", Direction.NEGATIVE: "₋"}
+        return Sketch(
+            outlines={body.name: self.outlines()} if self.outlines() else {},
+            hinges={side: [Hinge(letter, pivots[side], (body.name,))] for side, letter in sides.items()},
+            lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", pivots[s], body.centroid, s) for s in shown)],
+            angles=[Angle(f"α{subscript[s]}", pivots[s], pivots[s] + 1j, body.centroid, s) for s in shown],
+        )

@@ -5,19 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
-from math import ceil, floor, log10, pi, radians
+from math import ceil, degrees, floor, log10, pi, radians
 from typing import ClassVar, Self
 
 import numpy as np
 from pydantic import model_validator
 
-from mechanisms._arch_collapse import ArchCannotStand, Ring, collapse_hinges, least_thickness
+from mechanisms._arch_collapse import ArchCannotStand, Ring, collapse_hinges, least_thickness, thrust
 from rocking_cli.core import (
+    Angle,
     Body,
     Direction,
+    Hinge,
+    Length,
+    Line,
     Mechanism,
+    Outline,
     Reals,
     RigidMotion,
+    Sketch,
     annular_sector,
     four_bar,
     four_bar_limit,
@@ -27,6 +33,9 @@ from rocking_cli.core import (
     rotation,
 )
 from rocking_cli.errors import MechanismError
+
+FINE = radians(1.0)  # of an arc that is drawn straight
+DRAWN = 200  # voussoirs of a picture, at most
 
 
 class Arch(Mechanism):
@@ -116,6 +125,66 @@ class Arch(Mechanism):
 
     def limit(self, direction: Direction) -> float:
         return four_bar_limit(direction, *self.hinges(direction))
+
+    def sketch(self) -> Sketch:
+        names = [body.name for body in self.bodies()]
+        r, half = self.radius, self.thickness / 2
+        springing = np.exp(1j * (pi + self._beta) / 2)  # the left one; the right one is its mirror image
+        joints = np.linspace(0.0, self._beta, (self.voussoirs or DRAWN) + 1)
+        parted = joints if self.voussoirs is not None and self.voussoirs <= DRAWN else joints[[0, -1]]
+        outlines = {}
+        for name, (start, end) in zip(names, pairwise(self._cuts), strict=True):
+            edges = [start, *parted[(parted > start + 1e-9) & (parted < end - 1e-9)], end]
+            outlines[name] = [self._sector(*each) for each in pairwise(edges)]
+        inner, outer = complex((r - half) * springing), complex((r + half) * springing)
+        beyond = outer + (outer - inner)
+        at = ", ".join(f"{degrees(angle):.4g}°" for angle in self.hinge_angles)
+        return Sketch(
+            outlines=outlines,
+            uniform=True,
+            hinges={direction: self._lettered(direction) for direction in Direction},
+            lengths=[
+                Length("r", 0j, complex(r * springing * np.exp(-0.3j * self._beta))),
+                Length("t", 1j * (r - half), 1j * (r + half)),
+            ],
+            angles=[Angle("β", 0j, complex(r * springing), -complex(r * springing).conjugate())],
+            lines=[self._thrust_line(direction) for direction in Direction],
+            # The ground lies under the springings, which are walked along from left to right.
+            ground=[(beyond, 2 * inner - outer), (-(2 * inner - outer).conjugate(), -beyond.conjugate())],
+            notes=[
+                f"A, B, C, D at {at} from the left springing (positive) or the right one (negative)",
+                *(
+                    ["joints of the voussoirs: too many to be drawn"]
+                    if len(parted) < len(joints) - 1 and self.voussoirs
+                    else []
+                ),
+            ],
+        )
+
+    def _sector(self, start: float, end: float) -> Outline:
+        """The part of the ring between two angles from the left springing."""
+        half = self.thickness / 2
+        turns = np.exp(1j * ((pi + self._beta) / 2 - np.linspace(start, end, max(2, ceil((end - start) / FINE) + 1))))
+        return [*((self.radius + half) * turns).tolist(), *((self.radius - half) * turns[::-1]).tolist()]
+
+    def _lettered(self, direction: Direction) -> list[Hinge]:
+        """The hinges with the segments on either side; at a springing there is one, and the ground."""
+        cuts = np.array(self._cuts)
+        hinges = []
+        for letter, point, angle in zip("ABCD", self.hinges(direction), self.hinge_angles, strict=True):
+            cut = int(np.abs(cuts - (angle if direction > 0 else self._beta - angle)).argmin())
+            sides = [f"segment {k}" for k in (cut, cut + 1) if 0 < k < len(cuts)]
+            hinges.append(Hinge(letter, point, tuple(sides)))
+        return hinges
+
+    def _thrust_line(self, direction: Direction) -> Line:
+        ring = Ring(self.thickness / self.radius, self._beta)
+        # Of voussoirs the line counts at their joints; without, everywhere.
+        angles = np.linspace(0.0, self._beta, (self.voussoirs or DRAWN) + 1)
+        angles = np.unique([*angles, *self.hinge_angles])
+        points = ring.thrust_radius(angles, thrust(ring, self.hinge_angles)) * self.radius
+        along = points * np.exp(1j * (pi / 2 + direction * (self._beta / 2 - angles)))
+        return Line(f"line of thrust at uplift, {self.uplift(direction):.4g} g", along.tolist(), direction)
 
 
 def _round_up(value: float, digits: int) -> float:

@@ -10,17 +10,22 @@ import numpy as np
 from pydantic import model_validator
 
 from rocking_cli.core import (
+    Angle,
     Body,
     Direction,
+    Hinge,
+    Length,
     Mechanism,
     Reals,
     RigidMotion,
+    Sketch,
     box,
     four_bar,
     four_bar_limit,
     geometry_error,
     length,
     quantity,
+    rectangle,
 )
 
 
@@ -104,3 +109,39 @@ class AsymmetricFrame(Mechanism):
             ):
                 end = turn
         return end
+
+    def sketch(self) -> Sketch:
+        left, beam, right = bodies = self.bodies()
+        b, top, span = self.column_width / 2, 1j * self.left_height, self.spacing
+        deep = top - 1j * self.right_height  # of the right foot
+        lower = span + deep if deep.imag < 0 else 0j  # foot
+        base = 1j * lower.imag
+        sizes = [(2 * b, self.left_height), (span + 2 * b, self.beam_depth), (2 * b, self.right_height)]
+        joined = [(left.name,), (left.name, beam.name), (beam.name, right.name), (right.name,)]
+        lengths = [
+            Length("2b", lower - b, lower + b),
+            Length("2H", complex(-b), -b + top),
+            Length("2H₁", span + b + deep, span + b + top),
+            Length("L", base, base + span),
+            Length("2h", span + b + top, span + b + top + 1j * self.beam_depth),
+        ]
+        angles = []
+        for direction in Direction:
+            A, B, C, D = self.hinges(direction)
+            lengths += [
+                Length("R₀", A, left.centroid, direction),
+                Length("R₁", D, right.centroid, direction),
+                Length("r_BC", B, beam.centroid, direction),
+            ]
+            angles += [Angle("φ₀", A, A + 1, B, direction), Angle("ψ_BC", B, C, beam.centroid, direction)]
+        return Sketch(
+            outlines={body.name: [rectangle(body.centroid, *size)] for body, size in zip(bodies, sizes, strict=True)},
+            uniform=True,
+            hinges={
+                direction: [Hinge(*hinge) for hinge in zip("ABCD", self.hinges(direction), joined, strict=True)]
+                for direction in Direction
+            },
+            lengths=lengths,
+            angles=angles,
+            ground=[(-4 * b + 0j, span / 2 + 0j, span / 2 + deep, span + 4 * b + deep)],
+        )

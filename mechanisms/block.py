@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import pi
 from typing import ClassVar
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, box, length
+from rocking_cli.core import Body, Direction, Length, Outline, Sketch, box, length, rectangle
 
 
 class Block(SingleBody):
@@ -29,3 +30,13 @@ class Block(SingleBody):
 
     def limit(self, direction: Direction) -> float:
         return pi / 2  # it lies on its side
+
+    def outlines(self) -> Sequence[Outline]:
+        return (rectangle(0.5j * self.height, self.width, self.height),)
+
+    def lengths(self) -> Sequence[Length]:
+        left, right = self.feet()
+        return Length("2b", left, right), Length("2h", left, left + 1j * self.height)
+
+    def sketch(self) -> Sketch:
+        return replace(super().sketch(), uniform=True)

@@ -9,7 +9,9 @@ from typing import ClassVar, Literal, Self
 from pydantic import model_validator
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, geometry_error, length, quantity
+from rocking_cli.core import Body, Direction, Length, Outline, geometry_error, length, quantity
+
+SHELL = 0.97  # size of the inner cone with which a thin shell is drawn
 
 
 class Cone(SingleBody):
@@ -54,3 +56,15 @@ class Cone(SingleBody):
 
     def limit(self, direction: Direction) -> float:
         return pi - atan2(self.height, self.base_radius)  # it lies on its flank
+
+    def outlines(self) -> Sequence[Outline]:
+        left, right = self.feet()
+        apex = 1j * self.height
+        if self.kind == "solid":
+            return ((left, right, apex),)
+        k = self.inner_ratio or SHELL  # its section is that of a shell, cut through the axis
+        return ((left, k * left, k * apex, k * right, right, apex),)
+
+    def lengths(self) -> Sequence[Length]:
+        left, right = self.feet()
+        return Length("r", 0j, right), Length("h", left, left + 1j * self.height)

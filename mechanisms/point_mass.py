@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import pi
 from typing import ClassVar
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, length
+from rocking_cli.core import Body, Direction, Length, Outline, Sketch, disc, length, rectangle
 
 
 class PointMass(SingleBody):
@@ -29,3 +30,16 @@ class PointMass(SingleBody):
 
     def limit(self, direction: Direction) -> float:
         return pi / 2 + self.alpha(direction)  # the mass is on the ground
+
+    def outlines(self) -> Sequence[Outline]:
+        thin = 0.02 * max(self.height, self.base_width)
+        base = rectangle(0.5j * thin, self.base_width, thin)
+        strut = rectangle(0.5j * (thin + self.height), 0.6 * thin, self.height - thin)
+        return base, strut, disc(1j * self.height, 2.5 * thin)
+
+    def lengths(self) -> Sequence[Length]:
+        left, right = self.feet()
+        return Length("2b", left, right), Length("h", left, left + 1j * self.height)
+
+    def sketch(self) -> Sketch:
+        return replace(super().sketch(), notes=["the mass is a point, strut and base have none: drawn at will"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import combinations
 from math import pi, radians
@@ -12,7 +13,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, geometry_error, length, polygon, quantity
+from rocking_cli.core import Body, Direction, Length, Outline, Sketch, geometry_error, length, polygon, quantity
 
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
 Vertex = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
@@ -123,6 +124,26 @@ class RigidBody(SingleBody):
         above = arms[arms.imag > LEVEL * abs(arms).max()]
         turns = np.angle(above) if direction > 0 else pi - np.angle(above)
         return float(turns.min())  # the next corner meets the ground
+
+    def outlines(self) -> Sequence[Outline]:
+        return ([complex(*vertex) for vertex in self.polygon],) if self.polygon is not None else ()
+
+    def lengths(self) -> Sequence[Length]:
+        if self.polygon is None:
+            return ()
+        # Its size, and its foot: the corners themselves are too many to be written on it.
+        x, y = zip(*self.polygon, strict=True)
+        left, right = self._feet
+        return (
+            Length("foot", left, right),
+            Length("height", complex(min(x), min(y)), complex(min(x), max(y))),
+            Length("width", complex(min(x), max(y)), complex(max(x), max(y))),
+        )
+
+    def sketch(self) -> Sketch:
+        if self.polygon is not None:
+            return replace(super().sketch(), uniform=True)
+        return replace(super().sketch(), notes=["its shape is not given: a disc of the same mass and inertia"])
 
 
 def _meet(a: complex, b: complex, c: complex, d: complex) -> bool:

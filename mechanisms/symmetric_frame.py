@@ -8,7 +8,24 @@ from typing import ClassVar
 
 import numpy as np
 
-from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, length, quantity, rotation
+from rocking_cli.core import (
+    Angle,
+    Body,
+    Direction,
+    Hinge,
+    Length,
+    Mechanism,
+    Reals,
+    RigidMotion,
+    Sketch,
+    box,
+    length,
+    quantity,
+    rectangle,
+    rotation,
+)
+
+DRAWN = 6  # columns of a picture, at most
 
 
 class SymmetricFrame(Mechanism):
@@ -32,12 +49,13 @@ class SymmetricFrame(Mechanism):
     mass_ratio: float = quantity("mass of the beam over that of all columns", symbol="gamma", example=2.0, ge=0, le=1e6)
 
     def bodies(self) -> Sequence[Body]:
-        # All columns move alike: one body with the mass of all of them stands for them.
+        # All columns move alike: one body with the mass of all of them stands for them. The beam only moves
+        # sideways and up: where in it the centroid is changes nothing.
         of_columns = 1 / (1 + self.mass_ratio)
         h = self.column_height / 2
         return (
             box("columns", of_columns, self.column_width, self.column_height, 1j * h),
-            Body("beam", 1 - of_columns, 0.0, 2j * h),
+            Body("beam", 1 - of_columns, 0.0, self._axes[-1] / 2 + 2j * h + 0.5j * self.column_width),
         )
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
@@ -52,3 +70,36 @@ class SymmetricFrame(Mechanism):
 
     def critical_rotation(self, direction: Direction) -> float:
         return atan2(self.column_width, self.column_height)  # Eq. 37
+
+    @property
+    def _axes(self) -> list[complex]:
+        """Where columns are drawn: their spacing is not given, and changes nothing."""
+        spacing = max(3 * self.column_width, 0.6 * self.column_height)
+        return [complex(k * spacing) for k in range(min(self.columns, DRAWN))]
+
+    def sketch(self) -> Sketch:
+        columns, beam = self.bodies()
+        b, top = self.column_width / 2, 1j * self.column_height
+        right = complex(b)
+        few = f", {DRAWN} of {self.columns} columns" if self.columns > DRAWN else ""
+        return Sketch(
+            outlines={
+                columns.name: [rectangle(columns.centroid, 2 * b, self.column_height)],
+                beam.name: [rectangle(beam.centroid, self._axes[-1].real + 2 * b, 2 * b)],
+            },
+            copies={columns.name: self._axes},
+            hinges={
+                direction: [
+                    Hinge("A", complex(direction * b), (columns.name,)),
+                    Hinge("B", -direction * b + top, (columns.name, beam.name)),
+                ]
+                for direction in Direction
+            },
+            lengths=[
+                Length("2b", complex(-b), right),
+                Length("2h", complex(-b), -b + top),
+                Length("R", right, columns.centroid, Direction.POSITIVE),
+            ],
+            angles=[Angle("α", right, right + 1j, columns.centroid, Direction.POSITIVE)],
+            notes=[f"spacing and depth of the beam are not given and change nothing: drawn at will{few}"],
+        )

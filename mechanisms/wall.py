@@ -8,7 +8,21 @@ from typing import ClassVar
 
 import numpy as np
 
-from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, length, rotation
+from rocking_cli.core import (
+    Angle,
+    Body,
+    Direction,
+    Hinge,
+    Length,
+    Mechanism,
+    Reals,
+    RigidMotion,
+    Sketch,
+    box,
+    length,
+    rectangle,
+    rotation,
+)
 
 
 class Wall(Mechanism):
@@ -50,3 +64,27 @@ class Wall(Mechanism):
 
     def critical_rotation(self, direction: Direction) -> float:
         return atan2(2 * self.thickness, self.height)  # alpha: both pivots and the mid hinge are in line
+
+    def sketch(self) -> Sketch:
+        lower, upper = self.bodies()
+        h, names = self.height / 4, (lower.name, upper.name)
+        feet = {direction: complex(direction * self.thickness / 2) for direction in Direction}
+        left, right = feet[Direction.NEGATIVE], feet[Direction.POSITIVE]
+        return Sketch(
+            outlines={body.name: [rectangle(body.centroid, self.thickness, 2 * h)] for body in (lower, upper)},
+            uniform=True,
+            hinges={
+                direction: [
+                    Hinge("A", foot, names[:1]),
+                    Hinge("B", -foot + 2j * h, names),
+                    Hinge("C", foot + 4j * h, names[1:], slide=1j),
+                ]
+                for direction, foot in feet.items()
+            },
+            lengths=[
+                Length("2b", left, right),
+                Length("4h", left, left + 4j * h),
+                Length("R", right, lower.centroid, Direction.POSITIVE),
+            ],
+            angles=[Angle("α", right, right + 1j, lower.centroid, Direction.POSITIVE)],
+        )

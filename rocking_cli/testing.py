@@ -17,12 +17,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rocking_cli.core import Direction, Mechanism, equivalent_block
+from rocking_cli.core import Direction, Mechanism, equivalent_block, polygon
 from rocking_cli.registry import conformance
 
 STEP = 1e-5  # of phi in difference quotients, whose error is then about 1e-10 of the third derivative
 BEYOND = 1.2  # of the critical rotation: up to where the motion must be smooth,
 REACH = 0.8  # of the kinematic limit, near which derivatives grow without bound
+DRAWN = 2e-3  # how near, over the size of a body, its outlines with their straight sides must come to its inertia
 
 
 class MechanismContract:
@@ -110,3 +111,41 @@ class MechanismContract:
             eta = structure.restitution_from_kinematics(direction)
             before = structure.kinetic_inertia(rest, direction)[0]
             assert eta**2 * structure.kinetic_inertia(rest, direction.opposite)[0] <= before * (1 + 1e-12)
+
+    def test_outlines_are_those_of_the_bodies(self, structure: Mechanism) -> None:
+        """What the sketch names is a body, outlines enclose something, and uniform ones have the body's inertia."""
+        sketch = structure.sketch()
+        bodies = {body.name: body for body in structure.bodies()}
+        assert {*sketch.outlines, *sketch.copies} <= set(bodies)
+        assert all(copies and copies[0] == 0 for copies in sketch.copies.values())
+        for name, outlines in sketch.outlines.items():
+            areas = []
+            for each in outlines:
+                z = np.asarray(each, np.complex128)
+                assert z.size >= 3 and np.isfinite(z).all()
+                areas.append(abs((z.conj() * np.roll(z, -1)).imag.sum()) / 2)
+            assert outlines and min(areas) > 0
+            if not sketch.uniform:
+                continue
+            body = bodies[name]
+            plates = [
+                polygon(name, body.mass * area / sum(areas), each) for area, each in zip(areas, outlines, strict=True)
+            ]
+            centroid = sum(plate.mass * plate.centroid for plate in plates) / body.mass
+            inertia = sum(plate.inertia + plate.mass * abs(plate.centroid - centroid) ** 2 for plate in plates)
+            size = max(abs(corner - body.centroid) for each in outlines for corner in each)
+            assert abs(centroid - body.centroid) <= DRAWN * size
+            np.testing.assert_allclose(inertia, body.inertia, rtol=0, atol=DRAWN * body.mass * size**2)
+
+    def test_hinges_hold_together(self, structure: Mechanism) -> None:
+        """The bodies that a hinge joins never part there; what it joins to the ground stays, or slides as it says."""
+        names = [body.name for body in structure.bodies()]
+        for direction, hinges in structure.sketch().hinges.items():
+            top = min(BEYOND * structure.critical_rotation(direction), REACH * structure.limit(direction))
+            moved = dict(zip(names, structure.motion(np.linspace(0.0, top, 9), direction), strict=True))
+            for hinge in hinges:
+                assert len(hinge.bodies) in (1, 2) and set(hinge.bodies) <= set(names)
+                first, *others = (moved[name].carry(hinge.point)[0] for name in hinge.bodies)
+                gap = first - (others[0] if others else hinge.point)
+                across = (gap / hinge.slide).imag if hinge.slide else gap
+                assert np.abs(across).max() <= 1e-9 * (1 + abs(hinge.point))

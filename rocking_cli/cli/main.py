@@ -15,8 +15,8 @@ from rocking_cli.cli import terminal
 from rocking_cli.errors import RockingError
 
 COMMANDS = (
-    "equiv", "error", "record", "respond", "pulse", "overturning", "spectrum", "equivalent", "fragility", "results",
-    "figure", "mechanisms", "new",
+    "draw", "equiv", "error", "record", "respond", "pulse", "overturning", "spectrum", "equivalent", "fragility",
+    "results", "figure", "mechanisms", "new",
 )  # fmt: skip
 
 
@@ -74,6 +74,7 @@ def main() -> None:
     \b
     Start with:
       rocking new block > block.yaml
+      rocking draw block.yaml
       rocking equiv block.yaml
       rocking record accel.csv
       rocking respond block.yaml --record accel.csv --plot response.png

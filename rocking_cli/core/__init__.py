@@ -18,3 +18,11 @@ from rocking_cli.core.mechanism import Mechanism as Mechanism
 from rocking_cli.core.mechanism import geometry_error as geometry_error
 from rocking_cli.core.mechanism import length as length
 from rocking_cli.core.mechanism import quantity as quantity
+from rocking_cli.core.sketch import Angle as Angle
+from rocking_cli.core.sketch import Hinge as Hinge
+from rocking_cli.core.sketch import Length as Length
+from rocking_cli.core.sketch import Line as Line
+from rocking_cli.core.sketch import Outline as Outline
+from rocking_cli.core.sketch import Sketch as Sketch
+from rocking_cli.core.sketch import disc as disc
+from rocking_cli.core.sketch import rectangle as rectangle

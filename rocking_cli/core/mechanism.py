@@ -16,6 +16,7 @@ from rocking_cli.core.bodies import Body
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.restitution import kinematic_restitution
+from rocking_cli.core.sketch import Sketch
 
 Restitution = Annotated[float, Field(gt=0, le=1)]
 
@@ -74,7 +75,7 @@ class Mechanism(BaseModel, ABC):
 
     A plugin subclasses it, declares its geometry as fields made with `quantity`, and says in `bodies`, `motion`
     and `limit` where its rigid bodies are. Energies, uplift, critical rotation, equivalence and restitution are
-    derived here; a solver may be overridden by its closed form.
+    derived here; a solver may be overridden by its closed form. `sketch` may say how its picture looks.
 
     Where a structure gives no masses its total mass is 1 kg, so that inertias and moments are per kilogram.
     """
@@ -117,6 +118,10 @@ class Mechanism(BaseModel, ABC):
     @abstractmethod
     def limit(self, direction: Direction) -> float:
         """Rotation phi at which the mechanism ends: it lies on the ground or locks [rad]."""
+
+    def sketch(self) -> Sketch:
+        """What a picture shows beside the bodies and their motion; optional, by default nothing."""
+        return Sketch()
 
     def coefficients(self, phi: Reals, direction: Direction) -> Coefficients:
         """Coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8]."""

@@ -8,7 +8,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 WIDTH = 7.2  # inches: the width of a page of text
+DPI = 150
+LONGEST = 95  # characters of a heading
 INK, FAINT, SHADE = "#222222", "#9a9a9a", "#eeeeee"
+TITLE, LABEL, TICK, SMALL = 10, 9, 8, 7  # sizes of type [pt]
+THIN, MEDIUM, BOLD = 0.6, 1.0, 1.6  # weights of line [pt]
+# A structure: bodies apart by darkness too, marks in ink, what is measured in blue, thrust in a dash of its own.
+BODIES = ("#dfe6ec", "#f1e2c6", "#c2cdd8")
+EARTH, MEASURE = "#8a7f70", "#2b5d86"
+CURSOR = "#c4371a"
+TRACE: dict[str, Any] = {"color": INK, "linestyle": "-", "linewidth": 0.9}
+THRUST: dict[str, Any] = {"color": "#b3541e", "linestyle": (0, (3, 1)), "linewidth": 1.8}
 # Distinct in grey by darkness, dash and weight as well as by hue; the heaviest shows on both sides of the others.
 LINES = {
     "nonlinear": {"color": "#111111", "linestyle": "-", "linewidth": 1.9},
@@ -42,7 +52,7 @@ def distinct(k: int) -> dict[str, Any]:
 
 def new_figure(height: float) -> Figure:
     """An empty figure of the common width; `height` in inches."""
-    return Figure(figsize=(WIDTH, height), dpi=150, layout="constrained")
+    return Figure(figsize=(WIDTH, height), dpi=DPI, layout="constrained")
 
 
 def note(axes: Axes, text: str, height: float = 0.96) -> None:

@@ -1,0 +1,86 @@
+"""`rocking draw`: a structure at rest and displaced."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rocking_cli.cli import options, terminal
+from rocking_cli.cli.pictures import write_picture
+
+if TYPE_CHECKING:
+    from rocking_cli.core import Angle, Length, Mechanism
+    from rocking_cli.studies.picture import Picture
+
+
+def _ratio(ctx: click.Context, param: click.Parameter, value: float) -> float:
+    if not value > 0:
+        raise click.BadParameter(f"{value:g} is not a multiple of phi_cr above 0.", ctx, param)
+    return value
+
+
+@click.command(short_help="The structure at rest and displaced, with hinges and dimensions.")
+@click.argument("file", required=False, type=click.Path())
+@click.option(
+    "--at", "ratio", type=options.Finite(), default=1.0, show_default=True, metavar="RATIO", callback=_ratio,
+    help="How far it is displaced, as a multiple of phi_cr.",
+)  # fmt: skip
+@click.option(
+    "--plot", callback=options.output_path(".png", ".svg", ".pdf"), metavar="FILE.png",
+    help="Where to (.png, .svg or .pdf).  [default: FILE with .png, in this folder; none with --json]",
+)  # fmt: skip
+@options.as_json
+def command(file: str | None, ratio: float, plot: Path | None, as_json: bool) -> None:
+    """Draw a structure at rest with its dimensions, and displaced in both directions, to scale.
+
+    Look at it before you trust a number: is this the mechanism you mean, and were your dimensions read right? Bodies,
+    hinges with the paper's letters, centroids, R and alpha or the angles of the linkage, and for an arch its voussoirs
+    and the line of thrust at uplift.
+
+    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+
+    \b
+    Example:
+      rocking draw frame.yaml
+      rocking draw arch.yaml --at 0.5 --plot arch.svg
+    """
+    from rocking_cli.cli import structures
+    from rocking_cli.errors import InputError, Problem
+    from rocking_cli.files import check_writable, keep_apart
+
+    if plot is None and not as_json:
+        plot = Path(f"{Path(file).stem if file else 'rocking'}.png")
+        check_writable(plot)
+    keep_apart([("--plot", plot)], [file])
+    mechanism = structures.load([file] if file else [])[0]
+    shown = _picture(mechanism)
+    furthest = min(shown.limit[each] / phi_cr for each, phi_cr in shown.phi_cr.items())
+    if ratio > furthest:
+        hint = f"at most {furthest:.4g} times phi_cr"
+        raise InputError(Problem(f"{ratio:g} times phi_cr is beyond the end of the mechanism", field="--at", hint=hint))
+    if plot is not None:
+        from rocking_cli.plotting.structure import draw_structure
+
+        write_picture(plot, draw_structure(shown, structures.label(mechanism), ratio))
+    if as_json:
+        terminal.print_json(shown.as_dict())
+        return
+    terminal.result(structures.label(mechanism))
+    measured: list[Length | Angle] = [*shown.sketch.lengths, *shown.sketch.angles]
+    for each in measured:
+        where = f" ({each.direction.label})" if each.direction is not None else ""
+        terminal.result(f"  {each.text}{where}")
+    for note in shown.sketch.notes:
+        terminal.result(f"  {note}")
+
+
+def _picture(mechanism: Mechanism) -> Picture:
+    from rocking_cli.errors import MechanismError
+    from rocking_cli.studies.picture import picture
+
+    try:
+        return picture(mechanism)
+    except MechanismError as error:
+        raise MechanismError(f"{mechanism.name}: {error}") from error

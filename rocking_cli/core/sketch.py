@@ -1,0 +1,143 @@
+"""What a mechanism may say for its picture beside its bodies and their motion: shapes, hinges, dimensions.
+
+Points are complex numbers x + iy [m] in the rest position. All of it is optional: a picture finds what is missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import degrees
+
+import numpy as np
+
+from rocking_cli.core.kinematics import Direction
+
+Outline = Sequence[complex]
+"""A closed polygon; the last corner need not repeat the first."""
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """A point about which bodies turn against one another, or against the ground.
+
+    Parameters
+    ----------
+    letter : str
+        What the paper calls it; may be empty.
+    point : complex
+        Where it is at rest [m].
+    bodies : tuple of str
+        Names of the two bodies it joins, or of the one that it joins to the ground.
+    slide : complex
+        Where the ground holds it on a guide only: the direction in which it may move.
+    """
+
+    letter: str
+    point: complex
+    bodies: tuple[str, ...]
+    slide: complex = 0j
+
+
+@dataclass(frozen=True)
+class Length:
+    """A length to show, between two points; its number is the distance of the points and nothing else.
+
+    Parameters
+    ----------
+    symbol : str
+        The paper's symbol.
+    start, end : complex
+        [m].
+    direction : Direction, optional
+        The direction it belongs to; None: both.
+    """
+
+    symbol: str
+    start: complex
+    end: complex
+    direction: Direction | None = None
+
+    @property
+    def value(self) -> float:
+        """[m]."""
+        return abs(self.end - self.start)
+
+    @property
+    def text(self) -> str:
+        """Symbol, number and unit."""
+        return f"{self.symbol} = {self.value:.5g} m"
+
+
+@dataclass(frozen=True)
+class Angle:
+    """An angle of less than half a turn to show, at `apex` between the arms to `start` and `end`; see `Length`."""
+
+    symbol: str
+    apex: complex
+    start: complex
+    end: complex
+    direction: Direction | None = None
+
+    @property
+    def value(self) -> float:
+        """[rad]."""
+        return abs(float(np.angle((self.end - self.apex) / (self.start - self.apex))))
+
+    @property
+    def text(self) -> str:
+        """Symbol, number and unit."""
+        return f"{self.symbol} = {degrees(self.value):.4g}°"
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line over the structure at rest, such as a line of thrust, with what it is."""
+
+    name: str
+    points: Sequence[complex]
+    direction: Direction | None = None
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """What a mechanism says for its picture.
+
+    Parameters
+    ----------
+    outlines : mapping of str to sequence of Outline
+        The shapes of a body, by its name. A body without one is drawn as the disc of its mass and inertia.
+    uniform : bool
+        Whether every body is a uniform plate of its outlines; the contract test then holds their inertia to it.
+    copies : mapping of str to sequence of complex
+        Where a body stands for several that move alike: how far each is from the body itself [m], 0 for itself.
+    hinges : mapping of Direction to sequence of Hinge
+        The hinges of each direction. Without any, they are found from the motion, without letters.
+    lengths, angles, lines : sequence
+        What to show at rest.
+    ground : sequence of sequence of complex
+        Lines of the ground, which is on the right of someone who walks along them. Without any: level under the pivots.
+    notes : sequence of str
+        What to know when looking at it, such as sizes that are not given and drawn at will.
+    """
+
+    outlines: Mapping[str, Sequence[Outline]] = field(default_factory=dict)
+    uniform: bool = False
+    copies: Mapping[str, Sequence[complex]] = field(default_factory=dict)
+    hinges: Mapping[Direction, Sequence[Hinge]] = field(default_factory=dict)
+    lengths: Sequence[Length] = ()
+    angles: Sequence[Angle] = ()
+    lines: Sequence[Line] = ()
+    ground: Sequence[Sequence[complex]] = ()
+    notes: Sequence[str] = ()
+
+
+def rectangle(centre: complex, width: float, height: float) -> Outline:
+    """The corners of a level rectangle `width` by `height` [m], anticlockwise from the lower left."""
+    across, up = width / 2, 1j * height / 2
+    return centre - across - up, centre + across - up, centre + across + up, centre - across + up
+
+
+def disc(centre: complex, radius: float, corners: int = 48) -> Outline:
+    """A circle [m] as a polygon."""
+    return tuple(complex(centre + radius * np.exp(2j * np.pi * k / corners)) for k in range(corners))

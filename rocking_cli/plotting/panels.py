@@ -1,0 +1,111 @@
+"""Panels that show parts of the plane to scale: how large they can be, and where on the page they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rocking_cli.plotting import style
+
+GAP = 0.12  # inches between panels and to the edge
+TALLEST = 3.6  # inches
+STACKED = 1.4  # how much larger a structure must become for its panels to stand above one another
+
+
+@dataclass
+class Panel:
+    """A box of the plane [m], and what is needed around it: left, right, below, above [inches].
+
+    `scale` [inches a metre] and `corner`, its lower left one [inches], are found by `lay_out`.
+    """
+
+    low: complex
+    high: complex
+    around: tuple[float, float, float, float]
+    scale: float = 1.0
+    corner: complex = 0j
+
+    @property
+    def plane(self) -> complex:
+        """Width and height of the box [m]."""
+        return self.high - self.low
+
+    @property
+    def room(self) -> complex:
+        """Width and height of what is around it [inches]."""
+        left, right, below, above = self.around
+        return complex(left + right, below + above)
+
+    @property
+    def inches(self) -> complex:
+        """Width and height on the page."""
+        return self.plane * self.scale + self.room
+
+    @property
+    def depth(self) -> float:
+        """From its lower edge up to the level y = 0 [inches]."""
+        return self.around[2] - self.low.imag * self.scale
+
+    def axes(self, figure: Figure) -> Axes:
+        """Axes without a frame where the panel is, in m."""
+        width, height = figure.get_size_inches()
+        x, y, size = self.corner.real, self.corner.imag, self.inches
+        axes = figure.add_axes((x / width, y / height, size.real / width, size.imag / height))
+        left, right, below, above = (each / self.scale for each in self.around)
+        axes.set_xlim(self.low.real - left, self.high.real + right)
+        axes.set_ylim(self.low.imag - below, self.high.imag + above)
+        axes.set_axis_off()
+        return axes
+
+
+def lay_out(left: Panel, middle: Panel, right: Panel, head: float, foot: float) -> float:
+    """Place three panels, side by side at one scale, or the middle one, larger, above the two others.
+
+    Parameters
+    ----------
+    left, middle, right : Panel
+        Their scale, corner and room to the sides are set.
+    head, foot : float
+        What each needs above and below itself [inches].
+
+    Returns
+    -------
+    float
+        The height of all [inches]; corners count from its lower edge.
+    """
+    every = (left, middle, right)
+    together, apart = _largest(every), _largest([middle])
+    if apart < STACKED * together:
+        return _row(every, together, foot) + head
+    low = _row([left, right], _largest([left, right]), foot) + head
+    return _row([middle], apart, low + foot) + head
+
+
+def _largest(panels: Sequence[Panel]) -> float:
+    """The scale at which they fit side by side."""
+    width = style.WIDTH - GAP * (len(panels) + 1) - sum(each.room.real for each in panels)
+    return min(
+        width / sum(each.plane.real for each in panels),
+        *((TALLEST - each.room.imag) / each.plane.imag for each in panels),
+    )
+
+
+def _row(panels: Sequence[Panel], scale: float, base: float) -> float:
+    """Place panels of one height side by side above `base`, the level y = 0 of all in line; the height they reach."""
+    for each in panels:
+        each.scale = scale
+    spare = style.WIDTH - GAP * (len(panels) + 1) - sum(each.inches.real for each in panels)
+    depth = max(each.depth for each in panels)
+    height = max(each.inches.imag - each.depth for each in panels)  # above y = 0
+    x = GAP
+    for each in panels:
+        left, right, below, above = each.around
+        wider = spare / len(panels) / 2
+        above += height - (each.inches.imag - each.depth)
+        each.around = left + wider, right + wider, below + depth - each.depth, above
+        each.corner = complex(x, base)
+        x += each.inches.real + GAP
+    return base + depth + height

@@ -1,0 +1,318 @@
+"""What a picture of a structure shows, as plain data: its parts, their hinges, and where they are at any rotation.
+
+Whoever draws it, on paper or on a page that moves, only has to place the parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Outline, RigidMotion, Sketch, disc
+from rocking_cli.errors import MechanismError, RockingError
+
+Reals = NDArray[np.float64]
+Points = NDArray[np.complex128]
+NODES = 60  # of a table of positions in either direction: straight lines between them are right to 1e-4 of the size
+FURTHEST = 0.999  # of the kinematic limit, at which a linkage has no derivatives
+SAME = 1e-6  # of the size: points that are nearer are one
+STILL = 1e-9  # rate of turning below which a body does not turn
+
+
+@dataclass(frozen=True)
+class Part:
+    """A body as it is drawn, or one of several alike that a body stands for.
+
+    Parameters
+    ----------
+    name : str
+        Name of the body.
+    body : int
+        Its place among the bodies.
+    centroid : complex
+        At rest [m].
+    outlines : tuple of ndarray of complex
+        Closed polygons at rest [m].
+    assumed : bool
+        Whether the outline is only that of a disc of the same mass and inertia.
+    shift : complex
+        How far it is from the body it is a copy of [m].
+    """
+
+    name: str
+    body: int
+    centroid: complex
+    outlines: tuple[Points, ...]
+    assumed: bool
+    shift: complex = 0j
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A hinge of one direction as it is drawn: where it rests [m], and the part that carries it."""
+
+    letter: str
+    point: complex
+    part: int
+    direction: Direction
+    slide: complex = 0j
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A structure to be drawn; see `picture`.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    parts : tuple of Part
+        What is drawn, the first at the back.
+    pins : tuple of Pin
+        The hinges and pivots of both directions.
+    phi_cr, limit : mapping of Direction to float
+        Critical rotation, and the furthest that can be drawn [rad].
+    ground : tuple of ndarray of complex
+        Lines with the ground on the right of someone who walks along them [m].
+    sketch : Sketch
+        Lengths, angles, lines and notes.
+    """
+
+    mechanism: Mechanism
+    parts: tuple[Part, ...]
+    pins: tuple[Pin, ...]
+    phi_cr: Mapping[Direction, float]
+    limit: Mapping[Direction, float]
+    ground: tuple[Points, ...]
+    sketch: Sketch
+
+    def at(self, rotation: Reals) -> tuple[Points, Reals]:
+        """Where the parts are at signed rotations.
+
+        Parameters
+        ----------
+        rotation : ndarray, shape (n,)
+            [rad], positive clockwise; beyond the limit it stops there.
+
+        Returns
+        -------
+        centroids : ndarray of complex, shape (parts, n)
+            Where their centroids are [m].
+        psi : ndarray, shape (parts, n)
+            By how much they have turned [rad, anticlockwise].
+        """
+        centroids = np.empty((len(self.parts), rotation.size), np.complex128)
+        psi = np.empty(centroids.shape)
+        for direction in Direction:
+            here = rotation >= 0 if direction > 0 else rotation < 0
+            phi = np.minimum(np.abs(rotation[here]), self.limit[direction])
+            motions = self.mechanism.motion(phi, direction)
+            for k, part in enumerate(self.parts):
+                centroids[k, here] = motions[part.body].carry(part.centroid - part.shift)[0] + part.shift
+                psi[k, here] = motions[part.body].psi
+        return centroids, psi
+
+    def placed(self, rotation: float) -> tuple[list[list[Points]], Points]:
+        """The outlines of every part and the pins, shape (pins,), at one signed rotation [m]; see `at`."""
+        centroids, psi = (values[:, 0] for values in self.at(np.array([rotation])))
+
+        def carried(part: int, points: Points) -> Points:
+            moved: Points = centroids[part] + np.exp(1j * psi[part]) * (points - self.parts[part].centroid)
+            return moved
+
+        outlines = [[carried(k, each) for each in part.outlines] for k, part in enumerate(self.parts)]
+        return outlines, np.array([complex(carried(pin.part, np.array(pin.point))) for pin in self.pins])
+
+    @cached_property
+    def extent(self) -> tuple[complex, complex]:
+        """Lower left and upper right corner of the structure at rest [m]."""
+        return box_around([each for part in self.parts for each in part.outlines] + [self._points])
+
+    @property
+    def _points(self) -> Points:
+        return np.array([*(part.centroid for part in self.parts), *(pin.point for pin in self.pins)])
+
+    def as_dict(self) -> dict[str, Any]:
+        """All of it in numbers and words, for a page: points are [x, y] in m, angles in rad.
+
+        A part is placed by `x`, `y` (of its centroid) and `psi` (anticlockwise) over `rotation`, straight between
+        its values; its outlines, and the pins it carries, are about its centroid.
+        """
+        ends = [np.linspace(0.0, self.limit[direction], NODES + 1) for direction in Direction]
+        rotation = np.concatenate([-ends[1][:0:-1], ends[0]])
+        centroids, psi = self.at(rotation)
+        return {
+            "mechanism": self.mechanism.mechanism,
+            "name": self.mechanism.name,
+            "title": self.mechanism.title,
+            "phi_cr": {direction.label: self.phi_cr[direction] for direction in Direction},
+            "limit": {direction.label: self.limit[direction] for direction in Direction},
+            "rotation": _rounded(rotation),
+            "parts": [
+                {
+                    "name": part.name,
+                    "assumed": part.assumed,
+                    "outlines": [_pairs(each - part.centroid) for each in part.outlines],
+                    "x": _rounded(centroids[k].real),
+                    "y": _rounded(centroids[k].imag),
+                    "psi": _rounded(psi[k]),
+                }
+                for k, part in enumerate(self.parts)
+            ],
+            "pins": [
+                {
+                    "letter": pin.letter,
+                    "direction": pin.direction.label,
+                    "part": pin.part,
+                    "point": _pairs([pin.point - self.parts[pin.part].centroid])[0],
+                }
+                for pin in self.pins
+            ],
+            "lengths": [_measure(each, [each.start, each.end]) for each in self.sketch.lengths],
+            "angles": [_measure(each, [each.apex, each.start, each.end]) for each in self.sketch.angles],
+            "lines": [
+                {"name": each.name, "direction": _label(each.direction), "points": _pairs(each.points)}
+                for each in self.sketch.lines
+            ],
+            "ground": [_pairs(each) for each in self.ground],
+            "notes": list(self.sketch.notes),
+        }
+
+
+def picture(mechanism: Mechanism) -> Picture:
+    """What a picture of a structure shows.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any plugin. What its `sketch` leaves out is found: outlines from mass and inertia, pivots and hinges from the
+        motion, the ground from the pivots.
+
+    Raises
+    ------
+    MechanismError
+        If the plugin fails.
+    """
+    try:
+        return _picture(mechanism)
+    except RockingError:
+        raise
+    except Exception as error:  # a plugin may fail in any way; the user needs to know that it did
+        raise MechanismError(
+            f"the mechanism {mechanism.mechanism} failed to be drawn: {type(error).__name__}: {error}"
+        ) from error
+
+
+def box_around(outlines: Sequence[Points]) -> tuple[complex, complex]:
+    """Lower left and upper right corner of the box around points [m]."""
+    z = np.concatenate([np.ravel(each) for each in outlines])
+    return complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
+
+
+def _picture(mechanism: Mechanism) -> Picture:
+    bodies, sketch = mechanism.bodies(), mechanism.sketch()
+    phi_cr = {direction: mechanism.critical_rotation(direction) for direction in Direction}
+    limit = {direction: FURTHEST * mechanism.limit(direction) for direction in Direction}
+    parts = tuple(
+        Part(
+            body.name,
+            k,
+            body.centroid + shift,
+            tuple(np.asarray(each, np.complex128) + shift for each in _outlines(body, sketch)),
+            assumed=body.name not in sketch.outlines,
+            shift=shift,
+        )
+        for k, body in enumerate(bodies)
+        for shift in sketch.copies.get(body.name, (0j,))
+    )
+    pins = []
+    for direction in Direction:
+        phi = np.linspace(0.0, phi_cr[direction], 5)
+        hinges = sketch.hinges.get(direction) or _found(bodies, mechanism.motion(phi, direction))
+        pins += [pin for hinge in hinges for pin in _pins(hinge, direction, parts)]
+    ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
+    return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch)
+
+
+def _outlines(body: Body, sketch: Sketch) -> Sequence[Outline]:
+    if body.name in sketch.outlines:
+        return sketch.outlines[body.name]
+    radius = np.sqrt(2 * body.inertia / body.mass) if body.mass > 0 else 0.0  # of a disc: I = m r^2 / 2
+    return [disc(body.centroid, float(radius))] if radius > 0 else []
+
+
+def _pins(hinge: Hinge, direction: Direction, parts: Sequence[Part]) -> list[Pin]:
+    """The hinge on its first body, or on each copy of it, of which the first has the letter."""
+    carriers = [k for k, part in enumerate(parts) if part.name == hinge.bodies[0]]
+    return [
+        Pin(hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift, k, direction, hinge.slide)
+        for k in carriers
+    ]
+
+
+def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge]:
+    """Points about which a body turns all the time: against the ground, or against another body."""
+    centroids = [body.centroid for body in bodies]
+    size = max(abs(one - other) for one in centroids for other in [*centroids, 0j]) or 1.0
+    hinges: list[Hinge] = []
+
+    def add(centre: complex, names: tuple[str, ...], gap: Points) -> None:
+        if np.abs(gap).max() <= SAME * size and all(abs(centre - other.point) > SAME * size for other in hinges):
+            hinges.append(Hinge("", centre, names))
+
+    speeds = []  # of the point of the body at the origin, and its rate of turning, at rest
+    for body, motion in zip(bodies, motions, strict=True):
+        _, velocity, _ = motion.carry(body.centroid)
+        turning = float(motion.dpsi[0])
+        speeds.append((complex(velocity[0]) - 1j * turning * body.centroid, turning))
+    for body, motion, (speed, turning) in zip(bodies, motions, speeds, strict=True):
+        if abs(turning) > STILL:
+            centre = 1j * speed / turning  # speed + i turning centre = 0
+            add(centre, (body.name,), motion.carry(centre)[0] - centre)
+    for i, j in combinations(range(len(bodies)), 2):
+        (speed, turning), (other_speed, other_turning) = speeds[i], speeds[j]
+        if abs(turning - other_turning) > STILL:
+            centre = 1j * (speed - other_speed) / (turning - other_turning)
+            gap = motions[i].carry(centre)[0] - motions[j].carry(centre)[0]
+            add(centre, (bodies[i].name, bodies[j].name), gap)
+    return hinges
+
+
+def _level_ground(parts: Sequence[Part], pins: Sequence[Pin]) -> tuple[Points, ...]:
+    """Level ground under the lowest of the pivots, wider than the structure."""
+    z = [point for part in parts for each in part.outlines for point in each.tolist()]
+    z += [part.centroid for part in parts]
+    level = min((pin.point.imag for pin in pins), default=min(point.imag for point in z))
+    left, right = min(point.real for point in z), max(point.real for point in z)
+    margin = 0.25 * max(right - left, max(point.imag for point in z) - level)
+    return (np.array([complex(left - margin, level), complex(right + margin, level)]),)
+
+
+def _measure(each: Length | Angle, points: list[complex]) -> dict[str, Any]:
+    return {
+        "symbol": each.symbol,
+        "text": each.text,
+        "value": each.value,
+        "direction": _label(each.direction),
+        "points": _pairs(points),
+    }
+
+
+def _label(direction: Direction | None) -> str | None:
+    return direction.label if direction is not None else None
+
+
+def _pairs(points: Sequence[complex] | Points) -> list[list[float]]:
+    z = np.asarray(points, np.complex128)
+    return [_rounded(pair) for pair in np.stack([z.real, z.imag], axis=-1)]
+
+
+def _rounded(values: Reals) -> list[float]:
+    """Seven digits: more than can be seen, and half the text."""
+    return [float(f"{value:.7g}") for value in values.tolist()]

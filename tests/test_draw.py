@@ -1,0 +1,341 @@
+"""The picture of a structure: where its parts and hinges are, what is measured on it, and that it is drawn."""
+
+from __future__ import annotations
+
+import json
+from math import atan2, degrees, hypot, pi
+
+import numpy as np
+import pytest
+from matplotlib.patches import Polygon
+
+from mechanisms._arch_collapse import Ring, thrust
+from mechanisms.arch import Arch
+from mechanisms.asymmetric_frame import AsymmetricFrame
+from mechanisms.block import Block
+from mechanisms.rigid_body import RigidBody
+from mechanisms.symmetric_frame import SymmetricFrame
+from mechanisms.wall import Wall
+from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Sketch, box, rotation
+from rocking_cli.errors import MechanismError
+from rocking_cli.plotting import dimensions
+from rocking_cli.plotting.structure import draw_structure
+from rocking_cli.structure import load_structure
+from rocking_cli.studies.picture import NODES, picture
+from rocking_cli.testing import MechanismContract
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+FRAME = load_structure(EXAMPLES / "frame.yaml")
+ARCH = load_structure(EXAMPLES / "arch.yaml")
+FILES = sorted(EXAMPLES.glob("*.yaml"))
+
+
+class Bare(Mechanism):
+    """A wall of two blocks that says nothing of its picture: a plugin as they have always been."""
+
+    mechanism, title, source = "bare", "bare", "a test"
+
+    def bodies(self):
+        return [box("lower", 1.0, 0.4, 2.0, 1j), box("upper", 1.0, 0.4, 2.0, 3j)]
+
+    def motion(self, phi, direction):
+        return Wall(thickness=0.4, height=4.0).motion(phi, direction)
+
+    def limit(self, direction):
+        return pi / 2
+
+
+class TestPicture:
+    def test_a_block_is_where_its_pivot_takes_it(self):
+        """By hand: a quarter turn about the right foot of a block of 1 m x 4 m lays it to the right of it."""
+        (outline,), pins = picture(Block(width=1.0, height=4.0)).placed(0.999 * pi / 2)
+        np.testing.assert_allclose(outline[0], [0.5 + 1j, 0.5, 4.5, 4.5 + 1j], atol=0.01)
+        assert pins[0] == pytest.approx(0.5)
+        (outline,), pins = picture(Block(width=1.0, height=4.0)).placed(-0.999 * pi / 2)
+        np.testing.assert_allclose(outline[0], [-0.5, -0.5 + 1j, -4.5 + 1j, -4.5], atol=0.01)
+        assert pins[1] == pytest.approx(-0.5)
+
+    def test_it_stops_at_the_end_of_the_mechanism(self):
+        shown = picture(Block(width=1.0, height=4.0))
+        np.testing.assert_array_equal(shown.at(np.array([10.0]))[0], shown.at(np.array([0.999 * pi / 2]))[0])
+
+    @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+    def test_the_table_of_a_page_has_every_position_between_its_nodes(self, path):
+        """Straight between nodes, as a page does it, against the mechanism itself."""
+        shown = picture(load_structure(path))
+        data = json.loads(json.dumps(shown.as_dict(), allow_nan=False))
+        table = np.array(data["rotation"])
+        assert table.size == 2 * NODES + 1 and table[NODES] == 0 and (np.diff(table) > 0).all()
+        turns = np.linspace(-0.9, 0.9, 77) * min(shown.limit.values())
+        size = abs(shown.extent[1] - shown.extent[0])
+        centroids, psi = shown.at(turns)
+        for part, z, angle in zip(data["parts"], centroids, psi, strict=True):
+            x, y, turned = (np.interp(turns, table, part[key]) for key in ("x", "y", "psi"))
+            assert np.abs(x + 1j * y - z).max() < 1e-3 * size
+            assert np.abs(turned - angle).max() < 2e-3
+
+    @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+    def test_a_pin_is_carried_by_its_part(self, path):
+        shown = picture(load_structure(path))
+        data = shown.as_dict()
+        for pin, placed in zip(data["pins"], shown.placed(0.0)[1], strict=True):
+            part = data["parts"][pin["part"]]
+            at = part["x"][NODES] + pin["point"][0], part["y"][NODES] + pin["point"][1]
+            assert complex(*at) == pytest.approx(placed, abs=1e-5)
+
+    def test_copies_move_like_the_first_about_feet_of_their_own(self):
+        shown = picture(SymmetricFrame(column_width=1.0, column_height=6.0, columns=3, mass_ratio=1.0))
+        columns, beam = shown.parts[:3], shown.parts[3]
+        centroids, psi = shown.at(np.array([0.1]))
+        shifts = [part.shift for part in columns]
+        assert len(set(shifts)) == 3
+        np.testing.assert_allclose(centroids[:3, 0] - shifts, centroids[0, 0])
+        assert psi[:, 0].tolist() == [-0.1, -0.1, -0.1, 0.0]
+        feet = [pin.point for pin in shown.pins if pin.direction > 0 and pin.point.imag == 0]
+        assert feet == [0.5 + shift for shift in shifts]
+        assert [pin.letter for pin in shown.pins if pin.direction > 0] == ["A", "", "", "B", "", ""]
+        # The beam lies on the lifted corners of all columns.
+        _, pins = shown.placed(0.1)
+        soffit = centroids[3, 0].imag - (beam.centroid.imag - 6.0)
+        assert [z.imag for pin, z in zip(shown.pins, pins, strict=True) if pin.direction > 0][3:] == pytest.approx(
+            [soffit] * 3
+        )
+
+    def test_more_columns_than_can_be_drawn_are_said(self):
+        many = picture(SymmetricFrame(column_width=1.0, column_height=6.0, columns=50, mass_ratio=1.0))
+        assert len(many.parts) == 7
+        assert "6 of 50 columns" in many.sketch.notes[0]
+
+    def test_of_a_silent_plugin_pivots_hinges_and_shapes_are_found(self):
+        shown = picture(Bare())
+        for direction in Direction:
+            found = [pin.point for pin in shown.pins if pin.direction is direction]
+            np.testing.assert_allclose(found, [0.2 * direction, -0.2 * direction + 2j], atol=1e-9)
+        assert all(part.assumed for part in shown.parts)
+        # A disc of mass m and radius a has the inertia m a^2/2.
+        radius = np.abs(shown.parts[0].outlines[0] - 1j)
+        np.testing.assert_allclose(radius, np.sqrt(2 * (0.4**2 + 2.0**2) / 12))
+        (ground,) = shown.ground
+        assert ground.imag.tolist() == [0.0, 0.0] and ground[0].real < -0.5 < 0.5 < ground[1].real
+
+    def test_the_instantaneous_centre_of_a_beam_is_no_hinge(self):
+        """Of a frame whose hinges are not given: A, B, C and D are found, and no centre that wanders."""
+
+        class Silent(AsymmetricFrame):
+            def sketch(self):
+                return Sketch()
+
+        silent = Silent(**{key: getattr(FRAME, key) for key in FRAME.model_fields_set})
+        for direction in Direction:
+            found = sorted((pin.point for pin in picture(silent).pins if pin.direction is direction), key=abs)
+            np.testing.assert_allclose(found, sorted(silent.hinges(direction), key=abs), atol=1e-9)
+
+    def test_a_plugin_that_fails_is_called_by_its_name(self):
+        class Odd(Bare):
+            def sketch(self):
+                raise KeyError("lost")
+
+        with pytest.raises(MechanismError, match="the mechanism bare failed to be drawn: KeyError: 'lost'"):
+            picture(Odd())
+
+
+class TestWhatIsMeasured:
+    """The numbers on a picture come from its points: they are the fields of the file, or the paper's formulas."""
+
+    def values(self, structure, direction=None):
+        sketch = structure.sketch()
+        return {
+            each.symbol: each.value for each in [*sketch.lengths, *sketch.angles] if each.direction in (None, direction)
+        }
+
+    def test_of_a_block(self):
+        values = self.values(Block(width=0.7, height=2.8), Direction.POSITIVE)
+        assert values == pytest.approx({"2b": 0.7, "2h": 2.8, "R": hypot(0.35, 1.4), "α": atan2(0.35, 1.4)})
+
+    def test_of_a_leaning_stone_in_both_directions(self):
+        stone = load_structure(EXAMPLES / "rigid_body.yaml")
+        for direction, sign in ((Direction.POSITIVE, "₊"), (Direction.NEGATIVE, "₋")):
+            values = self.values(stone, direction)
+            assert values[f"α{sign}"] == pytest.approx(stone.alpha(direction))
+            assert values[f"R{sign}"] == pytest.approx(abs(stone.arm(direction)))
+
+    @pytest.mark.parametrize("direction", list(Direction))
+    def test_of_a_frame(self, direction):
+        s, b, H, H1, L, h = int(direction), 0.8, 3.5, 5.0, 10.0, 0.75
+        assert self.values(FRAME, direction) == pytest.approx(
+            {
+                "2b": 2 * b, "2H": 2 * H, "2H₁": 2 * H1, "L": L, "2h": 2 * h,
+                "R₀": hypot(b, H), "R₁": hypot(b, H1), "r_BC": hypot(L / 2 + s * b, h),
+                "φ₀": pi / 2 + s * np.arctan(b / H), "ψ_BC": np.arctan(h / (L / 2 + s * b)),
+            }
+        )  # fmt: skip
+
+    def test_of_a_wall(self):
+        values = self.values(Wall(thickness=0.3, height=3.0), Direction.POSITIVE)
+        assert values == pytest.approx({"2b": 0.3, "4h": 3.0, "R": hypot(0.15, 0.75), "α": np.arctan(0.2)})
+
+    def test_of_an_arch(self):
+        assert self.values(ARCH) == pytest.approx({"r": 10.0, "t": 1.5, "β": np.radians(157.5)})
+
+    def test_the_texts_have_the_numbers(self):
+        assert Length("2b", 1j, 0.7 + 1j).text == "2b = 0.7 m"
+        assert Angle("α", 0j, 1j, 1 + 1j).text == "α = 45°"
+
+    def test_the_hinges_have_the_papers_letters(self):
+        for structure in (FRAME, ARCH):
+            for direction in Direction:
+                lettered = {hinge.letter: hinge.point for hinge in structure.sketch().hinges[direction]}
+                assert lettered == dict(zip("ABCD", structure.hinges(direction), strict=True))
+
+
+class TestLineOfThrust:
+    def test_it_balances_every_part_of_the_ring(self):
+        """Independent: the ring cut into slices, their weights and inertia summed, and the moment about the line."""
+        ring = Ring(0.15, np.radians(157.5))
+        hinges = Arch(radius=1.0, thickness=0.15, inclusion_angle_deg=157.5, voussoirs=7).hinge_angles
+        M0, Fx, Fy, lam = thrust(ring, hinges)
+        slices = 20_000
+        for share in (0.13, 0.41, 0.77, 1.0):
+            angle = share * ring.beta
+            middles = (np.arange(slices) + 0.5) / slices * angle
+            turn = np.exp(1j * ((pi + ring.beta) / 2 - middles))
+            inner, outer = 1 - 0.075, 1 + 0.075
+            weight = (outer**2 - inner**2) / 2 * angle / slices
+            at = turn * 2 / 3 * (outer**3 - inner**3) / (outer**2 - inner**2)
+            point = ring.thrust_radius(np.array(angle), np.array([M0, Fx, Fy, lam])) * np.exp(
+                1j * ((pi + ring.beta) / 2 - angle)
+            )
+            # About the point: the reaction, whose moment about the centre is M0, the weights, the inertia to the right.
+            moment = M0 + (-point.real * Fy + point.imag * Fx)
+            moment += (-(at - point).real * weight - (at - point).imag * lam * weight).sum()
+            assert abs(moment) < 1e-7
+
+    @pytest.mark.parametrize("voussoirs", [None, 7])
+    def test_it_passes_through_the_hinges_and_stays_inside(self, voussoirs):
+        arch = Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=voussoirs)
+        for line in arch.sketch().lines:
+            z = np.array(line.points)
+            assert (np.abs(np.abs(z) - 10.0) <= 0.75 + 1e-6).all()
+            for hinge in arch.hinges(line.direction):
+                assert np.abs(z - hinge).min() < 1e-6
+            assert f"{arch.uplift(line.direction):.4g} g" in line.name
+
+    def test_its_multiplier_is_the_uplift_of_the_mechanism(self):
+        state = thrust(Ring(ARCH.thickness / ARCH.radius, np.radians(157.5)), ARCH.hinge_angles)
+        assert state[3] == pytest.approx(ARCH.uplift(Direction.POSITIVE), rel=1e-9)
+
+
+class TestContract:
+    def broken(self, **changes):
+        class Broken(Block):
+            def sketch(self):
+                sketch = super().sketch()
+                return Sketch(**{**vars(sketch), **changes})
+
+        return Broken(width=1.0, height=4.0)
+
+    def test_it_catches_outlines_that_are_not_the_bodies(self):
+        check = MechanismContract().test_outlines_are_those_of_the_bodies
+        check(self.broken())
+        for outlines in (
+            {"other": [[0, 1, 1j]]},
+            {"block": [[0, 1]]},
+            {"block": [[0, 1, 1 + 3.9j, 3.9j]]},
+            {"block": [[-0.45, 0.45, 0.45 + 4j, -0.45 + 4j]]},
+        ):
+            with pytest.raises(AssertionError):
+                check(self.broken(outlines=outlines))
+
+    def test_it_catches_hinges_that_part(self):
+        check = MechanismContract().test_hinges_hold_together
+        check(self.broken())
+        for hinge in (Hinge("O", 0.49 + 0j, ("block",)), Hinge("O", 0.5 + 0j, ("other",))):
+            with pytest.raises(AssertionError):
+                check(self.broken(hinges={Direction.POSITIVE: [hinge]}))
+
+
+class TestFigure:
+    @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+    def test_every_example_has_three_panels_to_scale(self, path):
+        structure = load_structure(path)
+        figure = draw_structure(picture(structure), "a title with $ in it", 0.5)
+        assert len(figure.axes) == 3
+        size = figure.get_size_inches()
+        for axes in figure.axes:
+            x, y = (np.diff(limits)[0] for limits in (axes.get_xlim(), axes.get_ylim()))
+            place = axes.get_position()
+            assert x / (place.width * size[0]) == pytest.approx(y / (place.height * size[1]))
+            assert 0 <= place.x0 < place.x1 <= 1 + 1e-9 and 0 <= place.y0 < place.y1 <= 1
+        words = " ".join(text.get_text() for axes in figure.axes for text in axes.texts)
+        for each in [*structure.sketch().lengths, *structure.sketch().angles]:
+            if each.direction is not Direction.NEGATIVE:
+                assert each.text in words
+
+    def test_the_displaced_panels_show_the_block_at_its_rotation(self):
+        block = Block(width=0.7, height=2.8)
+        figure = draw_structure(picture(block), "block", 0.5)
+        by_title = {axes.get_title().split(" ")[0]: axes for axes in figure.axes}
+        for direction in Direction:
+            axes = by_title[direction.label]
+            phi = 0.5 * block.critical_rotation(direction)
+            assert f"{phi:.4g} rad = {degrees(phi):.4g}°" in axes.get_title()
+            filled = [each for each in axes.patches if isinstance(each, Polygon) and each.get_fill()]
+            corners = filled[0].get_xy()[:4] @ [1, 1j]
+            foot = complex(direction * 0.35)
+            expected = foot + np.exp(-1j * direction * phi) * (
+                np.array([-0.35, 0.35, 0.35 + 2.8j, -0.35 + 2.8j]) - foot
+            )
+            np.testing.assert_allclose(corners, expected, atol=1e-12)
+
+    def test_lengths_side_by_side_share_a_row_and_others_do_not(self):
+        low, high = 0j, 10 + 10j
+        first, second, across = Length("a", 0j, 4j), Length("b", 4j, 10j), Length("c", 2j, 6j)
+        rows, inside = dimensions.in_rows([first, second, across, Length("d", 3 + 3j, 5 + 4j)], low, high)
+        assert rows["left"] == [[first, second], [across]]
+        assert [each.symbol for each in inside] == ["d"]
+
+    def test_a_body_given_by_numbers_is_a_dashed_disc(self):
+        figure = draw_structure(picture(RigidBody(R=1.5, alpha_deg=14.0, inertia_ratio=4 / 3)), "numbers")
+        assert any(each.get_linestyle() not in ("-", "solid") and each.get_fill() for each in figure.axes[0].patches)
+
+    def test_a_point_without_inertia_or_mass_can_be_drawn(self):
+        class Point(Mechanism):
+            mechanism, title, source = "point", "point", "a test"
+
+            def bodies(self):
+                return [Body("point", 1.0, 0.0, 2j), Body("nothing", 0.0, 0.0, 3j)]
+
+            def motion(self, phi, direction):
+                return [rotation(phi, complex(0.5 * direction), -direction)] * 2
+
+            def limit(self, direction):
+                return pi / 2
+
+        draw_structure(picture(Point()), "point")
+
+
+class TestCommand:
+    def test_it_writes_a_picture_named_after_the_file(self, tmp_path):
+        result = run("draw", EXAMPLES / "frame.yaml")
+        assert (tmp_path / "frame.png").read_bytes().startswith(b"\x89PNG")
+        assert "2H₁ = 10 m" in result.stdout and "wrote frame.png" in result.stderr
+
+    @pytest.mark.parametrize("suffix", ["svg", "pdf"])
+    def test_it_writes_other_formats(self, tmp_path, suffix):
+        run("draw", "--plot", f"a.{suffix}", "--at", "0.5")
+        assert (tmp_path / f"a.{suffix}").stat().st_size > 2_000
+
+    def test_json_is_the_picture(self, tmp_path):
+        data = run_json("draw", EXAMPLES / "arch.yaml")
+        assert data == picture(ARCH).as_dict()
+        assert sum(len(part["outlines"]) for part in data["parts"]) == 7
+        assert list(tmp_path.iterdir()) == []
+
+    def test_a_rotation_beyond_the_end_is_refused(self):
+        assert "at most 6." in run("draw", "--at", "7", code=2).stderr
+        assert "above 0" in run("draw", "--at", "-0.5", code=2).stderr
+
+    def test_it_does_not_write_over_its_input(self, tmp_path):
+        (tmp_path / "odd.png").write_text("mechanism: block\nwidth: 1\nheight: 4\n", encoding="utf-8")
+        assert "would overwrite" in run("draw", "odd.png", code=2).stderr
