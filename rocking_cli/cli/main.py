@@ -15,8 +15,8 @@ from rocking_cli.cli import terminal
 from rocking_cli.errors import RockingError
 
 COMMANDS = (
-    "draw", "equiv", "error", "record", "respond", "pulse", "overturning", "spectrum", "equivalent", "fragility",
-    "results", "figure", "mechanisms", "new",
+    "draw", "equiv", "error", "record", "respond", "animate", "pulse", "overturning", "spectrum", "equivalent",
+    "fragility", "results", "figure", "mechanisms", "new",
 )  # fmt: skip
 
 

@@ -1,0 +1,151 @@
+"""`rocking animate`: a structure moving under a ground motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import click
+
+from rocking_cli.cli import motions, options, shaking, terminal
+
+if TYPE_CHECKING:
+    from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.studies.film import Film
+
+# The names of the models stand here again so that `--help` needs no numpy.
+MODELS = ("nonlinear", "linear1", "linear2")
+LONGEST = 20.0  # s of a GIF whose speed nobody asked for
+MOST_FRAMES = 3000
+FPS = 20.0
+
+
+def _fps(ctx: click.Context, param: click.Parameter, value: float) -> float:
+    if not 1 <= value <= 50:
+        raise click.BadParameter(f"{value:g} is not between 1 and 50: a GIF can show no more.", ctx, param)
+    return value
+
+
+@click.command(short_help="The mechanism moving under a ground motion: GIF or page.")
+@click.argument("file", required=False, type=click.Path())
+@click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format.")
+@click.option("--pulse", metavar="PULSE", help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD.")
+@options.reading
+@options.scaling("1", "-1")
+@click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help="Which history.")
+@click.option(
+    "--out", required=True, callback=options.output_path(".gif", ".html"), metavar="FILE.html",
+    help="Where to: an animated GIF, or a page of its own with a slider (.html).",
+)  # fmt: skip
+@click.option(
+    "--speed", type=options.Finite(positive=True), metavar="TIMES",
+    help="Seconds of motion a second.  [default: 1; a GIF faster, so as to last 20 s at most]",
+)  # fmt: skip
+@click.option(
+    "--fps", type=options.Finite(positive=True), default=FPS, show_default=True, callback=_fps, metavar="FRAMES",
+    help="Frames a second of a GIF.",
+)  # fmt: skip
+@options.as_json
+def command(
+    file: str | None,
+    record: str | None,
+    pulse: str | None,
+    units: str | None,
+    dt: float | None,
+    channel: str | None,
+    scale: float | None,
+    target_pga: float | None,
+    target_pgv: float | None,
+    polarity: str,
+    model: str,
+    out: Path,
+    speed: float | None,
+    fps: float,
+    as_json: bool,
+) -> None:
+    """Show a structure moving under a ground motion, with the traces of rotation and ground below it.
+
+    A GIF goes into slides and mails; it shows the time between uplift and rest or overturning. A page (.html) has a
+    slider, works without a network, and shows all of the motion. Bodies move as they are, not enlarged; what is shown
+    is their motion relative to the ground.
+
+    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+
+    \b
+    Example:
+      rocking animate frame.yaml --record accel.csv --out frame.html
+      rocking animate arch.yaml --pulse sine:0.5g:1.2s --out arch.gif --speed 0.5
+    """
+    if (record is None) == (pulse is None):
+        raise click.UsageError("Give --record FILE or --pulse PULSE, and not both.")
+    if record is None and any(value is not None for value in (units, dt, channel)):
+        raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
+    motions.check_scaling(scale, target_pga, target_pgv)
+    from rocking_cli.cli import structures
+    from rocking_cli.files import keep_apart, write_whole
+    from rocking_cli.studies.film import Film
+    from rocking_cli.studies.picture import picture
+
+    keep_apart([("--out", out)], [file, record])
+    mechanism = structures.load([file] if file else [])[0]
+    blocks = shaking.equivalence(mechanism)
+    if record is not None:
+        motion = shaking.read("record", record, dt, units, channel)
+    else:
+        assert pulse is not None
+        motion = shaking.make(pulse)[1]
+    motion = motion.scaled(int(polarity) * shaking.judge(motion, blocks, scale, target_pga, target_pgv))
+    name = cast("ModelName", model)
+    history = shaking.respond(mechanism, motion, (name,), None, 10.0, 1e-9)[name]
+    film = Film(picture(mechanism), history, motion)
+    title = structures.label(mechanism)
+    if out.suffix.lower() == ".html":
+        from rocking_cli.plotting.animation import animation_page
+
+        speed = speed or 1.0
+        page = animation_page(film, title, speed)
+        write_whole(out, lambda stream: stream.write(page.encode()))
+        frames = None
+    else:
+        speed = speed or max(1.0, (film.end - film.start) / LONGEST)
+        frames = _write_gif(out, film, f"{title}, under {motion.name}", speed, fps)
+    terminal.note(f"wrote {out}")
+    if as_json:
+        terminal.print_json(
+            {
+                "mechanism": mechanism.mechanism,
+                "name": mechanism.name,
+                "record": motion.name,
+                "model": model,
+                "outcome": history.outcome.name.lower(),
+                "peak_ratio": history.peak_ratio,
+                "start": film.start,
+                "end": film.end,
+                "speed": speed,
+                "frames": frames,
+                "file": str(out),
+            }
+        )
+        return
+    terminal.result(film.verdict)
+
+
+def _write_gif(out: Path, film: Film, title: str, speed: float, fps: float) -> int:
+    """Write the GIF; its number of frames."""
+    import numpy as np
+
+    from rocking_cli.errors import InputError, Problem
+    from rocking_cli.files import write_whole
+    from rocking_cli.plotting.animation import frame_time, write_gif
+
+    step = speed * frame_time(fps)
+    count = int((film.end - film.start) / step) + 1
+    if count > MOST_FRAMES:
+        problem = f"{count:,} frames are too many for a GIF (at most {MOST_FRAMES:,})"
+        raise InputError(Problem(problem, field="--speed", hint="show it faster, with fewer frames, or as .html"))
+    times = np.append(film.start + step * np.arange(count), film.end)
+    if speed != 1:
+        terminal.note(f"shown at {speed:.3g} times its speed, from {film.start:.4g} to {film.end:.4g} s")
+    with terminal.progress(times.size, "frames") as advance:
+        write_whole(out, lambda stream: write_gif(stream, film, title, times, fps, advance))
+    return int(times.size)

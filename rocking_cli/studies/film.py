@@ -1,0 +1,95 @@
+"""A history as the motion of a picture: which rotation to show when."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Direction
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.verdict import verdict
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.studies.picture import Picture, box_around
+
+Reals = NDArray[np.float64]
+BEFORE, AFTER = 1.0, 1.5  # s shown before the first uplift and after the motion has ended
+VIEWS = 25  # rotations at which the box around the motion is found
+
+
+@dataclass(frozen=True)
+class Film:
+    """The motion of a structure under a ground motion, to be shown.
+
+    Parameters
+    ----------
+    picture : Picture
+        What moves.
+    history : History
+        How it moves.
+    motion : GroundMotion
+        Under what.
+    """
+
+    picture: Picture
+    history: History
+    motion: GroundMotion
+
+    @cached_property
+    def _moving(self) -> int:
+        """Samples of the history that have a rotation: all, or those before it is certain to overturn."""
+        return int(np.isfinite(self.history.phi).sum())
+
+    @property
+    def end(self) -> float:
+        """When there is nothing more to see [s]."""
+        last = float(self.history.time[self._moving - 1])
+        if self.history.overturned or self.history.uplift_time is None:
+            return last
+        return min(last, self.history.end_time + AFTER)
+
+    @property
+    def start(self) -> float:
+        """When there begins to be something to see [s]."""
+        first = self.history.uplift_time
+        return 0.0 if first is None else max(0.0, first - BEFORE)
+
+    @property
+    def verdict(self) -> str:
+        """What happens, in words."""
+        return verdict({self.history.model: self.history})
+
+    def rotation(self, time: Reals) -> Reals:
+        """Signed rotation at these times, shape (n,) [rad]; after overturning the last that was followed."""
+        moving = slice(0, self._moving)
+        return np.interp(time, self.history.time[moving], self.history.phi[moving])
+
+    def ratio(self, rotation: Reals) -> Reals:
+        """Signed rotations, shape (n,) [rad], over the critical rotation of their direction."""
+        critical = self.picture.phi_cr
+        return rotation / np.where(rotation < 0, critical[Direction.NEGATIVE], critical[Direction.POSITIVE])
+
+    @cached_property
+    def box(self) -> tuple[complex, complex]:
+        """Lower left and upper right corner of all that the structure passes through [m]."""
+        phi = self.history.phi[: self._moving]
+        views = np.linspace(float(phi.min()), float(phi.max()), VIEWS)
+        outlines = [each for turn in views for part in self.picture.placed(float(turn))[0] for each in part]
+        return box_around([np.array(self.picture.extent), *outlines])
+
+    def as_dict(self, step: float) -> Mapping[str, Any]:
+        """What a page needs beside the picture: the rotation [rad] every `step` [s] from 0, and when it ends [s]."""
+        time = np.arange(0.0, self.end + step, step)
+        return {
+            "step": step,
+            "end": self.end,
+            "start": self.start,
+            "rotation": [float(f"{value:.5g}") for value in self.rotation(time).tolist()],
+            "verdict": self.verdict,
+            "low": [self.box[0].real, self.box[0].imag],
+            "high": [self.box[1].real, self.box[1].imag],
+        }
