@@ -55,7 +55,7 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
                 ends = [complex(level, z.imag) if upright else complex(z.real, level) for z in (each.start, each.end)]
                 for z, end in zip((each.start, each.end), ends, strict=True):
                     past = end + out * 0.04 / panel.scale
-                    axes.plot([z.real, past.real], [z.imag, past.imag], color=style.MEASURE, linewidth=0.4)
+                    axes.plot([z.real, past.real], [z.imag, past.imag], color=style.MEASURE, linewidth=style.HAIR)
                 _arrow(axes, *ends)
                 beyond = 0.11 * out / panel.scale if each.value * panel.scale < _wide(each.text) else 0
                 _write(axes, sum(ends) / 2 + beyond, "center", each.text, turned=90.0 if upright else 0.0)
@@ -83,7 +83,7 @@ def draw_inside(axes: Axes, lengths: Sequence[Length], angles: Sequence[Angle], 
             end = angle.apex + arm / abs(arm) * min(abs(arm), 1.25 * radius)
             axes.plot(
                 [angle.apex.real, end.real], [angle.apex.imag, end.imag],
-                color=style.MEASURE, linewidth=0.4, linestyle=(0, (4, 2)),
+                color=style.MEASURE, linewidth=style.HAIR, linestyle=(0, (4, 2)),
             )  # fmt: skip
         _write(axes, *_beside_arc(angle.apex, radius, first, turn, panel.scale), angle.text)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from textwrap import shorten
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,6 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
 from rocking_cli.studies.equivalent import EquivalentResponses
 
-LONGEST = 95  # characters of a heading
 FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
 FREE = 8.0  # p t shown after the pulse
 
@@ -29,7 +27,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
     """
     figure = style.new_figure(5.8)
     above, below = figure.subplots(2, 1, height_ratios=[1, 1.8])
-    above.set_title(shorten(title, LONGEST, placeholder=" ..."), loc="left", fontsize=10, parse_math=False)
+    style.heading(above, title)
     for k, each in enumerate(found.members):
         t = np.linspace(0.0, each.pulse.duration, 400)
         ground = found.polarity * each.pulse.acceleration(t) / STANDARD_GRAVITY
@@ -50,17 +48,17 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
     end = found.pulse_end + FREE
     below.set_xlim(0.0, min(end, float(found.tau[-1])))
     above.set_xlim(left=0.0)
-    above.set_xlabel("time [s]", fontsize=9)
-    above.set_ylabel("pulse of each [g]", fontsize=9)
-    below.set_xlabel(r"$p\,t$", fontsize=9)
-    below.set_ylabel(r"$\phi/\phi_{cr}$, first lifted side up", fontsize=9)
-    below.axvline(found.pulse_end, color=style.FAINT, linewidth=0.8, linestyle=":")
+    above.set_xlabel("time [s]", fontsize=style.LABEL)
+    above.set_ylabel("pulse of each [g]", fontsize=style.LABEL)
+    below.set_xlabel(r"$p\,t$", fontsize=style.LABEL)
+    below.set_ylabel(r"$\phi/\phi_{cr}$, first lifted side up", fontsize=style.LABEL)
+    below.axvline(found.pulse_end, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
     below.annotate(
         "end of the pulses", (found.pulse_end, 1.0), (3, -3), xycoords=("data", "axes fraction"),
-        textcoords="offset points", va="top", fontsize=7, color=style.FAINT,
+        textcoords="offset points", va="top", fontsize=style.SMALL, color=style.FAINT,
     )  # fmt: skip
-    below.axhline(0.0, color=style.FAINT, linewidth=0.6)
-    below.legend(fontsize=8, frameon=True, framealpha=0.9, edgecolor="none", handlelength=4)
+    below.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
+    below.legend(**style.LEGEND, handlelength=4)
     for axes in (above, below):
         style.tidy(axes)
     return figure

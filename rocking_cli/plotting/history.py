@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from textwrap import shorten
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,7 +19,6 @@ from rocking_cli.plotting.thinning import visible
 TALLEST = 1.6  # phi/phi_cr shown at most
 FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
 FELT = 0.02  # of the strongest impact: weaker ones, of a chatter to rest, are not marked
-LONGEST = 95  # characters of a heading
 SHORTEST = 0.1  # s of the time axis
 POINTS = 1000  # of a pulse
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
@@ -64,8 +62,7 @@ def draw_history(
             shaken + len(responses), 1, sharex=True, squeeze=False, height_ratios=[1] * shaken + [1.8] * len(responses)
         )[:, 0]
     )
-    heading = shorten(title, LONGEST, placeholder=" ...")
-    panels[0].set_title(heading, loc="left", fontsize=10, color=style.INK, parse_math=False)  # a $ in a name is a $
+    style.heading(panels[0], title)
     runs = [run for each in responses.values() for run in each.values()]
     end = max(SHORTEST, *(1.1 * run.end_time if run.overturned else float(run.time[-1]) for run in runs))
     if motion is not None:
@@ -75,7 +72,7 @@ def draw_history(
     for axes, (what, each) in zip(panels[shaken:], responses.items(), strict=True):
         _draw_responses(axes, each, what, tall)
     panels[-1].set_xlim(0.0, end)
-    panels[-1].set_xlabel("time [s]", fontsize=9)
+    panels[-1].set_xlabel("time [s]", fontsize=style.LABEL)
     figure.align_ylabels()
     return figure
 
@@ -85,11 +82,11 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
     ground = motion.acceleration[: int(min(end, motion.duration) / motion.dt) + 2] / STANDARD_GRAVITY
     shown = visible(ground)
     color = style.INK if pulse is None else style.RECORD
-    axes.plot(shown * motion.dt, ground[shown], color=color, linewidth=0.7)
+    axes.plot(shown * motion.dt, ground[shown], color=color, linewidth=style.CURVE)
     if pulse is not None:
         t = pulse.start + np.linspace(0.0, pulse.pulse.duration, POINTS)
         axes.plot(t, pulse.acceleration(t) / STANDARD_GRAVITY, **style.PULSES[0])
-    axes.set_ylabel("ground [g]", fontsize=9)
+    axes.set_ylabel("ground [g]", fontsize=style.LABEL)
     named = f"{motion.name}, PGA {motion.pga:.3g} g"
     if pulse is not None:
         named += f"; bold: its {pulse.pulse.name} pulse, {pulse.pulse.amplitude / STANDARD_GRAVITY:.3g} g"
@@ -97,7 +94,7 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
         up = motion.vertical
         part = up.acceleration[: int(min(end, up.duration) / up.dt) + 2] / STANDARD_GRAVITY
         seen = visible(part)
-        axes.plot(seen * up.dt, part[seen], color=style.FAINT, linewidth=0.7, zorder=1)
+        axes.plot(seen * up.dt, part[seen], color=style.FAINT, linewidth=style.CURVE, zorder=1)
         named += f"; grey: {up.name}, vertical, {up.pga:.3g} g"
     style.note(axes, named)
     style.tidy(axes)
@@ -107,22 +104,21 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
     for lane, (name, run) in enumerate(histories.items()):
         _draw_run(axes, name, run, (len(histories) - lane) * LANE)
     for level in (-1.0, 1.0):
-        axes.axhline(level, color=style.FAINT, linewidth=0.8, linestyle=":")
-    axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
+        axes.axhline(level, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
+    axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     axes.set_ylim(-1.3 * tall, tall)  # room for the impacts below
-    axes.set_ylabel(r"rotation $\phi/\phi_{cr}$, clockwise up", fontsize=9)
+    axes.set_ylabel(r"rotation $\phi/\phi_{cr}$, clockwise up", fontsize=style.LABEL)
     place = (0.005, (len(histories) + 1.2) * LANE)
-    axes.annotate("impacts, in the order of the legend", place, xycoords="axes fraction", fontsize=7, color=style.FAINT)
+    axes.annotate(
+        "impacts, in the order of the legend", place, xycoords="axes fraction", fontsize=style.SMALL, color=style.FAINT
+    )
     falls_up = any(run.fell_to is Direction.POSITIVE for run in histories.values())  # into the right corner
     axes.legend(
         loc="upper left" if falls_up else "upper right",
         title=what,
-        title_fontsize=8,
+        title_fontsize=style.TICK,
         alignment="left",
-        fontsize=8,
-        frameon=True,
-        framealpha=0.9,
-        edgecolor="none",
+        **style.LEGEND,
     )
     style.tidy(axes)
 

@@ -38,8 +38,8 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
     for (left, right), curve, marks in zip(panels, curves, asked, strict=True):
         _line(left, curve.amplitude, curve.period_ratio, "nonlinear", "either kappa")
         _dots(left, marks.amplitude, marks.period_ratio)
-        left.set_xlabel(r"amplitude $\phi/\phi_{cr}$", fontsize=9)
-        left.set_ylabel("error of the free period", fontsize=9)
+        left.set_xlabel(r"amplitude $\phi/\phi_{cr}$", fontsize=style.LABEL)
+        left.set_ylabel("error of the free period", fontsize=style.LABEL)
         left.set_xlim(0.0, 1.0)
         for kappa in (1, 2):
             ratio = getattr(curve, f"overturning_ratio{kappa}")
@@ -49,16 +49,16 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
         right.set_xticks([1, 2, 5, 10], ["1", "2", "5", "10"])
         right.minorticks_off()
         right.set_xlim(1.0, curve.acceleration.max())
-        right.set_xlabel(r"constant acceleration $a/\lambda$", fontsize=9)
-        right.set_ylabel("error of the overturning time", fontsize=9)
-        right.legend(fontsize=8, frameon=True, framealpha=0.9, edgecolor="none", loc="lower right")
+        right.set_xlabel(r"constant acceleration $a/\lambda$", fontsize=style.LABEL)
+        right.set_ylabel("error of the overturning time", fontsize=style.LABEL)
+        right.legend(**style.LEGEND, loc="lower right")
         if len(curves) > 1:
-            left.set_title(f"{curve.direction.label} direction", fontsize=9, loc="left")
+            left.set_title(f"{curve.direction.label} direction", fontsize=style.LABEL, loc="left")
         for axes in (left, right):
-            axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
+            axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
             axes.yaxis.set_major_formatter(PercentFormatter(1.0))
             style.tidy(axes)
-    figure.suptitle(title, fontsize=10, x=0.01, ha="left", color=style.INK)
+    figure.suptitle(title, fontsize=style.TITLE, x=0.01, ha="left", color=style.INK)
     return figure
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from textwrap import shorten
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
@@ -17,24 +15,8 @@ from rocking_cli.plotting import style
 from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
 
 Reals = NDArray[np.float64]
-LONGEST = 95  # characters of a heading
 FINE = 500  # points along either axis of the grid on which boundaries are traced
 PEAKS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr of the contour lines
-PEAK_INK = "#2b5d86"
-# From white to dark, so that the order is seen in grey; blue to orange to brown for the colour-blind.
-FILLS = {
-    "no uplift": "#ffffff",
-    "rocks": "#d6e6f2",
-    "overturns after one impact": "#f2b04a",
-    "overturns after two or more": "#c46a1b",
-    "overturns without impact": "#5b3a55",
-}
-BOUNDARIES = {
-    "uplift": {"color": "#222222", "linestyle": "-", "linewidth": 1.0},
-    "without_impact": {"color": "#000000", "linestyle": "-", "linewidth": 2.0},
-    "after_one_impact": {"color": "#000000", "linestyle": (0, (4, 1.5)), "linewidth": 1.6},
-    "impact_at_end": {"color": "#000000", "linestyle": (0, (1, 1.5)), "linewidth": 1.3},
-}
 
 
 def draw_map(found: OverturningMap, title: str, *, dimensionless: bool) -> Figure:
@@ -51,28 +33,28 @@ def draw_map(found: OverturningMap, title: str, *, dimensionless: bool) -> Figur
     """
     figure = style.new_figure(6.0)
     axes = figure.subplots()
-    axes.set_title(shorten(title, LONGEST, placeholder=" ..."), loc="left", fontsize=10, parse_math=False)
+    style.heading(axes, title)
     across, up = (found.omega, found.a) if dimensionless else (found.periods, found.accelerations)
     kinds = _kinds(found)
     axes.pcolormesh(
-        across, up, kinds, cmap=ListedColormap(list(FILLS.values())), vmin=-0.5, vmax=len(FILLS) - 0.5,
+        across, up, kinds, cmap=ListedColormap(list(style.REGIONS.values())), vmin=-0.5, vmax=len(style.REGIONS) - 0.5,
         shading="nearest", rasterized=True,
     )  # fmt: skip
     contours = _draw_peaks(axes, across, up, found.peak_ratio)
     handles: list[Line2D | Patch] = [
         Patch(facecolor=fill, edgecolor=style.FAINT, label=label)
-        for k, (label, fill) in enumerate(FILLS.items())
+        for k, (label, fill) in enumerate(style.REGIONS.items())
         if (kinds == k).any()
     ]
     handles += contours
     handles += _draw_boundaries(axes, found, dimensionless=dimensionless)
-    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8, frameon=False)
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
     if dimensionless:
-        axes.set_xlabel(r"frequency $\omega_g/p$", fontsize=9)
-        axes.set_ylabel(r"amplitude $a_g/(g\lambda)$", fontsize=9)
+        axes.set_xlabel(r"frequency $\omega_g/p$", fontsize=style.LABEL)
+        axes.set_ylabel(r"amplitude $a_g/(g\lambda)$", fontsize=style.LABEL)
     else:
-        axes.set_xlabel("period of the pulse [s]", fontsize=9)
-        axes.set_ylabel("amplitude of the pulse [g]", fontsize=9)
+        axes.set_xlabel("period of the pulse [s]", fontsize=style.LABEL)
+        axes.set_ylabel("amplitude of the pulse [g]", fontsize=style.LABEL)
     style.tidy(axes)
     axes.grid(False)
     return figure
@@ -89,14 +71,14 @@ def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line
         if not each:
             continue
         line = max(each, key=len)
-        axes.plot(*line.T, color=PEAK_INK, linewidth=0.7)
+        axes.plot(*line.T, color=style.MEASURE, linewidth=style.CURVE)
         # Where it has half of its height: there the lines are apart.
         place = line[np.abs(line[:, 1] - line[:, 1].mean()).argmin()]
         axes.annotate(
-            f"{level:g}", place, ha="center", va="center", fontsize=7, color=PEAK_INK,
-            bbox={"facecolor": FILLS["rocks"], "edgecolor": "none", "pad": 0.5},
+            f"{level:g}", place, ha="center", va="center", fontsize=style.SMALL, color=style.MEASURE,
+            bbox={"facecolor": style.REGIONS["rocks"], "edgecolor": "none", "pad": 0.5},
         )  # fmt: skip
-    return [Line2D([], [], color=PEAK_INK, linewidth=0.7, label=r"peak $\phi/\phi_{cr}$")]
+    return [Line2D([], [], color=style.MEASURE, linewidth=style.CURVE, label=r"peak $\phi/\phi_{cr}$")]
 
 
 def _kinds(found: OverturningMap) -> NDArray[np.int64]:
@@ -119,12 +101,12 @@ def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) 
             continue
         scale_x = omega if dimensionless else found.structure.period(omega)
         scale_y = a if dimensionless else a * found.accelerations[0] / found.a[0]
-        look = BOUNDARIES[boundary.name]
+        look = style.BOUNDARIES[boundary.name]
         axes.contour(
             scale_x, scale_y, np.ma.masked_invalid(level), levels=[0.0],
             colors=look["color"], linestyles=[look["linestyle"]], linewidths=look["linewidth"],
         )  # fmt: skip
-        drawn.append(Line2D([], [], label=f"{boundary.title} (closed form)", **look))  # type: ignore[arg-type]
+        drawn.append(Line2D([], [], label=f"{boundary.title} (closed form)", **look))
     return drawn
 
 
@@ -140,8 +122,7 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     """
     figure = style.new_figure(4.6)
     axes = figure.subplots()
-    heading = shorten(f"{title}, up to {found.top:.4g} g", LONGEST, placeholder=" ...")
-    axes.set_title(heading, loc="left", fontsize=10, parse_math=False)
+    style.heading(axes, f"{title}, up to {found.top:.4g} g")
     every = max(1, found.periods.size // 8)
     for k, (structure, least) in enumerate(zip(found.structures, found.least, strict=True)):
         name = structure.name.replace("$", r"\$")
@@ -153,8 +134,8 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
-    axes.set_xlabel("period of the pulse [s]", fontsize=9)
-    axes.set_ylabel("least amplitude that overturns [g]", fontsize=9)
-    axes.legend(fontsize=8, frameon=True, framealpha=0.9, edgecolor="none", handlelength=4)
+    axes.set_xlabel("period of the pulse [s]", fontsize=style.LABEL)
+    axes.set_ylabel("least amplitude that overturns [g]", fontsize=style.LABEL)
+    axes.legend(**style.LEGEND, handlelength=4)
     style.tidy(axes)
     return figure

@@ -11,8 +11,6 @@ from matplotlib.ticker import ScalarFormatter
 from rocking_cli.plotting import style
 from rocking_cli.studies.paper_figures import PaperFigure
 
-DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
-COLOURS = ("#111111", "#1f77b4", "#e08a00", "#7b4ea3", "#4a8f3c")
 CAPTION = 115  # characters a line
 PANEL = 2.6  # inches high
 FLAT = 0.01  # what differs by less is shown flat
@@ -40,7 +38,7 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
     for panel, each in zip((p for row in paper.panels for p in row), axes.flat, strict=True):
         for k, curve in enumerate(panel.curves):
             width = 0.7 if curve.thin else 1.6 - 0.15 * k
-            each.plot(curve.x, curve.y, label=curve.label, color=COLOURS[k], linestyle=DASHES[k], linewidth=width)
+            each.plot(curve.x, curve.y, label=curve.label, linewidth=width, **style.family(k))
         if panel.log:
             each.set_xscale("log")
             each.set_xticks([1, 2, 5, 10])
@@ -49,20 +47,20 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
         each.ticklabel_format(axis="y", useOffset=False)
         values = np.concatenate([curve.y[np.isfinite(curve.y)] for curve in panel.curves])
         if panel.ylabel.startswith(("$T", "$t")):
-            each.axhline(1.0, color=style.FAINT, linewidth=0.6)
+            each.axhline(1.0, color=style.FAINT, linewidth=style.THIN)
             low, high = max(values.min(), 1 - SPREAD), min(values.max(), 1 + SPREAD)
             margin = 0.05 * max(high - low, FLAT)
             each.set_ylim(min(low - margin, 1 - margin), max(high + margin, 1 + margin))
         elif np.ptp(values) < FLAT:
             each.set_ylim(values.mean() - FLAT, values.mean() + FLAT)
-        each.set_title(panel.title, fontsize=8, loc="left")
-        each.set_xlabel(panel.xlabel, fontsize=8)
-        each.set_ylabel(panel.ylabel, fontsize=8)
+        each.set_title(panel.title, fontsize=style.TICK, loc="left")
+        each.set_xlabel(panel.xlabel, fontsize=style.TICK)
+        each.set_ylabel(panel.ylabel, fontsize=style.TICK)
         style.tidy(each)
     labels: list[str] = []
     for panel, each in zip((p for row in paper.panels for p in row), axes.flat, strict=True):
         if [curve.label for curve in panel.curves] != labels and len(panel.curves) > 1:  # a legend where it changes
             labels = [curve.label for curve in panel.curves]
-            each.legend(fontsize=7, frameon=True, framealpha=0.9, edgecolor="none")
-    figure.supxlabel(caption, fontsize=7, x=0.01, ha="left", color=style.INK)
+            each.legend(**style.LEGEND | {"fontsize": style.SMALL})
+    figure.supxlabel(caption, fontsize=style.SMALL, x=0.01, ha="left", color=style.INK)
     return figure

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from textwrap import shorten
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -14,7 +13,6 @@ from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.plotting.thinning import visible
 
-LONGEST = 95  # characters of a heading
 AROUND = 2.0  # durations of the pulse that are shown after it, at least
 POINTS = 2000  # of a pulse
 
@@ -37,12 +35,11 @@ def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> F
     """
     figure = style.new_figure(4.8)
     above, below = figure.subplots(2, 1, sharex=True)
-    heading = shorten(motion.name, LONGEST, placeholder=" ...")
-    above.set_title(heading, loc="left", fontsize=10, color=style.INK, parse_math=False)
+    style.heading(above, motion.name)
     for axes, values in ((above, motion.acceleration / STANDARD_GRAVITY), (below, velocity(motion))):
         shown = visible(values)
-        axes.plot(shown * motion.dt, values[shown], color=style.RECORD, linewidth=0.8)
-        axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
+        axes.plot(shown * motion.dt, values[shown], color=style.RECORD, linewidth=style.CURVE)
+        axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
         style.tidy(axes)
     for fit, look in zip(fits, style.PULSES, strict=False):
         t = fit.start + np.linspace(0.0, fit.pulse.duration, POINTS)
@@ -50,10 +47,10 @@ def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> F
         above.plot(t, fit.acceleration(t) / STANDARD_GRAVITY, label=label, **look)
         below.plot(t, fit.velocity(t), **look)
         end = max(end, fit.start + (1 + AROUND) * fit.pulse.duration)
-    above.set_ylabel("acceleration [g]", fontsize=9)
-    below.set_ylabel("velocity [m/s]", fontsize=9)
-    below.set_xlabel("time [s]", fontsize=9)
+    above.set_ylabel("acceleration [g]", fontsize=style.LABEL)
+    below.set_ylabel("velocity [m/s]", fontsize=style.LABEL)
+    below.set_xlabel("time [s]", fontsize=style.LABEL)
     below.set_xlim(min([0.0, *(fit.start for fit in fits)]), min(end, motion.duration))
-    figure.legend(loc="outside lower center", ncols=1, fontsize=8, frameon=False)
+    figure.legend(loc="outside lower center", ncols=1, fontsize=style.TICK, frameon=False)
     figure.align_ylabels()
     return figure

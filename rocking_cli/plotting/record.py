@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from textwrap import shorten
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,8 +11,6 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures, arias_build_up, displacement, velocity
 from rocking_cli.plotting import style
 from rocking_cli.plotting.thinning import visible
-
-LONGEST = 95  # characters of a heading
 
 
 def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
@@ -33,8 +29,7 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     """
     figure = style.new_figure(7.0)
     panels = figure.subplots(4, 1, sharex=True)
-    heading = shorten(motion.name, LONGEST, placeholder=" ...")
-    panels[0].set_title(heading, loc="left", fontsize=10, color=style.INK, parse_math=False)
+    style.heading(panels[0], motion.name)
     _draw_curve(panels[0], motion, motion.acceleration / STANDARD_GRAVITY, "acceleration [g]")
     _draw_curve(panels[1], motion, velocity(motion), "velocity [m/s]")
     _draw_curve(panels[2], motion, displacement(motion), "displacement [m]")
@@ -47,30 +42,30 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
             axes.axvspan(measures.t_5, measures.t_95, color=style.SHADE, linewidth=0, zorder=0)
         style.tidy(axes)
     panels[-1].set_xlim(0.0, motion.duration)
-    panels[-1].set_xlabel("time [s]", fontsize=9)
+    panels[-1].set_xlabel("time [s]", fontsize=style.LABEL)
     figure.align_ylabels()
     return figure
 
 
 def _draw_curve(axes: Axes, motion: GroundMotion, values: NDArray[np.float64], label: str) -> None:
     shown = visible(values)
-    axes.plot(shown * motion.dt, values[shown], color=style.INK, linewidth=0.8)
-    axes.axhline(0.0, color=style.FAINT, linewidth=0.6)
-    axes.set_ylabel(label, fontsize=9)
+    axes.plot(shown * motion.dt, values[shown], color=style.INK, linewidth=style.CURVE)
+    axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
+    axes.set_ylabel(label, fontsize=style.LABEL)
 
 
 def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> None:
     """Draw the Husid plot, with 5 and 95 % marked where there is any motion."""
-    axes.set_ylabel("Arias intensity [%]", fontsize=9)
+    axes.set_ylabel("Arias intensity [%]", fontsize=style.LABEL)
     axes.set_ylim(-15.0, 105.0)  # room for a word below 5 %
     if measures.t_5 is None or measures.t_95 is None:
         return
     built = 100 * arias_build_up(motion) / measures.arias
     shown = visible(built)
-    axes.plot(shown * motion.dt, built[shown], color=style.INK, linewidth=1.2)
+    axes.plot(shown * motion.dt, built[shown], color=style.INK, linewidth=style.MEDIUM)
     for time, level in ((measures.t_5, 5), (measures.t_95, 95)):
         axes.plot(time, level, marker="o", markersize=4.5, color=style.INK)
         text = f"{level} % at {time:.4g} s"
         # Below and to the right: a curve that only grows leaves that corner free.
-        axes.annotate(text, (time, level), (6, -3), textcoords="offset points", va="top", fontsize=8)
+        axes.annotate(text, (time, level), (6, -3), textcoords="offset points", va="top", fontsize=style.TICK)
     style.note(axes, f"{measures.arias:.3g} m/s; 5 to 95 % in {measures.t_95 - measures.t_5:.4g} s", height=0.5)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import shorten
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -10,9 +11,10 @@ from matplotlib.figure import Figure
 WIDTH = 7.2  # inches: the width of a page of text
 DPI = 150
 LONGEST = 95  # characters of a heading
-INK, FAINT, SHADE = "#222222", "#9a9a9a", "#eeeeee"
+INK, FAINT, SHADE, GRID = "#222222", "#9a9a9a", "#eeeeee", "#dddddd"
 TITLE, LABEL, TICK, SMALL = 10, 9, 8, 7  # sizes of type [pt]
-THIN, MEDIUM, BOLD = 0.6, 1.0, 1.6  # weights of line [pt]
+HAIR, THIN, CURVE, MEDIUM, BOLD = 0.4, 0.6, 0.7, 1.0, 1.6  # weights of line [pt]
+LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 # A structure: bodies apart by darkness too, marks in ink, what is measured in blue, thrust in a dash of its own.
 BODIES = ("#dfe6ec", "#f1e2c6", "#c2cdd8")
 EARTH, MEASURE = "#8a7f70", "#2b5d86"
@@ -33,6 +35,22 @@ PULSES: tuple[dict[str, Any], ...] = (
 )
 LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2": r"linear, $\kappa_2$"}
 
+# Regions of a plane of pulses, and the boundaries between them.
+# From white to dark, so that the order is seen in grey; blue to orange to brown for the colour-blind.
+REGIONS = {
+    "no uplift": "#ffffff",
+    "rocks": "#d6e6f2",
+    "overturns after one impact": "#f2b04a",
+    "overturns after two or more": "#c46a1b",
+    "overturns without impact": "#5b3a55",
+}
+BOUNDARIES: dict[str, dict[str, Any]] = {
+    "uplift": {"color": "#222222", "linestyle": "-", "linewidth": 1.0},
+    "without_impact": {"color": "#000000", "linestyle": "-", "linewidth": 2.0},
+    "after_one_impact": {"color": "#000000", "linestyle": (0, (4, 1.5)), "linewidth": 1.6},
+    "impact_at_end": {"color": "#000000", "linestyle": (0, (1, 1.5)), "linewidth": 1.3},
+}
+
 # For any number of curves: dash and mark tell them apart in grey, and where they lie on one another.
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (3, 1)))
 _HUES = ("#111111", "#d98200", "#1f77b4", "#8a3b62", "#3c7d3c", "#777777")
@@ -50,9 +68,21 @@ def distinct(k: int) -> dict[str, Any]:
     }
 
 
+def family(k: int) -> dict[str, Any]:
+    """The look of the curve number k of a family of five at most, in panels too small for marks."""
+    dashes = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
+    return {"color": ("#111111", "#1f77b4", "#e08a00", "#7b4ea3", "#4a8f3c")[k], "linestyle": dashes[k]}
+
+
 def new_figure(height: float) -> Figure:
     """An empty figure of the common width; `height` in inches."""
     return Figure(figsize=(WIDTH, height), dpi=DPI, layout="constrained")
+
+
+def heading(axes: Axes, text: str) -> None:
+    """The title of a picture, above its first panel; a $ in a name is a $."""
+    short = shorten(text, LONGEST, placeholder=" ...")
+    axes.set_title(short, loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
 def note(axes: Axes, text: str, height: float = 0.96) -> None:
@@ -63,7 +93,7 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
         xycoords="axes fraction",
         ha="right",
         va="top",
-        fontsize=8,
+        fontsize=TICK,
         parse_math=False,  # a $ in a name is a $
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
     )
@@ -71,8 +101,8 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
 
 def tidy(axes: Axes) -> None:
     """Common look of axes."""
-    axes.grid(True, color="#dddddd", linewidth=0.5)
+    axes.grid(True, color=GRID, linewidth=THIN)
     axes.set_axisbelow(True)
-    axes.tick_params(labelsize=8, colors=INK)
+    axes.tick_params(labelsize=TICK, colors=INK)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
