@@ -7,7 +7,7 @@ BIN := $(VENV)/Scripts
 endif
 STAMP := $(VENV)/.installed
 
-.PHONY: setup demo test lint type contracts check bench validation clean
+.PHONY: setup demo test lint type contracts check bench validation pictures clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -46,6 +46,9 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py
+
+pictures: setup  ## Write the pictures that the tests compare with anew; look at them before committing
+	$(BIN)/python -m tests.render
 
 clean:
 	$(PYTHON) -c "import shutil; [shutil.rmtree(p, ignore_errors=True) for p in ('$(VENV)', 'out', '.mypy_cache', '.ruff_cache', '.pytest_cache')]"
