@@ -131,6 +131,19 @@ class TestPicture:
             found = sorted((pin.point for pin in picture(silent).pins if pin.direction is direction), key=abs)
             np.testing.assert_allclose(found, sorted(silent.hinges(direction), key=abs), atol=1e-9)
 
+    def test_every_body_that_turns_about_a_pivot_is_joined_to_it(self):
+        class Capped(Bare):
+            def motion(self, phi, direction):
+                return [rotation(phi, complex(0.2 * direction), -direction)] * 2
+
+        shown = picture(Capped())
+        assert [(pin.part, round(pin.point.real, 9)) for pin in shown.pins] == [
+            (0, 0.2),
+            (1, 0.2),
+            (0, -0.2),
+            (1, -0.2),
+        ]
+
     def test_a_plugin_that_fails_is_called_by_its_name(self):
         class Odd(Bare):
             def sketch(self):

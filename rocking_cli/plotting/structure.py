@@ -25,6 +25,7 @@ HEAD, FOOT = 0.42, 0.34  # inches above a panel for its heading, and below it fo
 TITLE, NOTE, ROW = 0.34, 0.13, 0.13  # inches: of the title, and of a line of notes or under a panel
 NARROWEST = 0.95  # inches: a slender structure still needs room for its words
 EARTH = 0.08  # inches: depth of the hatches of the ground
+LONGEST_BAR = 0.8  # inches: of the scale
 WORDS = 46  # characters of a line under a panel
 NOTES = 125  # characters of a line of notes
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
@@ -128,6 +129,8 @@ def _of(line: Line) -> str:
 
 def _at_rest(picture: Picture) -> list[Pin]:
     """Hinges to mark at rest: those of the positive direction, and of the other what is called otherwise."""
+    if not picture.sketch.hinges:  # found, without letters
+        return list(picture.pins)
     positive = [pin for pin in picture.pins if pin.direction is Direction.POSITIVE]
     letters = {pin.letter for pin in positive}
     return positive + [pin for pin in picture.pins if pin not in positive and pin.letter not in letters]
@@ -221,7 +224,7 @@ def draw_ground(axes: Axes, picture: Picture, panel: Panel) -> None:
 
 def draw_scale(axes: Axes, panel: Panel) -> None:
     """A bar of a round length under the panel."""
-    longest = 0.3 * panel.inches.real / panel.scale
+    longest = LONGEST_BAR / panel.scale
     unit = 10.0 ** floor(log10(longest))
     length = next(times * unit for times in (5, 2, 1) if times * unit <= longest)
     half = length * panel.scale / panel.inches.real / 2

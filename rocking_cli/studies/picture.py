@@ -263,7 +263,9 @@ def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge
     hinges: list[Hinge] = []
 
     def add(centre: complex, names: tuple[str, ...], gap: Points) -> None:
-        if np.abs(gap).max() <= SAME * size and all(abs(centre - other.point) > SAME * size for other in hinges):
+        # Against what rests on the ground a body turns about a pivot that is found already.
+        known = len(names) > 1 and any(abs(centre - other.point) <= SAME * size for other in hinges)
+        if np.abs(gap).max() <= SAME * size and not known:
             hinges.append(Hinge("", centre, names))
 
     speeds = []  # of the point of the body at the origin, and its rate of turning, at rest
