@@ -20,7 +20,6 @@ from rocking_cli.studies.fragility.goodness import groups
 
 Reals = NDArray[np.float64]
 Bools = NDArray[np.bool_]
-LONGEST = 95  # characters of a heading
 WIDEST = 30.0  # ratio of the ends of an axis from which on it is logarithmic
 FINE = 400  # points of a curve
 LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
@@ -81,8 +80,8 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
     axes.set_xlim(fine[0], fine[-1])
     axes.set_ylim(-0.03, 1.06 if len(drawn) > 1 else 1.1)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_xlabel(label, fontsize=9)
-    axes.set_ylabel("probability of exceedance", fontsize=9)
+    axes.set_xlabel(label, fontsize=style.LABEL)
+    axes.set_ylabel("probability of exceedance", fontsize=style.LABEL)
     style.tidy(axes)
     handles = [_key(each, style.distinct(k)) for k, each in enumerate(drawn)]
     said = f"marks: observed parts; bars and shades: {100 * drawn[0].curve.confidence:.3g} % confidence"
@@ -91,7 +90,7 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
         handles=handles,
         loc="outside lower center",
         ncols=1,
-        fontsize=8,
+        fontsize=style.TICK,
         frameon=False,
         handlelength=4,
         alignment="left",
@@ -115,13 +114,13 @@ def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, counted: bo
     bars = np.array([part - (middle - half), middle + half - part]).clip(min=0.0)
     axes.errorbar(
         x, part, yerr=bars, fmt=look["marker"], color=look["color"], markersize=4.5, markerfacecolor="white",
-        elinewidth=0.8, capsize=2, zorder=4,
+        elinewidth=style.CURVE, capsize=2, zorder=4,
     )  # fmt: skip
     if counted:
         for place, n, m, top in zip(x, over, runs, part + bars[1], strict=True):
             axes.annotate(
-                f"{n:.0f}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=6.5,
-                color=style.INK,
+                f"{n:.0f}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center",
+                fontsize=style.SMALL, color=style.INK,
             )  # fmt: skip
 
 
@@ -137,7 +136,9 @@ def _draw_curve(axes: Axes, each: Drawn, look: dict[str, Any], fine: Reals) -> N
         fine = np.sort(np.concatenate([fine, [np.nextafter(at, 0), np.nextafter(at, np.inf)]]))
     else:
         axes.fill_between(fine, *curve.band(fine), **shade)
-    axes.plot(fine, curve.probability(fine), color=look["color"], linestyle=look["linestyle"], linewidth=1.5, zorder=3)
+    axes.plot(
+        fine, curve.probability(fine), color=look["color"], linestyle=look["linestyle"], linewidth=style.BOLD, zorder=3
+    )
 
 
 def _key(each: Drawn, look: dict[str, Any]) -> Line2D:
@@ -185,11 +186,11 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     top = 1.15 * floor
     middle = floor + 0.4 * (top - floor)
     axes.axhspan(floor, top, color=style.SHADE, linewidth=0)
-    axes.axhline(1.0, color=style.FAINT, linewidth=0.8)
+    axes.axhline(1.0, color=style.FAINT, linewidth=style.CURVE)
     for each in np.where(fallen, middle, peaks):
-        axes.plot(intensity, each, color=style.FAINT, linewidth=0.5, alpha=0.8)
+        axes.plot(intensity, each, color=style.FAINT, linewidth=style.THIN, alpha=0.8)
     ranked = np.sort(np.where(fallen, np.inf, peaks), axis=0)
-    handles = [Line2D([], [], color=style.FAINT, linewidth=0.5, label="a record")]
+    handles = [Line2D([], [], color=style.FAINT, linewidth=style.THIN, label="a record")]
     for k, (fractile, name) in zip((1, 0, 2), FRACTILES, strict=True):
         place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that so many records do not exceed
         look = style.distinct(k) | {"marker": "none", "linewidth": 2.0}
@@ -200,18 +201,18 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     for x, count in list(zip(intensity, fallen.sum(axis=0), strict=True))[::every]:
         if count:
             axes.annotate(f"{count}", (x, top), xytext=(0, -2), textcoords="offset points", ha="center", va="top",
-                          fontsize=7)  # fmt: skip
+                          fontsize=style.SMALL)  # fmt: skip
     if intensity[-1] > WIDEST * intensity[0]:
         axes.set_xscale("log")
         _plain_numbers(axes.xaxis)
     axes.set_xlim(float(intensity[0]), float(intensity[-1]))
     axes.set_ylim(0.0, top)
     axes.set_yticks([*np.arange(0.0, 1.1, 0.2), middle], [*(f"{y:.1f}" for y in np.arange(0.0, 1.1, 0.2)), "overturns"])
-    axes.set_xlabel(label, fontsize=9)
-    axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=9)
+    axes.set_xlabel(label, fontsize=style.LABEL)
+    axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=style.LABEL)
     style.tidy(axes)
     handles.append(Line2D([], [], linestyle="none", label=f"numbers: how many of {len(peaks)} overturn"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=8, frameon=False)
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=style.TICK, frameon=False)
     return figure
 
 
@@ -241,9 +242,9 @@ def draw_surface(
     axes = figure.subplots()
     _head(axes, title)
     handles: list[Any] = [
-        axes.scatter(x1[~exceeded], x2[~exceeded], s=14, facecolors="none", edgecolors="#1f77b4", linewidths=0.8,
-                     label=f"does not exceed ({(~exceeded).sum()})"),
-        axes.scatter(x1[exceeded], x2[exceeded], s=16, marker="x", color="#b35900", linewidths=1.0,
+        axes.scatter(x1[~exceeded], x2[~exceeded], s=14, facecolors="none", edgecolors=style.SPARED,
+                     linewidths=style.CURVE, label=f"does not exceed ({(~exceeded).sum()})"),
+        axes.scatter(x1[exceeded], x2[exceeded], s=16, marker="x", color=style.EXCEEDED, linewidths=style.MEDIUM,
                      label=f"exceeds ({exceeded.sum()})"),
     ]  # fmt: skip
     axes.set_xscale("log")
@@ -256,21 +257,21 @@ def draw_surface(
             across, up, surface.probability(*np.meshgrid(across, up)), levels=LEVELS, colors=style.INK,
             linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],
         )  # fmt: skip
-        axes.clabel(found, fmt=lambda level: f"{level:.0%}", fontsize=8)
+        axes.clabel(found, fmt=lambda level: f"{level:.0%}", fontsize=style.TICK)
         handles.append(Line2D([], [], color=style.INK, label="probability of exceedance"))
     for axis in (axes.xaxis, axes.yaxis):
         _plain_numbers(axis)
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1])
-    axes.set_xlabel(labels[0], fontsize=9)
-    axes.set_ylabel(labels[1], fontsize=9)
+    axes.set_xlabel(labels[0], fontsize=style.LABEL)
+    axes.set_ylabel(labels[1], fontsize=style.LABEL)
     style.tidy(axes)
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=style.TICK, frameon=False)
     return figure
 
 
 def _head(axes: Axes, title: str) -> None:
-    axes.set_title(shorten(title, LONGEST, placeholder=" ..."), loc="left", fontsize=10, parse_math=False)
+    style.heading(axes, title)
 
 
 def _plain_numbers(axis: Any) -> None:

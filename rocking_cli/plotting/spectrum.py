@@ -18,7 +18,6 @@ from rocking_cli.plotting import style
 from rocking_cli.studies.shaken import Reals
 from rocking_cli.studies.spectrum import Spectrum
 
-LONGEST = 95  # characters of a heading
 NAME = 40  # characters of a structure's name in the legend
 SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks
 SHADED = 2  # curves up to which the spread of the motions is drawn: more shades cannot be told apart
@@ -42,7 +41,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     low, high = min(fractiles), max(fractiles)
     figure = style.new_figure(6.4 if many else 4.8)
     panels = figure.subplots(1 + many, 1, sharex=True, squeeze=False, height_ratios=[2.4, 1][: 1 + many])[:, 0]
-    panels[0].set_title(shorten(title, LONGEST, placeholder=" ..."), loc="left", fontsize=10, parse_math=False)
+    style.heading(panels[0], title)
     medians = [each.fractile(0.5) for each in spectra]
     rows = [k for k, median in enumerate(medians) if np.isinf(median).any()]
     shaded = many and low < high and len(spectra) <= SHADED
@@ -55,15 +54,15 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         _draw_line(panels[0], each, k, median, row=top * (1 + ROW * (rows.index(k) + 0.5)) if k in rows else np.nan)
         if each.given is not None:
             for axes in panels:
-                axes.axvline(each.periods[each.given], color=style.INK, linewidth=0.8, linestyle=":", zorder=1)
+                axes.axvline(each.periods[each.given], color=style.INK, linewidth=style.CURVE, linestyle=":", zorder=1)
     _scale_peaks(panels[0], top, len(rows))
     if many:
         panels[1].set_ylim(-0.04, 1.04)
         panels[1].yaxis.set_major_formatter(PercentFormatter(1.0))
-        panels[1].set_ylabel("share that overturns", fontsize=9)
+        panels[1].set_ylabel("share that overturns", fontsize=style.LABEL)
     what = r"median peak $\phi/\phi_{cr}$" if many else r"peak $\phi/\phi_{cr}$"
-    panels[0].set_ylabel(what, fontsize=9)
-    panels[-1].set_xlabel(r"size $2\pi/p$ [s]", fontsize=9)
+    panels[0].set_ylabel(what, fontsize=style.LABEL)
+    panels[-1].set_xlabel(r"size $2\pi/p$ [s]", fontsize=style.LABEL)
     for axes in panels:
         axes.set_xscale("log")
         axes.margins(x=0.01)
@@ -71,7 +70,9 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         style.tidy(axes)
     _second_axis(panels[0], spectra)
     handles = _legend(spectra, (low, high) if shaded else None)
-    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8, frameon=False, handlelength=3.5)
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False, handlelength=3.5
+    )
     return figure
 
 
@@ -100,7 +101,7 @@ def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float]
     axes.fill_between(each.periods, lower, upper, color=style.distinct(k)["color"], alpha=0.15, linewidth=0)
     if every:
         curves = np.where(np.isfinite(each.peak_ratio), each.peak_ratio, np.nan) * _within(each)
-        axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=0.5)
+        axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=style.THIN)
 
 
 def _draw_line(axes: Axes, each: Spectrum, k: int, values: Reals, row: float = np.nan) -> None:
@@ -146,7 +147,7 @@ def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
         return
     shape = own[0] if own else spectra[0].shape
     above = axes.secondary_xaxis("top", functions=(shape.scales, shape.periods))  # type: ignore[arg-type]
-    above.set_xlabel("scale (1: as given)" if own else "size R of the blocks [m]", fontsize=9)
+    above.set_xlabel("scale (1: as given)" if own else "size R of the blocks [m]", fontsize=style.LABEL)
     _log_ticks(above.xaxis, spectra[0].scales[-1] / spectra[0].scales[0])
     above.tick_params(labelsize=8, colors=style.INK)
 
@@ -164,5 +165,5 @@ def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None) -> 
         label = f"{100 * bounds[0]:g} to {100 * bounds[1]:g} % of the motions"
         handles.append(Patch(color=style.INK, alpha=0.15, linewidth=0, label=label))
     if bounds is not None and len(spectra) == 1:
-        handles.append(Line2D([], [], color=style.FAINT, linewidth=0.5, label="each motion"))
+        handles.append(Line2D([], [], color=style.FAINT, linewidth=style.THIN, label="each motion"))
     return handles

@@ -51,6 +51,8 @@ BOUNDARIES: dict[str, dict[str, Any]] = {
     "impact_at_end": {"color": "#000000", "linestyle": (0, (1, 1.5)), "linewidth": 1.3},
 }
 
+SPARED, EXCEEDED = "#1f77b4", "#b35900"  # runs below and above a limit, apart by their marks too
+
 # For any number of curves: dash and mark tell them apart in grey, and where they lie on one another.
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (3, 1)))
 _HUES = ("#111111", "#d98200", "#1f77b4", "#8a3b62", "#3c7d3c", "#777777")
