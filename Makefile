@@ -6,8 +6,9 @@ ifeq ($(OS),Windows_NT)
 BIN := $(VENV)/Scripts
 endif
 STAMP := $(VENV)/.installed
+DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test lint type contracts check bench validation pictures clean
+.PHONY: setup demo test lint type contracts check bench validation pictures docs clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -50,5 +51,14 @@ validation: setup  ## Write docs/validation.md anew
 pictures: setup  ## Write the pictures that the tests compare with anew; look at them before committing
 	$(BIN)/python -m tests.render
 
+$(DOCS_STAMP): $(STAMP)
+	$(BIN)/python -m pip install --quiet --editable ".[docs]"
+	$(BIN)/python -c "import pathlib; pathlib.Path('$(DOCS_STAMP)').touch()"
+
+docs: $(DOCS_STAMP)  ## The documentation as a site, out/site/index.html; every warning is an error
+	$(BIN)/python docs/make_runs.py
+	$(BIN)/python docs/make_reference.py
+	$(BIN)/python -m sphinx -W --keep-going -E -q -b html -d out/doctrees docs out/site
+
 clean:
-	$(PYTHON) -c "import shutil; [shutil.rmtree(p, ignore_errors=True) for p in ('$(VENV)', 'out', '.mypy_cache', '.ruff_cache', '.pytest_cache')]"
+	$(PYTHON) -c "import shutil; [shutil.rmtree(p, ignore_errors=True) for p in ('$(VENV)', 'out', 'docs/_generated', '.mypy_cache', '.ruff_cache', '.pytest_cache')]"

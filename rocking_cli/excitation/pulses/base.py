@@ -66,7 +66,7 @@ class Pulse(ABC):
     period: float
 
     name: ClassVar[str]
-    """What it is called in a specification such as `sine:0.6g:0.8s`."""
+    """What it is called in a specification, such as `sine`."""
     title: ClassVar[str]
     """What it is, in a few words."""
     form: ClassVar[str] = "AMPLITUDE:PERIOD"
