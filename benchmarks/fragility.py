@@ -9,7 +9,6 @@ Its 100 records are made, not measured: shaking between 0.2 and 15 Hz that rises
 from __future__ import annotations
 
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -20,7 +19,6 @@ import numpy as np
 
 from rocking_cli.studies.fragility import engines
 from rocking_cli.studies.fragility.campaign import prepare, run
-from rocking_cli.studies.fragility.sources import Motions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
 from rocking_cli.studies.fragility.work import carry_out, unit_size, units
@@ -75,17 +73,19 @@ def in_process(path: Path, jobs: int | None = None, address: str | None = None) 
             return prepared.plan.total, time.perf_counter() - start
 
 
-def kernel_alone(path: Path) -> tuple[int, float]:
-    """The same runs without a store or an engine: units made before, on one thread."""
+def kernel_alone(path: Path) -> float:
+    """Seconds that the runs take without a store or an engine: units made before, on one thread."""
     with tempfile.TemporaryDirectory() as folder, Store.writing(Path(folder) / "study.db") as store:
         prepared = prepare(load_study(path), store)
         study, plan = prepared.study, prepared.plan
-        motions = Motions(study.sources, plan.records)
-        made = list(units(plan, study.samples, motions, "nonlinear", store.finished, unit_size(plan.total, 1)))
-    start = time.perf_counter()
-    for unit in made:
-        carry_out(unit)
-    return len(made), time.perf_counter() - start
+        made = list(units(plan, study.samples, prepared.motions, "nonlinear", store.finished, unit_size(plan.total, 1)))
+    seconds = []
+    for _ in range(3):
+        start = time.perf_counter()
+        for unit in made:
+            carry_out(unit)
+        seconds.append(time.perf_counter() - start)
+    return min(seconds)
 
 
 def command(path: Path) -> None:
@@ -103,9 +103,9 @@ def command(path: Path) -> None:
     print(f"| {runs:,} | {min(seconds):.1f} to {max(seconds):.1f} | {GOAL:g} |", flush=True)
 
 
-def threads(path: Path) -> float:
-    """Prints scaling by threads; gives seconds of one processor a run."""
-    _, alone = kernel_alone(path)
+def threads(path: Path) -> None:
+    """Scaling by threads."""
+    alone = kernel_alone(path)
     runs, _ = in_process(path, 1)
     print(f"\nThe same {runs:,} runs on threads of one process; the kernel alone takes {alone:.2f} s on one\n")
     print("| threads | s | runs a second | over one thread | more than the kernel alone |")
@@ -116,12 +116,13 @@ def threads(path: Path) -> float:
         first = first or seconds
         more = f"{100 * (seconds / alone - 1):+.1f} %" if jobs == 1 else ""
         print(f"| {jobs} | {seconds:.2f} | {runs / seconds:,.0f} | {first / seconds:.2f} | {more} |", flush=True)
-    return alone / runs
 
 
-def workers(path: Path, kernel: float) -> float:
-    """Prints scaling by worker processes; gives the share of overhead with one."""
+def workers(path: Path) -> tuple[float, float]:
+    """Prints scaling by worker processes; gives seconds a run of the kernel, and the overhead with one worker."""
     import distributed
+
+    alone = kernel_alone(path)
 
     print(
         f"\n{4 * 3 * RECORDS * LEVELS * 2:,} runs on worker processes of one thread each, on {os.cpu_count()} cores\n"
@@ -136,10 +137,10 @@ def workers(path: Path, kernel: float) -> float:
                 (in_process(path, address=cluster.scheduler_address) for _ in range(2)), key=lambda x: x[1]
             )
         first = first or seconds
-        share = share or seconds / (runs * kernel) - 1
+        share = share or seconds / alone - 1
         more = f"{100 * share:+.1f} %" if count == 1 else ""
         print(f"| {count} | {seconds:.2f} | {runs / seconds:,.0f} | {first / seconds:.2f} | {more} |", flush=True)
-    return share
+    return alone / runs, share
 
 
 def large(kernel: float, overhead: float) -> None:
@@ -199,12 +200,10 @@ def main() -> None:
         write_records(folder / "records")
         path = write_study(folder)
         command(path)
-        kernel = threads(path)
-        overhead = workers(write_study(folder, 4 * LEVELS), kernel)
-        large(kernel, overhead)
+        threads(path)
+        large(*workers(write_study(folder, 4 * LEVELS)))
         memory(folder)
 
 
 if __name__ == "__main__":
-    assert resource is not None
     main()

@@ -39,7 +39,7 @@ def problems(
             place = (*place, error["ctx"]["field"])
         elif not _concerns(document.data, place, error):
             continue
-        message, hint = _say(model, place, error, owner, lister)
+        message, hint = say(model, place, error, owner, lister)
         key = error["type"] == "extra_forbidden"
         found.setdefault(place, document.at(place, message, hint, key=key))
     return list(found.values())
@@ -86,8 +86,8 @@ def _got(given: Any) -> str:
     return f"got a {'list' if isinstance(given, list) else 'mapping'}"
 
 
-def _say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, lister: str) -> tuple[str, str | None]:
-    """An error in plain words, and a hint."""
+def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, lister: str) -> tuple[str, str | None]:
+    """One error in plain words, and a hint; the arguments are those of `problems`, and its place in the data."""
     kind, given, ctx = error["type"], error["input"], error.get("ctx", {})
     fields = _fields(model, place[:-1])
     info = next((fields[part] for part in reversed(place) if isinstance(part, str) and part in fields), None)
@@ -120,8 +120,8 @@ def _say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, 
         return f"must be {ctx['expected']}, {got}".replace("'", ""), None
     if kind in ("too_short", "too_long"):
         least, most = ctx.get("min_length"), ctx.get("max_length")
-        wanted = f"at least {least}" if least is not None else f"at most {most}"
-        return f"must have {wanted} entries, has {ctx['actual_length']}", None
+        wanted, count = ("at least", least) if least is not None else ("at most", most)
+        return f"must have {wanted} {count} entr{'y' if count == 1 else 'ies'}, has {ctx['actual_length']}", None
     if kind == "list_type":
         return f"must be a list, {got}", None
     if kind in ("model_type", "model_attributes_type", "dict_type"):

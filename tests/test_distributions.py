@@ -19,6 +19,10 @@ CASES = {
         {"normal": {"mean": 0.0, "deviation": 1.0, "low": 9.0}},
         stats.truncnorm(9.0, np.inf),
     ),
+    "where no number holds what lies between": (
+        {"normal": {"mean": 0.0, "deviation": 1.0, "low": -39.0, "high": -38.0}},
+        stats.truncnorm(-39.0, -38.0),
+    ),
     "lognormal": ({"lognormal": {"median": 3.0, "dispersion": 0.4}}, stats.lognorm(0.4, scale=3.0)),
     "uniform": ({"uniform": {"low": -1.0, "high": 3.0}}, stats.uniform(-1.0, 4.0)),
     "triangular": ({"triangular": {"low": 1.0, "mode": 1.5, "high": 4.0}}, stats.triang(0.5 / 3, 1.0, 3.0)),

@@ -165,6 +165,15 @@ method: ida
         (("name: uncertain", "name: valley bridge"), "structures", "two of them are called valley bridge"),
         (("pulse: sine:0.6g:0.8s", f"file: {EXAMPLES / 'accel.csv'}"), "records", "two of them"),
         (("count: 8", "count: 1"), "levels.count", "at least 2"),
+        (("least: 0.5, most: 4", "least: 4, most: 4.000000000000002"), "levels.most", "repeat"),
+        (("most: 4", "most: 1e300"), "levels.most", "at most 1e+06"),
+        (
+            ("csv\n", f"csv\n  - {{file: '{EXAMPLES}/*.yaml', vertical: '{EXAMPLES}/*.csv'}}\n"),
+            "records[2].vertical",
+            "one",
+        ),
+        (("csv\n", "csv\n  - {file: none.csv}\n"), "records[2].file", "no such file"),
+        (("csv\n", f"csv\n  - {EXAMPLES}/study/../accel.csv\n"), "records", "two of them"),
         (("most: 4", "most: 0.4"), "levels.most", "more than least"),
         (("count: 8", "values: [1]"), "levels", "give values, or"),
         (("samples: 5", "samples: 5\nhazard: {file: none.csv}"), None, "none.csv"),
@@ -177,6 +186,11 @@ def test_one_problem_at_a_time(tmp_path, change, field, said):
     assert said in str(found[0])
     if field is not None:
         assert found[0].field == field and found[0].line is not None
+
+
+def test_samples_that_cannot_be_built_are_told_in_plain_words(tmp_path):
+    (found,) = problems(tmp_path, GOOD.replace("deviation: 0.05", "deviation: 9"))
+    assert "width must be more than 0 m, got -" in found.message
 
 
 def test_nothing_varies_and_yet_samples_are_asked_for(tmp_path):

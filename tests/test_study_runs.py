@@ -21,7 +21,7 @@ from rocking_cli import GroundMotion, equivalent_block, exact_response, load_str
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.fragility import assess, engines, store, work
+from rocking_cli.studies.fragility import assess, engines, sources, store, work
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.intensity import MEASURES, Scales, intensity
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
@@ -231,7 +231,7 @@ def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path)
     process.send_signal(signal.SIGINT)
     out, said = process.communicate()
     assert process.returncode == 130 and not out
-    assert said.endswith(f"interrupted: what was finished is in {place}; the same command goes on from there\n")
+    assert said.endswith("interrupted: what was finished is kept, and the same command goes on from there\n")
     assert 0 < finished(place) < long_study[1].plan.total
 
 
@@ -297,7 +297,7 @@ class TestChanges:
         [
             ("count: 5", "count: 6", "levels.values is now"),
             ("most: 4", "most: 5", "levels.values[5] was 4.0, is now 5.0"),
-            ("mean: 0.7", "mean: 0.8", "structures[2].vary.width.normal.mean was 0.7, is now 0.8"),
+            ("mean: 0.7", "mean: 0.8", "structures.uncertain.vary.width.normal.mean was 0.7, is now 0.8"),
             ("samples: 4", "samples: 4\nseed: 9", "seed was 0, is now 9"),
             ("  - pulse: ricker:0.6g:1.2s\n", "", "records is now without ricker:0.6g:1.2s"),
             ("samples: 4", "samples: 4\nmodel: linear2", "model was nonlinear, is now linear2"),
@@ -335,6 +335,36 @@ class TestChanges:
         result = CliRunner().invoke(main, ["fragility", str(path), "--store", str(place), "--json"])
         assert result.exit_code == 0
         assert {each["limit_state"] for each in json.loads(result.stdout)["curves"]} == {0.5}
+
+    def test_another_order_is_said_in_one_line(self, whole, tmp_path):
+        place = tmp_path / "study.db"
+        place.write_bytes(whole[2].read_bytes())
+        first, others = STUDY.split("structures:\n")[1].split("\n", 1)
+        second, rest = others.split("records:")
+        path = write(tmp_path, f"structures:\n{second}{first}\nrecords:{rest}")
+        with pytest.raises(InputError) as caught:
+            carry_out(path, place)
+        assert all("order of structures" in str(each) for each in caught.value.problems)
+
+    def test_another_mechanics_of_the_same_version_is_named(self, whole, tmp_path):
+        place = tmp_path / "study.db"
+        place.write_bytes(whole[2].read_bytes())
+        connection = sqlite3.connect(place)
+        connection.execute("UPDATE sample SET p = p * 1.001 WHERE id = 2")
+        connection.commit()
+        connection.close()
+        with pytest.raises(InputError, match=r"p of sample 1 of uncertain was .*, is now"):
+            carry_out(whole[0], place)
+
+    def test_restart_keeps_the_old_runs_until_new_ones_can_begin(self, whole, tmp_path, monkeypatch):
+        monkeypatch.setattr(engines, "PATIENCE", 0.3)
+        place = tmp_path / "study.db"
+        place.write_bytes(whole[2].read_bytes())
+        command = ["fragility", str(whole[0]), "--store", str(place), "--restart", "--scheduler", "tcp://127.0.0.1:9"]
+        result = CliRunner().invoke(main, command)
+        assert result.exit_code == 1 and "no scheduler answers" in result.stderr
+        assert dump(place) == dump(whole[2])
+        assert [each.name for each in tmp_path.iterdir()] == ["study.db"]
 
     def test_restart_begins_anew(self, whole, tmp_path):
         place = tmp_path / "study.db"
@@ -435,6 +465,57 @@ class TestOtherFiles:
         connection.close()
         assert "later version" in CliRunner().invoke(main, ["results", str(place)]).stderr
 
+    @pytest.mark.parametrize("name", [".", "..", ""])
+    def test_a_folder_is_no_study(self, name):
+        result = CliRunner().invoke(main, ["fragility", name])
+        assert result.exit_code == 2 and "this is a folder" in result.stderr
+        assert "this is a folder" in CliRunner().invoke(main, ["results", "."]).stderr
+
+    def test_a_study_is_not_its_own_store(self, tmp_path):
+        write(tmp_path, count=5).rename(tmp_path / "study.db")
+        result = CliRunner().invoke(main, ["fragility", str(tmp_path / "study.db")])
+        assert result.exit_code == 2 and "would overwrite what is read" in result.stderr
+
+
+def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "WAITING", 0.2)
+    monkeypatch.setattr(store, "PATIENCE", 0.0)
+    place = tmp_path / "study.db"
+    with Store.writing(place) as kept, engines.threads(1) as workers:
+        prepared = prepare(load_study(whole[0]), kept)
+        with Store.reading(place) as reader:
+            assert reader.count() == (0, 0)
+            run(prepared, kept, workers)
+            assert reader.count()[0] > 0
+
+
+def test_units_hold_few_models(tmp_path, monkeypatch):
+    monkeypatch.setattr(work, "MODELS", 3)
+    path = write(tmp_path, STUDY.replace("samples: 4", "samples: 20"), count=2)
+    with Store.writing(tmp_path / "study.db") as kept:
+        prepared = prepare(load_study(path), kept)
+        study, plan = prepared.study, prepared.plan
+        made = list(work.units(plan, study.samples, prepared.motions, "nonlinear", kept.finished, 1000))
+    assert max(len(each.models) for each in made) == 3
+    assert np.concatenate([each.id for each in made]).tolist() == list(range(plan.total))
+
+
+def test_the_rate_is_there_though_other_measures_are_asked_for(tmp_path):
+    more = "measures: [PGV]\nhazard: {points: [[0.1, 0.01], [1, 0.0001]]}\nmethod:"
+    path = write(tmp_path, STUDY.replace("method:", more), count=5)
+    result = CliRunner().invoke(main, ["fragility", str(path), "--json"])
+    curves = json.loads(result.stdout)["curves"]
+    assert {each["measure"] for each in curves} == {"PGV", "PGA"}
+    rates = {name: [each["annual_rate"] for each in curves if each["measure"] == name] for name in ("PGA", "PGV")}
+    assert any(rates["PGA"]) and not any(rates["PGV"])
+
+
+def test_structures_of_like_names_have_a_picture_each(tmp_path):
+    text = STUDY.replace("name: uncertain", "name: Valley/bridge")
+    result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text, 5)), "--pictures", "drawn"])
+    assert "wrote 5 pictures" in result.stderr
+    assert len({each.name.lower() for each in (tmp_path / "drawn").iterdir()}) == 5
+
 
 def test_intensities_are_those_of_their_definitions():
     scales = Scales(p=np.array([2.0]), lambda_=np.array([0.25]), gravity=np.array([4.903325]))
@@ -460,7 +541,8 @@ def test_columns_of_a_row_are_those_of_the_table(whole):
     assert tuple(names) == COLUMNS
 
 
-def test_a_file_that_changes_while_the_study_runs_stops_it(tmp_path, monkeypatch):
+def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, monkeypatch):
+    monkeypatch.setattr(sources, "KEPT", 1)
     (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
     path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*.csv", "accel.csv"))
     with Store.writing(tmp_path / "study.db") as kept, engines.threads(1) as workers:

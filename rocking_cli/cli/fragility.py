@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -63,39 +64,43 @@ def command(
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
 
-    place = Path(store) if store is not None else Path(file).with_suffix(".db")
-    keep_apart([("--store", place if store is not None else None)], [file])
-    study = load_study(file)
-    if check:
-        results.print_check(study, as_json=as_json)
-        return
-    check_writable(place)
-    folder = ready(pictures)
-    if restart:
-        _forget(place)
     try:
-        with Store.writing(place) as kept:
-            _run(study, kept, jobs, scheduler)
+        study = load_study(file)
+        place = Path(store) if store is not None else Path(file).with_suffix(".db")
+        keep_apart([("--store" if store is not None else "the store beside the study", place)], [file])
+        if check:
+            complete = results.print_check(study, as_json=as_json)
+        else:
+            check_writable(place)
+            folder = ready(pictures)
+            _bring_up_to_date(study, place, jobs, scheduler, restart=restart)
+            with Store.reading(place) as kept:
+                complete = results.give(kept, None, folder, as_json=as_json)
     except KeyboardInterrupt:
-        terminal.error(f"interrupted: what was finished is in {place}; the same command goes on from there")
+        terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(INTERRUPTED)
-    with Store.reading(place) as kept:
-        complete = results.give(kept, None, folder, as_json=as_json)
     if not complete:
         ctx.exit(results.INCOMPLETE)
 
 
-def _forget(place: Path) -> None:
-    """Remove a store, if it is one."""
+def _bring_up_to_date(study: Study, place: Path, jobs: int | None, scheduler: str | None, *, restart: bool) -> None:
+    """Run what the store does not hold; with `restart` the old one is thrown away once a new one has begun."""
     from rocking_cli.studies.fragility.store import Store
 
-    if place.exists():
+    aside = place.with_name(f"{place.name}.before")
+    if restart and place.exists():
         with Store.writing(place):
-            pass  # not another file, and nobody is at work on it
-        place.unlink()
+            pass  # it is a store, and nobody is at work on it
+        place.replace(aside)
+    try:
+        with Store.writing(place) as kept:
+            _run(study, kept, jobs, scheduler, begun=lambda: aside.unlink(missing_ok=True) if restart else None)
+    finally:
+        if restart and aside.exists():
+            aside.replace(place)
 
 
-def _run(study: Study, store: Store, jobs: int | None, scheduler: str | None) -> None:
+def _run(study: Study, store: Store, jobs: int | None, scheduler: str | None, begun: Callable[[], None]) -> None:
     from rocking_cli.cli import work
     from rocking_cli.studies.fragility.campaign import prepare, run
 
@@ -106,13 +111,11 @@ def _run(study: Study, store: Store, jobs: int | None, scheduler: str | None) ->
         return
     if scheduler is None:
         work.say_if_compiling()
-    with (
-        _engine(jobs, scheduler) as engine,
-        terminal.progress(
-            prepared.plan.total, "runs", done=prepared.finished, failed=prepared.failed
-        ) as advance,
-    ):  # fmt: skip
-        run(prepared, store, engine, advance)
+    with _engine(jobs, scheduler) as engine:
+        begun()
+        done, failed = prepared.finished, prepared.failed
+        with terminal.progress(prepared.plan.total, "runs", done=done, failed=failed) as advance:
+            run(prepared, store, engine, advance)
 
 
 def _engine(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Engine]:
@@ -130,7 +133,8 @@ def _report(prepared: Prepared) -> None:
     doubtful = [each.name for each in plan.records if each.doubts]
     if doubtful:
         named = ", ".join(doubtful[:3]) + (" ..." if len(doubtful) > 3 else "")
-        terminal.warning(f"{len(doubtful)} records are doubtful: `rocking record FILE` says why: {named}")
+        count = "1 record is" if len(doubtful) == 1 else f"{len(doubtful)} records are"
+        terminal.warning(f"{count} doubtful: `rocking record FILE` says why: {named}")
     for name in prepared.mended:
         terminal.note(f"{name}: could not be used when the study was begun, and is run now")
     if prepared.finished:

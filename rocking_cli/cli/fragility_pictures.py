@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -46,7 +47,10 @@ def draw_all(
     drawn: dict[str, Figure] = {}
 
     def add(name: str, figure: Figure) -> None:
-        drawn[re.sub(r"[^\w>.]+", "-", name).strip("-").replace(">", "over") + ".png"] = figure
+        plain = re.sub(r"[^\w>.]+", "-", name).strip("-").replace(">", "over")
+        taken = {each.lower() for each in drawn}  # many file systems are blind to case
+        numbered = (f"{plain}{'-' + str(k) if k > 1 else ''}.png" for k in count(1))
+        drawn[next(each for each in numbered if each.lower() not in taken)] = figure
 
     structures = list(dict.fromkeys(each.structure for each in curves))
     for measure in definition.fitted_measures:

@@ -22,25 +22,35 @@ if TYPE_CHECKING:
 NAMED = 10  # bad records or samples named one by one
 
 
-def print_check(study: Study, *, as_json: bool) -> None:
-    """Say what a study would run."""
-    given = study.definition
+def print_check(study: Study, *, as_json: bool) -> bool:
+    """Examine the records and structures of a study, and say what it would run.
+
+    Returns
+    -------
+    bool
+        Whether all of them can be used.
+    """
+    from rocking_cli.studies.fragility.campaign import survey
+
+    with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
+        plan, _ = survey(study, examined)
+    report_useless(plan)
+    samples, records, etas, levels, polarities = plan.shape
     counts = {
         "structures": len(study.structures),
-        "samples": len(study.samples),
-        "records": len(study.sources),
-        "eta": len(given.eta or [None]),
-        "levels": len(given.levels.levels()),
-        "polarities": len(given.polarities),
+        "samples": samples,
+        "records": records,
+        "eta": etas,
+        "levels": levels,
+        "polarities": polarities,
     }
-    runs = 1
-    for name, count in counts.items():
-        runs *= count if name != "structures" else 1
+    bad = _useless(plan)
     if as_json:
-        terminal.print_json({"study": study.name, **counts, "runs": runs})
-        return
-    rows = [[name, f"{count}"] for name, count in counts.items()]
-    terminal.table(study.name, ["", "number"], [*rows, ["runs", f"{runs:,}"]], numbers=(1,))
+        terminal.print_json({"study": study.name, **counts, "runs": plan.total, "left_out": bad})
+    else:
+        rows = [[name, f"{count}"] for name, count in counts.items()]
+        terminal.table(study.name, ["", "number"], [*rows, ["runs", f"{plan.total:,}"]], numbers=(1,))
+    return not bad
 
 
 def give(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool) -> bool:
@@ -123,7 +133,8 @@ def _print(
     surfaces: Sequence[Bivariate],
 ) -> None:
     bad = sum(each.reason is not None for each in plan.records)
-    records = f"{len(plan.records) - bad} records" + (f" ({bad} more cannot be used)" if bad else "")
+    good = len(plan.records) - bad
+    records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
     so_far = "" if finished == plan.total else f" of {plan.total:,}, so far"
     terminal.result(f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}, seed {definition.seed}")
     for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):

@@ -56,6 +56,9 @@ class LazyGroup(click.Group):
         except RockingError as error:
             terminal.error(str(error))
             ctx.exit(error.exit_code)
+        except MemoryError:
+            terminal.error("there is not enough memory for this on this machine")
+            ctx.exit(1)
         except BrokenPipeError:
             raise  # the reader has seen enough: click ends quietly
         except OSError as error:
@@ -80,6 +83,7 @@ def main() -> None:
       rocking respond block.yaml --record accel.csv --plot response.png
       rocking pulse --a 4 --omega 6
       rocking overturning block.yaml --plot map.png
+      rocking fragility study.yaml
       rocking spectrum block.yaml --record "records/*.AT2"
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,

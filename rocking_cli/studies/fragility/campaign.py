@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
-from math import nan
+from math import isclose, nan
 from typing import Any
 
 from rocking_cli import __version__
@@ -15,13 +15,15 @@ from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.registry import Registry
 from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
-from rocking_cli.studies.fragility.sources import Motions, Record, Source, examine
+from rocking_cli.studies.fragility.sources import Motions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
 from rocking_cli.studies.fragility.work import carry_out, unit_size, units
 
 Progress = Callable[[int, int], None]
 """Called with how many runs have finished since the last call, and how many of these failed."""
+SAME = 1e-9  # relative difference of parameters that come from the same mechanics, on whatever machine
+MOST = 10  # changes of samples named
 Examined = Callable[[int], None]
 
 
@@ -35,6 +37,8 @@ class Prepared:
         The study.
     plan : Plan
         Its runs.
+    motions : Motions
+        Its ground motions.
     finished, failed : int
         Runs that the store holds already, and those of them that could not be followed.
     mended : tuple of str
@@ -43,6 +47,7 @@ class Prepared:
 
     study: Study
     plan: Plan
+    motions: Motions
     finished: int
     failed: int
     mended: tuple[str, ...]
@@ -66,36 +71,62 @@ def prepare(study: Study, store: Store, examined: Examined | None = None) -> Pre
         If anything that decides the runs has changed since the store was begun: every change is named. If no
         structure or no record can be used.
     """
-    tell = examined if examined is not None else lambda count: None
     known = store.plan() if not store.empty else None
-    records, mended = _records(study.sources, known, tell)
-    trials = []
+    plan, motions = survey(study, examined, known)
+    given, records = study.definition, plan.records
+    bad = {each.name for each in known.records if each.reason is not None} if known is not None else set()
+    mended = [k for k, record in enumerate(records) if record.reason is None and record.name in bad]
+    facts = {"description": study.description(), "versions": versions(study), "hash": digest(study.description())}
+    asked = {
+        "name": study.name,
+        "definition": given.model_dump(mode="json", exclude_unset=True),
+        "hazard": _hazard(study),
+    }
+    if known is None:
+        _refuse_useless(plan)
+        store.begin(plan, {**facts, **asked, "libraries": libraries()})
+    else:
+        _refuse_changes(store, facts, known, plan)
+        for k in mended:
+            store.replace_record(k, records[k])
+        store.note(asked)
+        store.commit()
+    finished, failed = store.count()
+    return Prepared(study, plan, motions, finished, failed, tuple(records[k].name for k in mended))
+
+
+def survey(study: Study, examined: Examined | None = None, known: Plan | None = None) -> tuple[Plan, Motions]:
+    """Examine the records and structures of a study.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    examined : callable, optional
+        Called with the number of records and structures examined since the last call.
+    known : Plan, optional
+        What is known already: of records that could be used only the checksum is taken anew.
+
+    Returns
+    -------
+    plan : Plan
+        All runs.
+    motions : Motions
+        The ground motions, those that were read still in memory as far as there is room.
+    """
+    tell = examined if examined is not None else lambda count: None
+    before = {each.name: each for each in known.records} if known is not None else {}
+    motions = Motions(study.sources)
+    records, trials = [], []
+    for k, source in enumerate(study.sources):
+        records.append(motions.examine(k, before.get(source.name)))
+        tell(1)
     for sample in study.samples:
         trials.append(_trial(study, sample))
         tell(1)
     given = study.definition
-    plan = Plan(
-        trials,
-        records,
-        given.eta if given.eta is not None else [nan],
-        given.levels.measure,
-        given.levels.levels(),
-        given.polarities,
-    )
-    facts = {"description": study.description(), "versions": versions(study), "hash": digest(study.description())}
-    if known is None:
-        _refuse_useless(plan)
-        store.begin(plan, {**facts, "libraries": libraries()})
-    else:
-        _refuse_changes(store, facts, known, records)
-        for k in mended:
-            store.replace_record(k, records[k])
-    store.note(
-        {"name": study.name, "definition": given.model_dump(mode="json", exclude_unset=True), "hazard": _hazard(study)}
-    )
-    store.commit()
-    finished, failed = store.count()
-    return Prepared(study, plan, finished, failed, tuple(records[k].name for k in mended))
+    etas = given.eta if given.eta is not None else [nan]
+    return Plan(trials, records, etas, given.levels.measure, given.levels.levels(), given.polarities), motions
 
 
 def run(prepared: Prepared, store: Store, engine: Engine, progress: Progress | None = None) -> None:
@@ -114,8 +145,7 @@ def run(prepared: Prepared, store: Store, engine: Engine, progress: Progress | N
     """
     study, plan = prepared.study, prepared.plan
     size = unit_size(plan.total - prepared.finished, engine.workers)
-    motions = Motions(study.sources, plan.records)
-    to_do = units(plan, study.samples, motions, study.definition.model, store.finished, size)
+    to_do = units(plan, study.samples, prepared.motions, study.definition.model, store.finished, size)
     for rows in engine.map(carry_out, to_do):
         store.add(rows)
         if progress is not None:
@@ -132,32 +162,6 @@ def versions(study: Study) -> dict[str, str]:
 def libraries() -> dict[str, str]:
     """Versions of what else has a say in the last bits: kept for whoever compares two stores."""
     return {"python": platform.python_version(), **{name: version(name) for name in ("numpy", "numba", "scipy")}}
-
-
-def _records(
-    sources: Sequence[Source], known: Plan | None, tell: Examined
-) -> tuple[list[Record], list[int]]:  # fmt: skip
-    """What there is to know of the records, read only where the store does not know; and which are new to it."""
-    records: list[Record] = []
-    mended = []
-    before = {each.name: each for each in known.records} if known is not None else {}
-    for k, source in enumerate(sources):
-        old = before.get(source.name)
-        if old is not None and old.reason is None:
-            records.append(replace(old, checksum=_checksum(source)))
-        else:
-            records.append(examine(source))
-            if old is not None and records[-1].reason is None:
-                mended.append(k)
-        tell(1)
-    return records, mended
-
-
-def _checksum(source: Source) -> str:
-    try:
-        return source.checksum()
-    except InputError:
-        return ""
 
 
 def _trial(study: Study, sample: Sample) -> Trial:
@@ -194,19 +198,35 @@ def _refuse_useless(plan: Plan) -> None:
             raise InputError(*(Problem(f"no {what} can be used: {reason}") for reason in list(reasons)[:10]))
 
 
-def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, records: Sequence[Record]) -> None:
+def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan) -> None:
     """Raise with every difference between what the store was begun with and what there is now."""
     found = [*differences(store.fact("description"), facts["description"])]
     found += [f"version of {each}" for each in differences(store.fact("versions"), facts["versions"])]
     before = {each.name: each for each in known.records}
-    for record in records:
+    for record in now.records:
         old = before.get(record.name)
         if old is not None and old.reason is None and old.checksum != record.checksum:
             found.append(f"the record {record.name} has changed, or cannot be read any more")
+    if not found:  # the same fields: a mechanism may still make something else of them
+        found = [each for pair in zip(known.trials, now.trials, strict=True) for each in _other_mechanics(*pair)][:MOST]
     if found:
         hint = "give --restart to run all anew, or --store OTHER.db to keep both"
         *others, last = [Problem(each, field="changed since the store was begun") for each in found]
         raise InputError(*others, replace(last, hint=hint))
+
+
+def _other_mechanics(before: Trial, now: Trial) -> list[str]:
+    """What a mechanism of the same version and fields gives otherwise than it did."""
+    name = f"sample {now.number} of {now.structure}"
+    if (before.reason is None) != (now.reason is None):
+        return [f"{name} {'can be run now' if now.reason is None else f'cannot be run any more: {now.reason}'}"]
+    pairs = {each.name: (getattr(before, each.name), getattr(now, each.name)) for each in fields(Trial)}
+    pairs |= {f"drawn {key}": (value, now.drawn.get(key, nan)) for key, value in before.drawn.items()}
+    return [
+        f"{key.rstrip('_')} of {name} was {old:.10g}, is now {new:.10g}"
+        for key, (old, new) in pairs.items()
+        if isinstance(old, float) and not isclose(old, new, rel_tol=SAME)
+    ]
 
 
 def differences(before: Any, now: Any, where: str = "") -> list[str]:

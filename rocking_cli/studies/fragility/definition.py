@@ -91,17 +91,20 @@ class RecordEntry(BaseModel):
         return self
 
 
+Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
+
+
 class Levels(BaseModel):
     """Intensities to which every record is scaled."""
 
     model_config = STRICT
 
     measure: LevelMeasure = Field(description="what the levels are of")
-    values: Annotated[list[Positive], Unlike] | None = Field(
+    values: Annotated[list[Intensity], Unlike] | None = Field(
         None, min_length=1, max_length=MOST, description="the levels"
     )
-    least: Positive | None = Field(None, description="the smallest")
-    most: Positive | None = Field(None, description="the largest")
+    least: Intensity | None = Field(None, description="the smallest")
+    most: Intensity | None = Field(None, description="the largest")
     count: int | None = Field(None, ge=2, le=MOST, description="how many")
     spacing: Literal["even", "log"] = Field("even", description="steps of equal size, or of equal ratio")
 
@@ -115,6 +118,8 @@ class Levels(BaseModel):
             raise ValueError("give values, or least, most and count")
         elif self.least >= self.most:
             raise geometry_error("most", f"must be more than least ({self.least:g}), got {self.most:g}")
+        elif len(set(self.levels())) < self.count:
+            raise geometry_error("most", f"is so close to least that {self.count} levels between them repeat")
         return self
 
     def levels(self) -> list[float]:
@@ -161,7 +166,7 @@ class Definition(BaseModel):
     polarities: Annotated[list[Literal[1, -1]], Unlike] = Field(
         [1], min_length=1, max_length=2, description="-1 reverses the records"
     )
-    eta: list[Restitution] | None = Field(
+    eta: Annotated[list[Restitution], Unlike] | None = Field(
         None, min_length=1, description="restitutions, instead of the structures' own"
     )
     model: ModelName = Field("nonlinear", description="equation of motion")
@@ -185,7 +190,7 @@ class Definition(BaseModel):
         if self.method == "cloud" and self.levels.measure != SCALE:
             raise geometry_error("levels", f"a cloud scales records by factors: `measure: {SCALE}`")
         if self.method != "cloud" and "levels" not in self.model_fields_set:
-            raise geometry_error("levels", f"is missing: {self.method} need intensities to scale to")
+            raise geometry_error("levels", "is missing: every record is scaled to levels of intensity")
         varied = any(each.vary for each in self.structures)
         if varied and "samples" not in self.model_fields_set:
             raise geometry_error("samples", "is missing: how many structures are drawn from the distributions")
@@ -197,11 +202,11 @@ class Definition(BaseModel):
 
     @property
     def fitted_measures(self) -> list[str]:
-        """The measures that curves are fitted over: those asked for, else those of the levels and of the hazard."""
-        if self.measures is not None:
-            return list(self.measures)
-        usual = PGA if self.levels.measure == SCALE else self.levels.measure
-        return list(dict.fromkeys([usual, self.hazard_measure or usual]))
+        """The measures of curves: those asked for, else that of the levels; and that of the hazard."""
+        found: list[str] = list(self.measures or [])
+        if not found:
+            found = [PGA if self.levels.measure == SCALE else self.levels.measure]
+        return list(dict.fromkeys([*found, *([self.hazard.measure] if self.hazard is not None else [])]))
 
     @property
     def hazard_measure(self) -> str | None:

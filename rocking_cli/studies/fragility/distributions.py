@@ -131,13 +131,15 @@ def _standard(
 
 
 def _standard_normal(probability: Reals, low: float, high: float) -> Reals:
-    from scipy.special import ndtr, ndtri
+    """Quantiles between two bounds: in logarithms, as so little may lie between them that no number can hold it."""
+    from scipy.special import log_ndtr, ndtri_exp
 
     if low > 0:  # by symmetry, where the distribution function has its digits
         upper: Reals = -_standard_normal(1 - probability, -high, -low)
         return upper
-    below, above = ndtr(low), ndtr(high)
-    return np.asarray(np.clip(ndtri(below + probability * (above - below)), low, high))
+    below, above = log_ndtr(low), log_ndtr(high)
+    between = above + np.log(-np.expm1(below - above))
+    return np.asarray(np.clip(ndtri_exp(np.logaddexp(below, np.log(probability) + between)), low, high))
 
 
 def _triangular(shape: Triangular, probability: Reals) -> Reals:
@@ -175,4 +177,4 @@ def draw(
     uniform = rng.random(count)
     if method == "latin hypercube":
         uniform = (rng.permutation(count) + uniform) / count
-    return distribution.quantile(np.maximum(uniform, LEAST))
+    return distribution.quantile(np.clip(uniform, LEAST, 1 - 2 * LEAST))

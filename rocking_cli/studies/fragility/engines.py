@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import logging
 import os
-from collections.abc import Callable, Iterable, Iterator
+import warnings
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from rocking_cli import __version__
 from rocking_cli.errors import InputError, RockingError
 
+if TYPE_CHECKING:
+    import distributed
+
 A = TypeVar("A")
 B = TypeVar("B")
+GOES_ON = "what was finished is kept, and the same command goes on from there"
 AHEAD = 2  # units on their way for each worker: one at work, one that waits
 TRIES = 5  # workers that may be lost with a unit before it is given up
+QUIET = 20.0  # s without anything finished after which to see whether anybody is at work
 PATIENCE = 10.0  # s for an answer of the scheduler
 
 
@@ -25,6 +32,8 @@ class Engine:
 
     executor: Executor
     workers: int
+    still_there: Callable[[], None] = lambda: None
+    """Called where nothing has been finished for a while; raises if nothing will be."""
 
     def map(self, function: Callable[[A], B], items: Iterable[A]) -> Iterator[B]:
         """What a function makes of each item, as they are finished; items are taken as there is room for them."""
@@ -32,15 +41,21 @@ class Engine:
         try:
             for item in items:
                 on_the_way.add(self.executor.submit(function, item))
-                if len(on_the_way) >= AHEAD * self.workers:
-                    done, on_the_way = wait(on_the_way, return_when=FIRST_COMPLETED)
-                    yield from (each.result() for each in done)
+                while len(on_the_way) >= AHEAD * self.workers:
+                    on_the_way = yield from self._finished(on_the_way)
             while on_the_way:
-                done, on_the_way = wait(on_the_way, return_when=FIRST_COMPLETED)
-                yield from (each.result() for each in done)
+                on_the_way = yield from self._finished(on_the_way)
         finally:  # an error or an interrupt: what has not begun is not begun
             for each in on_the_way:
                 each.cancel()
+
+    def _finished(self, on_the_way: set[Future[B]]) -> Generator[B, None, set[Future[B]]]:
+        """Yield what is finished next; returns what is still on its way."""
+        done, rest = wait(on_the_way, QUIET, return_when=FIRST_COMPLETED)
+        if not done:
+            self.still_there()
+        yield from (each.result() for each in done)
+        return rest
 
 
 @contextmanager
@@ -84,22 +99,46 @@ def cluster(address: str) -> Iterator[Engine]:
     except ImportError:
         raise InputError("a cluster needs dask.distributed: pip install 'rocking-cli[cluster]'") from None
     try:
-        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise ClusterError(f"no scheduler answers at {address}: {error}") from None
-    with client:
-        workers = _threads(client, address)
-        try:
-            yield Engine(client.get_executor(pure=False, retries=TRIES), workers)
-        except (CancelledError, OSError, distributed.KilledWorker) as error:
-            raise ClusterError(f"the cluster at {address} was lost: {error}") from error
+        with _quiet(), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Sending large graph")  # a unit is as large as it must be
+            with _client(address) as client:
+                workers = _threads(client, address)
+
+                def still_there() -> None:
+                    if not client.nthreads():
+                        raise ClusterError(f"the cluster at {address} has no workers left: {GOES_ON}")
+
+                yield Engine(client.get_executor(pure=False, retries=TRIES), workers, still_there)
+    except (CancelledError, OSError, distributed.KilledWorker) as error:
+        reason = str(error) or "its scheduler does not answer any more"
+        raise ClusterError(f"the cluster at {address} was lost ({reason}): {GOES_ON}") from error
 
 
-def _threads(client: object, address: str) -> int:
-    """How many units the workers of a cluster run at a time, after making sure that they can."""
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep dask from printing its own tracebacks: what goes wrong is said once."""
+    logs = [logging.getLogger(name) for name in ("distributed", "distributed.client", "tornado.application")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)
+
+
+def _client(address: str) -> distributed.Client:
     import distributed
 
-    assert isinstance(client, distributed.Client)
+    try:
+        return distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise ClusterError(f"no scheduler answers at {address}: {error}") from None
+
+
+def _threads(client: distributed.Client, address: str) -> int:
+    """How many units the workers of a cluster run at a time, after making sure that they can."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
     except TimeoutError:

@@ -95,21 +95,20 @@ class Record:
     doubts: int = 0
 
 
-def examine(source: Source) -> Record:
-    """Read a ground motion and measure it; one that cannot be used says why."""
+def examine(source: Source) -> tuple[Record, GroundMotion | None]:
+    """Read a ground motion and measure it; one that cannot be used is absent, and its record says why."""
     checksum = ""
     try:
         checksum = source.checksum()
         motion = source.read()
         measured = measure(motion)
     except InputError as error:
-        return Record(source.name, checksum, reason=str(error).splitlines()[0])
+        return Record(source.name, checksum, reason=str(error).splitlines()[0]), None
     if measured.pga == 0:
-        return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale")
+        return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale"), None
     doubtful = len(doubts(motion, measured)) if source.path is not None else 0  # what a formula gives is meant
-    return Record(
-        source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful
-    )  # fmt: skip
+    found = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful)
+    return found, motion
 
 
 class Motions:
@@ -119,26 +118,48 @@ class Motions:
     ----------
     sources : iterable of Source
         The motions.
-    records : iterable of Record
-        What is known of them: a file that has changed since is refused.
     """
 
-    def __init__(self, sources: Iterable[Source], records: Iterable[Record]) -> None:
-        self._known = list(zip(sources, records, strict=True))
+    def __init__(self, sources: Iterable[Source]) -> None:
+        self._sources = list(sources)
+        self._checksums: dict[int, str] = {}
         self._kept: OrderedDict[int, GroundMotion] = OrderedDict()
         self._size = 0
+
+    def examine(self, k: int, known: Record | None) -> Record:
+        """What there is to know of a motion; of one that is known and can be used only the checksum is taken anew."""
+        source = self._sources[k]
+        if known is not None and known.reason is None:
+            record = replace(known, checksum=_checksum(source))
+        else:
+            record, motion = examine(source)
+            if motion is not None:
+                self._keep(k, motion)
+        self._checksums[k] = record.checksum
+        return record
 
     def __getitem__(self, k: int) -> GroundMotion:
         """A motion by its place. Raises `InputError` if its file has changed."""
         if k in self._kept:
             self._kept.move_to_end(k)
             return self._kept[k]
-        source, record = self._known[k]
-        if source.checksum() != record.checksum:
+        source = self._sources[k]
+        if source.checksum() != self._checksums[k]:
             raise InputError(Problem("has changed while the study ran", source.name, hint="begin the study anew"))
-        motion = self._kept[k] = source.read()
+        return self._keep(k, source.read())
+
+    def _keep(self, k: int, motion: GroundMotion) -> GroundMotion:
+        self._kept[k] = motion
         self._size += motion.npts
         while self._size > KEPT and len(self._kept) > 1:
             _, dropped = self._kept.popitem(last=False)
             self._size -= dropped.npts
         return motion
+
+
+def _checksum(source: Source) -> str:
+    """Its checksum, empty if it cannot be read any more."""
+    try:
+        return source.checksum()
+    except InputError:
+        return ""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.studies.fragility.engines import GOES_ON
 from rocking_cli.studies.fragility.plan import Plan, Trial
 from rocking_cli.studies.fragility.sources import Record
 
@@ -24,6 +25,7 @@ Integers = NDArray[np.int64]
 MARK = 0x526F636B  # "Rock", in the header of the file
 VERSION = 1  # of the tables below
 PATIENCE = 1.0  # s between transactions: what is finished in between is run again after a crash
+READ = 100_000  # runs read at a time
 WAITING = 60.0  # s for somebody who reads the store meanwhile
 STANDS, FAILED = 0, 2  # outcomes; 1 and -1 for overturning in the positive and the negative direction
 
@@ -59,6 +61,14 @@ JOIN record ON record.id = run.id / {record} % {records}
 JOIN level ON level.id = run.id / {level} % {levels}
 JOIN polarity ON polarity.id = run.id % {polarities};
 """
+
+
+HINTS = {
+    sqlite3.SQLITE_FULL: f"make room: {GOES_ON}",
+    sqlite3.SQLITE_IOERR: f"see to the disk: {GOES_ON}",
+    sqlite3.SQLITE_BUSY: f"another program has kept it open for long: {GOES_ON}",
+    sqlite3.SQLITE_CORRUPT: "restore a copy of it, or give --restart",
+}
 
 
 class StoreError(RockingError):
@@ -164,6 +174,8 @@ class Store:
     @contextmanager
     def reading(cls, path: Path) -> Iterator[Store]:
         """Open a store to read. Raises `InputError` if it is none, `StoreError` if the system refuses."""
+        if path.is_dir():
+            raise InputError(Problem("this is a folder, not the store of a study", str(path)))
         if not path.exists():
             raise InputError(Problem("no such store", str(path), hint="`rocking fragility STUDY.yaml` makes one"))
         with _connected(path) as connection:
@@ -171,8 +183,7 @@ class Store:
             store = cls(path, connection)
             if store.empty:
                 raise InputError(Problem("this is not the store of a study, or it is still empty", str(path)))
-            connection.execute("BEGIN")  # one state of the store, whatever is added meanwhile
-            yield store
+            yield store  # in short reads: a long one would keep a study that runs from adding to it
 
     @property
     def empty(self) -> bool:
@@ -277,10 +288,12 @@ class Store:
 
     def runs(self, first: int, stop: int) -> Rows:
         """The finished runs with numbers from `first` to before `stop`."""
-        found = self._connection.execute(
-            f"SELECT {', '.join(COLUMNS)} FROM run WHERE id >= ? AND id < ?", (first, stop)
-        ).fetchall()
-        table = np.array(found, dtype=np.float64).reshape(-1, len(COLUMNS))
+        query = f"SELECT {', '.join(COLUMNS)} FROM run WHERE id >= ? AND id < ?"
+        tables = []
+        for start in range(first, stop, READ):  # as Python's numbers they take ten times the memory
+            found = self._connection.execute(query, (start, min(start + READ, stop))).fetchall()
+            tables.append(np.array(found, dtype=np.float64).reshape(-1, len(COLUMNS)))
+        table = np.concatenate(tables) if tables else np.empty((0, len(COLUMNS)))
         columns: dict[str, Any] = dict(zip(COLUMNS, table.T, strict=True))
         return Rows(**{**columns, **{name: columns[name].astype(np.int64) for name in ("id", "outcome")}})
 
@@ -301,7 +314,7 @@ def _connected(path: Path) -> Iterator[sqlite3.Connection]:
     except sqlite3.DatabaseError as error:
         if getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_NOTADB:
             raise InputError(Problem("this is not the store of a study", str(path))) from None
-        hint = "what was finished is kept: make room or put it right, and run the same command again"
+        hint = HINTS.get(getattr(error, "sqlite_errorcode", 0) & 0xFF)  # the rest says more than is needed here
         raise StoreError(str(Problem(f"the store cannot be used: {error}", str(path), hint=hint))) from error
     finally:
         if connection is not None:

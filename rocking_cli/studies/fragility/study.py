@@ -14,9 +14,10 @@ import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.core import Mechanism
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.selection import select
+from rocking_cli.field_problems import say
 from rocking_cli.plugins import did_you_mean
 from rocking_cli.structure import load_structure
 from rocking_cli.studies.fragility.definition import (
@@ -97,14 +98,15 @@ class Study:
         """All that decides what is run, apart from what is in the records, as plain data."""
         given = self.definition
         return {
-            "structures": [
-                {
+            "structures": {
+                structure.name: {
                     "mechanism": structure.mechanism,
-                    **structure.model_dump(exclude_none=True),
+                    **structure.model_dump(exclude_none=True, exclude={"name"}),
                     "vary": entry.model_dump(exclude_none=True)["vary"],
                 }
                 for structure, entry in zip(self.structures, given.structures, strict=True)
-            ],
+            },
+            "order of structures": [structure.name for structure in self.structures],
             "records": [
                 {"name": source.name, **source.entry.model_dump(exclude_none=True, exclude={"file"})}
                 for source in self.sources
@@ -150,7 +152,9 @@ def load_study(path: str | Path) -> Study:
         for k, entry in sound_entries(document, "records", RecordEntry)
         for source in _sources(document, ("records", k), path.parent, entry)
     ]
-    _refuse_repeated(document, "records", [source.name for source in sources])
+    _refuse_repeated(
+        document, "records", [source.path.resolve().as_posix() if source.path else source.name for source in sources]
+    )
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
     hazard = _hazard(document, path.parent, definition) if definition is not None else None
     samples: list[Sample] = []
@@ -182,23 +186,36 @@ def _structure(document: Document, place: Place, folder: Path, entry: StructureE
 
 
 def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry) -> list[Source]:
-    try:
-        if entry.pulse is not None:
+    if entry.pulse is not None:
+        try:
             parse_pulse(entry.pulse)
-            return [Source(entry.pulse, entry)]
-        assert entry.file is not None
-        vertical = select(entry.vertical, folder)[0] if entry.vertical is not None else None
-        return [
-            Source(_shown(each, folder), entry, each, vertical) for each in select(entry.file, folder)
-        ]  # fmt: skip
-    except (InputError, MechanismError) as error:
-        found = error.problems if isinstance(error, InputError) else (Problem(str(error)),)
-        held = place in document.values and isinstance(document.data["records"][place[-1]], dict)
-        key: Place = (*place, "pulse" if entry.pulse is not None else "file") if held else place
-        for problem in found:
-            what = f"{problem.file}: {problem.message}" if problem.file else problem.message
-            document.problems.append(document.at(key, what, problem.hint))
+        except (InputError, MechanismError) as error:
+            document.problems.append(document.at(_within(document, place, "pulse"), str(error)))
+            return []
+        return [Source(entry.pulse, entry)]
+    assert entry.file is not None
+    files = _select(document, _within(document, place, "file"), entry.file, folder)
+    vertical = None
+    if entry.vertical is not None:
+        found = _select(document, (*place, "vertical"), entry.vertical, folder)
+        if max(len(files), len(found)) > 1:
+            what = "a vertical component belongs to one record: give each record an entry of its own"
+            document.problems.append(document.at((*place, "vertical"), what))
+        vertical = found[0] if found else None
+    return [Source(_shown(each, folder), entry, each, vertical) for each in files]
+
+
+def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:
+    try:
+        return select(pattern, folder)
+    except InputError as error:
+        document.problems += [document.at(place, f"{each.file}: {each.message}", each.hint) for each in error.problems]
         return []
+
+
+def _within(document: Document, place: Place, key: str) -> Place:
+    """The place of a key of an entry; of the entry itself where that is a plain text."""
+    return (*place, key) if (*place, key) in document.values else place
 
 
 def _shown(path: Path, folder: Path) -> str:
@@ -241,7 +258,8 @@ def _samples(document: Document, definition: Definition, k: int, structure: Mech
             samples.append(Sample(k, number, drawn, structure.model_copy(update=drawn)))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
-            wrong.append(f"{'.'.join(map(str, first['loc']))}: {first['msg']}, got {first['input']}")
+            message, _ = say(type(structure), first["loc"], first, structure.mechanism, "")
+            wrong.append(f"{first['loc'][0]} {message}" if first["loc"] else message)
     if wrong:
         what = f"{len(wrong)} of {definition.samples} samples cannot be built; the first: {wrong[0]}"
         hint = "bound the distributions with `low` and `high`"

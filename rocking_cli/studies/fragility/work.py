@@ -22,6 +22,7 @@ Integers = NDArray[np.int64]
 SMALLEST, LARGEST = 64, 4096  # runs of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
 SHARE = 16  # units for each worker at least, so that all end together
 SAMPLES = 4_000_000  # of the records of a unit, at most: 64 megabytes
+MODELS = 16  # of a unit, at most: some 30 megabytes, of arches 120
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,27 +92,25 @@ def units(
     """
     models = _Models(samples, plan.etas, model)
     waiting: list[Integers] = []
-    held = 0  # samples of the records of the waiting runs
-    for missing in _missing(plan, finished):
-        for start in range(0, len(missing), size):
-            part = missing[start : start + size]
-            npts = plan.records[int(part[0]) // plan.block % len(plan.records)].npts
-            if waiting and (sum(map(len, waiting)) + len(part) > size or held + npts > SAMPLES):
-                yield _unit(plan, np.concatenate(waiting), models, motions)
-                waiting, held = [], 0
-            waiting.append(part)
-            held += npts
+    trials: set[int] = set()
+    npts: dict[int, int] = {}
+    held = 0
+    for sample, record, part in _parts(plan, finished, size):
+        trials.add(sample)
+        npts[record] = plan.records[record].npts
+        if waiting and (held + len(part) > size or len(trials) > MODELS or sum(npts.values()) > SAMPLES):
+            yield _unit(plan, np.concatenate(waiting), models, motions)
+            waiting, trials, npts, held = [], {sample}, {record: npts[record]}, 0
+        waiting.append(part)
+        held += len(part)
     if waiting:
         yield _unit(plan, np.concatenate(waiting), models, motions)
 
 
-def unit_size(runs: int, workers: int) -> int:
-    """Runs of a unit, for so many runs on so many workers."""
-    return min(max(ceil(runs / (SHARE * workers)), SMALLEST), LARGEST)
-
-
-def _missing(plan: Plan, finished: Callable[[int, int], Integers]) -> Iterator[Integers]:
-    """The runs to do of each sample under each record, of those that can be used."""
+def _parts(
+    plan: Plan, finished: Callable[[int, int], Integers], size: int
+) -> Iterator[tuple[int, int, Integers]]:  # fmt: skip
+    """The runs to do of each sample under each record that can be used, so many at a time at most."""
     records = len(plan.records)
     for k, trial in enumerate(plan.trials):
         if trial.reason is not None:
@@ -121,8 +120,14 @@ def _missing(plan: Plan, finished: Callable[[int, int], Integers]) -> Iterator[I
         done[finished(first, first + done.size) - first] = True
         for r, record in enumerate(plan.records):
             to_do = np.flatnonzero(~done[r * plan.block : (r + 1) * plan.block])
-            if record.reason is None and to_do.size:
-                yield first + r * plan.block + to_do
+            if record.reason is None:
+                for start in range(0, len(to_do), size):
+                    yield k, r, first + r * plan.block + to_do[start : start + size]
+
+
+def unit_size(runs: int, workers: int) -> int:
+    """Runs of a unit, for so many runs on so many workers."""
+    return min(max(ceil(runs / (SHARE * workers)), SMALLEST), LARGEST)
 
 
 def _unit(plan: Plan, runs: Integers, models: _Models, motions: Motions) -> Unit:
