@@ -11,11 +11,7 @@ from rocking_cli.cli import options, terminal
 from rocking_cli.cli.pictures import write_picture
 
 if TYPE_CHECKING:
-    from rocking_cli.core import Equivalence, Mechanism
     from rocking_cli.studies.linearisation import Linearisation
-
-CURVE = 60  # points of a curve
-STRONGEST = 10.0  # acceleration over uplift to which the curves go
 
 
 def _fractions(ctx: click.Context, param: click.Parameter, values: tuple[float, ...]) -> tuple[float, ...]:
@@ -70,13 +66,14 @@ def command(
     from rocking_cli.core import equivalent_block
     from rocking_cli.errors import RockingError
     from rocking_cli.files import keep_apart
+    from rocking_cli.studies.linearisation import compare
     from rocking_cli.studies.trust import trust
 
     keep_apart([("--plot", plot)], [file])
     mechanism = structures.load([file] if file else [])[0]
     try:
         equivalence = equivalent_block(mechanism)
-        curves, asked = _compare(mechanism, equivalence, amplitudes, accelerations)
+        curves, asked = compare(mechanism, equivalence, amplitudes, accelerations)
     except RockingError as error:
         raise type(error)(f"{mechanism.name}: {error}") from error
     verdict = trust(curves, asked)
@@ -102,22 +99,6 @@ def command(
             numbers=(2, 3),
         )
     terminal.result(verdict)
-
-
-def _compare(
-    mechanism: Mechanism, equivalence: Equivalence, amplitudes: tuple[float, ...], accelerations: tuple[float, ...]
-) -> tuple[list[Linearisation], list[Linearisation]]:
-    """The curves and the values asked for, of one direction if both are alike."""
-    import numpy as np
-
-    from rocking_cli.core import Direction
-    from rocking_cli.studies.linearisation import linearisation
-
-    directions = [Direction.POSITIVE] if equivalence.symmetric else list(Direction)
-    r = np.linspace(0.01, 0.99, CURVE)
-    a = np.geomspace(1.02, max(STRONGEST, *accelerations), CURVE)
-    curves = [linearisation(mechanism, direction, r, a) for direction in directions]
-    return curves, [linearisation(mechanism, direction, amplitudes, accelerations) for direction in directions]
 
 
 def _draw(path: Path, curves: list[Linearisation], asked: list[Linearisation], title: str) -> None:

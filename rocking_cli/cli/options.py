@@ -78,10 +78,10 @@ reading: Decorator = _in_order(
 """How to read a record: `units`, `dt` and `channel`."""
 
 
-def scaling(*polarities: str, both: str = "one after the other") -> Decorator:
+def scaling(*polarities: str, both: str = "one after the other", default: str = "1") -> Decorator:
     """How to change a record: `scale`, `target_pga`, `target_pgv` and `polarity`, which is one of these.
 
-    `both` says what becomes of both polarities, where they are one of them.
+    `both` says what becomes of both polarities, where they are one of them; `default` is what holds unless asked.
     `motions.factor` turns the first three, of which a user may give one, into a number.
     """
     return _in_order(
@@ -95,7 +95,7 @@ def scaling(*polarities: str, both: str = "one after the other") -> Decorator:
         click.option(
             "--polarity",
             type=click.Choice(polarities),
-            default="1",
+            default=default,
             show_default=True,
             help="-1 reverses the record." + (f" both: {both}." if "both" in polarities else ""),
         ),

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
-from math import degrees, isclose
+from math import degrees
 from typing import Any
 
 from rocking_cli.cli import terminal
 from rocking_cli.core import Direction, Equivalence
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import SENSE, verdict
+from rocking_cli.dynamics.verdict import SENSE, governs, verdict
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 
@@ -20,7 +20,6 @@ Runs = Mapping[int, Histories]
 """Histories under each polarity asked for, 1 or -1."""
 
 FIRST = 12  # impacts of a model in its table; --json has all
-ALIKE = 1e-6  # relative difference below which neither polarity governs
 
 
 def record_json(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
@@ -60,7 +59,7 @@ def _motion_json(motion: GroundMotion) -> dict[str, Any]:
 def runs_json(runs: Runs, etas: Equivalence | None) -> dict[str, Any]:
     """The responses, under their polarities if there are two; with the impacts if there are `etas`."""
     each = {str(polarity): {"responses": histories_json(histories, etas)} for polarity, histories in runs.items()}
-    return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": _governs(runs)[0]}
+    return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]}
 
 
 def histories_json(histories: Histories, etas: Equivalence | None) -> dict[str, Any]:
@@ -108,7 +107,7 @@ def print_tables(title: str, runs: Runs, etas: Equivalence | None) -> None:
         if len(runs) > 1:
             terminal.result()
     if len(runs) > 1:
-        terminal.result(_governs(runs)[1])
+        terminal.result(governs(runs)[1])
 
 
 def _print_table(title: str, histories: Histories) -> None:
@@ -142,26 +141,6 @@ def _print_impacts(title: str, history: History, etas: Equivalence) -> None:
         terminal.result(f"{history.impact_count - FIRST} more follow: --json lists them")
 
 
-def _governs(runs: Runs) -> tuple[int | None, str]:
-    """Which polarity is the worse by the best model, if one is; and a sentence on it."""
-    model: ModelName = "nonlinear" if "nonlinear" in runs[1] else next(iter(runs[1]))
-    by_model = f"by the {model} model"
-    one, other = runs[1][model], runs[-1][model]
-    if one.overturned != other.overturned:
-        worse = 1 if one.overturned else -1
-        return worse, f"Polarity {worse} governs {by_model}: it overturns, polarity {-worse} does not."
-    sizes = {1: _size(one), -1: _size(other)}
-    if isclose(sizes[1], sizes[-1], rel_tol=ALIKE):
-        return None, f"Neither polarity governs {by_model}: they do alike."
-    if one.overturned:
-        worse = min(sizes, key=sizes.__getitem__)
-        said = f"both overturn, this one at {sizes[worse]:.4g} s, the other at {sizes[-worse]:.4g} s"
-    else:
-        worse = max(sizes, key=sizes.__getitem__)
-        said = f"it rocks to {sizes[worse]:.4g} of the critical rotation, the other to {sizes[-worse]:.4g}"
-    return worse, f"Polarity {worse} governs {by_model}: {said}."
-
-
 def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
     """A sentence on how much of the response to a record is that to its pulse, by the best model."""
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
@@ -173,8 +152,3 @@ def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
         return f"By the {model} model it does not rock under the record."
     share = 100 * (alone.peak_ratio or 0.0) / whole.peak_ratio
     return f"By the {model} model the pulse alone rocks it to {share:.3g} % of the peak under the record."
-
-
-def _size(history: History) -> float:
-    """What two polarities are compared by: the overturning time [s], else the peak ratio."""
-    return (history.overturning_time if history.overturned else history.peak_ratio) or 0.0

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import isclose
 
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History, Outcome
 from rocking_cli.dynamics.model import ModelName
 
 CLOSE = 0.8  # phi/phi_cr from which a motion is close to overturning
+ALIKE = 1e-6  # relative difference below which neither polarity governs
 APART, NOTABLE = 0.2, 0.02  # relative and absolute difference of peak ratios from which models are far from each other
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
@@ -68,3 +70,34 @@ def _none_overturns(histories: Mapping[ModelName, History]) -> list[str]:
     if max(peaks.values()) > CLOSE:
         said.append("That is close to overturning: vary the motion before relying on it.")
     return said
+
+
+def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None, str]:
+    """Which polarity is the worse by the best model, if one is; and a sentence on it.
+
+    Parameters
+    ----------
+    runs : mapping of int to mapping of str to History
+        The histories under the motion as it is, 1, and reversed, -1.
+    """
+    model: ModelName = "nonlinear" if "nonlinear" in runs[1] else next(iter(runs[1]))
+    by_model = f"by the {model} model"
+    one, other = runs[1][model], runs[-1][model]
+    if one.overturned != other.overturned:
+        worse = 1 if one.overturned else -1
+        return worse, f"Polarity {worse} governs {by_model}: it overturns, polarity {-worse} does not."
+    sizes = {1: _size(one), -1: _size(other)}
+    if isclose(sizes[1], sizes[-1], rel_tol=ALIKE):
+        return None, f"Neither polarity governs {by_model}: they do alike."
+    if one.overturned:
+        worse = min(sizes, key=sizes.__getitem__)
+        said = f"both overturn, this one at {sizes[worse]:.4g} s, the other at {sizes[-worse]:.4g} s"
+    else:
+        worse = max(sizes, key=sizes.__getitem__)
+        said = f"it rocks to {sizes[worse]:.4g} of the critical rotation, the other to {sizes[-worse]:.4g}"
+    return worse, f"Polarity {worse} governs {by_model}: {said}."
+
+
+def _size(history: History) -> float:
+    """What two polarities are compared by: the overturning time [s], else the peak ratio."""
+    return (history.overturning_time if history.overturned else history.peak_ratio) or 0.0

@@ -8,19 +8,21 @@ smooth, up to phi_cr and down to the uplift acceleration, and Gauss's rule conve
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking_cli.core import Direction, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.errors import InputError, SolverError
 
 Reals = NDArray[np.float64]
 PRECISION = 1e-10  # relative change at which doubling the nodes stops
 FEWEST, MOST = 16, 512  # nodes along the motion
 INNER = 20  # nodes of the energy between two rotations
+CURVE = 60  # points of a curve
+STRONGEST = 10.0  # acceleration over uplift to which the curves go
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +118,17 @@ def linearisation(
         overturning_ratio1=with_kappa1 / time,
         overturning_ratio2=np.arccosh(1 + 1 / (rho - 1)) / block.p / time,  # Eq. 25 with lambda
     )
+
+
+def compare(
+    mechanism: Mechanism, equivalence: Equivalence, amplitudes: Sequence[float], accelerations: Sequence[float]
+) -> tuple[list[Linearisation], list[Linearisation]]:
+    """The curves and the values asked for, of one direction if both are alike; see `linearisation`."""
+    directions = [Direction.POSITIVE] if equivalence.symmetric else list(Direction)
+    r = np.linspace(0.01, 0.99, CURVE)
+    a = np.geomspace(1.02, max(STRONGEST, *accelerations), CURVE)
+    curves = [linearisation(mechanism, direction, r, a) for direction in directions]
+    return curves, [linearisation(mechanism, direction, amplitudes, accelerations) for direction in directions]
 
 
 def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) -> Reals:
