@@ -7,10 +7,9 @@ size and then reduced, which smooths them: some 10 ms a frame.
 from __future__ import annotations
 
 import html
-import json
+import re
 from collections.abc import Callable, Iterator
 from functools import cache
-from importlib.resources import files
 from io import BytesIO
 from math import ceil
 from pathlib import Path
@@ -28,6 +27,7 @@ from PIL import Image, ImageDraw, ImageFont
 from rocking_cli.core import Direction
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plotting import style
+from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_ground, draw_scale
 from rocking_cli.plotting.thinning import visible
@@ -40,8 +40,6 @@ TALLEST = 3.4  # inches of the structure
 TITLE, FOOT, TRACE, GAP, LEFT = 0.6, 0.42, 0.95, 0.12, 0.62  # inches
 SHADES = (0.25, 0.5, 0.75)  # between a colour and those it is drawn on, for smooth edges
 HOLD = 1.5  # s that the last frame stays
-FINEST = 0.01  # s between the rotations of a page, at least
-MOST = 20_000  # of them
 
 
 def frame_time(fps: float) -> float:
@@ -238,23 +236,17 @@ def animation_page(film: Film, title: str, speed: float = 1.0) -> str:
     speed : float
         Seconds of motion a second, to begin with.
     """
-    step = max(FINEST, film.end / MOST)
-    traces = {
-        name: [[float(f"{value:.5g}") for value in column.tolist()] for column in trace]
-        for name, trace in (("ratio", ratio_trace(film)), ("ground", ground_trace(film.motion)))
-    }
-    data = {
-        "title": title,
-        "record": f"{film.motion.name}, PGA {film.motion.pga:.3g} g",
-        "model": film.history.model,
-        "speed": speed,
-        "picture": film.picture.as_dict(),
-        "colours": [colour(film.picture, k) for k in range(len(film.picture.parts))],
-        "film": film.as_dict(step),
-        "traces": traces,
-    }
-    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
-    for character in "<>&":  # a name in a file must not end the script it stands in
-        text = text.replace(character, f"\\u{ord(character):04x}")
-    template = files("rocking_cli").joinpath("data", "animation.html").read_text(encoding="utf-8")
-    return template.replace("@TITLE@", html.escape(title)).replace("@DATA@", text)
+    model = film.history.model
+    data = moving(
+        film,
+        [ratio_chart({model: film.history}), ground_chart(film.motion, [])],
+        label=f"{title}, as it moves",
+        speed=speed,
+        moment=film.start,
+    )
+    data["about"] = f"{film.motion.name}, PGA {film.motion.pga:.3g} g; {model} model"
+    parts = {
+        "TITLE": html.escape(title), "STYLE": asset("motion.css"), "SCRIPT": asset("motion.js"), "DATA": as_script(data)
+    }  # fmt: skip
+    # All in one pass: a name in one part must not be taken for the place of another.
+    return re.sub("@(TITLE|STYLE|SCRIPT|DATA)@", lambda match: parts[match[1]], asset("animation.html"))

@@ -8,25 +8,27 @@ from numpy.typing import NDArray
 BINS = 4000  # across a picture: more than its pixels, so that nothing visible is lost even enlarged in print
 
 
-def visible(values: NDArray[np.float64]) -> NDArray[np.intp]:
+def visible(values: NDArray[np.float64], bins: int = BINS) -> NDArray[np.intp]:
     """Indexes of the samples to draw: all of a short curve, the lowest and highest of each of many bins of a long one.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
         Finite values at even times.
+    bins : int
+        How many.
 
     Returns
     -------
     ndarray of int
         Ascending; the first and last sample and the extremes are among them.
     """
-    size = values.size // BINS
+    size = values.size // bins
     if size <= 2:
         return np.arange(values.size)
-    whole = values[: BINS * size].reshape(BINS, size)
-    starts = np.arange(BINS) * size
-    rest = np.arange(BINS * size, values.size)  # fewer than BINS
+    whole = values[: bins * size].reshape(bins, size)
+    starts = np.arange(bins) * size
+    rest = np.arange(bins * size, values.size)  # fewer than bins
     return np.unique(
         np.concatenate([[0, values.size - 1], starts + whole.argmin(axis=1), starts + whole.argmax(axis=1), rest])
     )

@@ -1,0 +1,297 @@
+"use strict";
+// A structure that moves, with a slider and charts over time: shared by the page of `rocking animate` and the report.
+
+function element(parent, tag, attributes, text) {
+  const node = document.createElement(tag);
+  for (const key in attributes) node.setAttribute(key, attributes[key]);
+  if (text !== undefined) node.textContent = text;
+  parent.appendChild(node);
+  return node;
+}
+function shape(parent, tag, attributes, text) {
+  const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const key in attributes) node.setAttribute(key, attributes[key]);
+  if (text !== undefined) node.textContent = text;
+  parent.appendChild(node);
+  return node;
+}
+const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+const fixed = (value, digits = 2) => (Math.round(value * 10 ** digits) / 10 ** digits + 0).toFixed(digits);
+const outline = points => "M" + points.map(p => p.join(",")).join("L") + "Z";
+
+// The last place in ascending values that is not above a value; 0 if all are.
+function placeOf(values, value) {
+  let low = 0, high = values.length;
+  while (high - low > 1) { const mid = (low + high) >> 1; if (values[mid] <= value) low = mid; else high = mid; }
+  return low;
+}
+function nearest(values, value) {
+  const k = placeOf(values, value);
+  return k + 1 < values.length && values[k + 1] - value < value - values[k] ? k + 1 : k;
+}
+// A step of 1, 2 or 5 times a power of ten, at least as large as asked for.
+function roundStep(rough) {
+  const unit = 10 ** Math.floor(Math.log10(rough));
+  return [1, 2, 5, 10].map(k => k * unit).find(v => v >= rough * (1 - 1e-9));
+}
+
+// The structure to scale. Returns what draws it anew at a width, and what moves it to a signed rotation [rad].
+function structureStage(svg, picture, colours, low, high) {
+  let moving = [], pins = [];
+  const ratioOf = r => r / picture.phi_cr[r < 0 ? "negative" : "positive"];
+
+  // Where a part is: straight lines between the positions of the table.
+  function placed(part, rotation) {
+    const table = picture.rotation, r = clamp(rotation, table[0], table[table.length - 1]);
+    const k = Math.min(placeOf(table, r), table.length - 2), w = (r - table[k]) / (table[k + 1] - table[k]);
+    const at = values => values[k] + w * (values[k + 1] - values[k]);
+    return {x: at(part.x), y: at(part.y), psi: at(part.psi)};
+  }
+  function hatch(start, end) {
+    const [dx, dy] = [end[0] - start[0], end[1] - start[1]], size = Math.hypot(dx, dy), count = Math.floor(size / 9);
+    const along = [dx / size, dy / size], c = Math.cos(2.4), s = Math.sin(2.4);
+    const tick = [9 * (along[0] * c - along[1] * s), 9 * (along[0] * s + along[1] * c)];
+    for (let k = 0; k < count; k++) {
+      const w = (k + .5) / count, x = start[0] + w * dx, y = start[1] + w * dy;
+      shape(svg, "line", {class: "earth", style: "stroke-width:1px", x1: x, y1: y, x2: x + tick[0], y2: y + tick[1]});
+    }
+  }
+  function build(width, tallest) {
+    svg.replaceChildren();
+    const margin = 34, [x0, y0] = low, [x1, y1] = high;
+    const scale = Math.min((width - 2 * margin) / (x1 - x0), tallest / (y1 - y0));
+    const height = (y1 - y0) * scale + 2 * margin;
+    const left = (width - (x1 - x0) * scale) / 2;
+    const X = x => left + (x - x0) * scale, Y = y => margin + (y1 - y) * scale;
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    for (const line of picture.ground) {
+      const points = line.map(p => [X(p[0]), Y(p[1])]);
+      shape(svg, "path", {class: "earth", d: "M" + points.map(p => p.join(",")).join("L")});
+      for (let k = 1; k < points.length; k++) hatch(points[k - 1], points[k]);
+    }
+    const plane = shape(svg, "g", {class: "plane", transform: `translate(${X(0)},${Y(0)}) scale(${scale},${-scale})`});
+    for (const part of picture.parts) {
+      const at = placed(part, 0);
+      for (const each of part.outlines)
+        shape(plane, "path", {class: "rest", d: outline(each), transform: `translate(${at.x},${at.y})`});
+    }
+    moving = picture.parts.map((part, k) => {
+      const group = shape(plane, "g", {class: "part"});
+      for (const each of part.outlines)
+        shape(group, "path", {class: part.assumed ? "body assumed" : "body", fill: colours[k], d: outline(each)});
+      shape(group, "circle", {class: "centroid", r: 3 / scale});
+      return group;
+    });
+    pins = picture.pins.map(pin => ({
+      pin, X, Y, mark: shape(svg, "circle", {class: "pin", r: 4}), letter: shape(svg, "text", {class: "letter"}, pin.letter),
+    }));
+    const bar = roundStep(0.12 * width / scale);
+    shape(svg, "line", {x1: 12, x2: 12 + bar * scale, y1: height - 9, y2: height - 9, stroke: "currentColor", "stroke-width": 3});
+    shape(svg, "text", {x: 18 + bar * scale, y: height - 5}, `${Number(bar.toPrecision(3))} m`);
+  }
+  function show(rotation) {
+    const side = rotation < 0 ? "negative" : "positive";
+    const places = picture.parts.map(part => placed(part, rotation));
+    moving.forEach((group, k) => group.setAttribute("transform",
+      `translate(${places[k].x},${places[k].y}) rotate(${places[k].psi * 180 / Math.PI})`));
+    for (const {pin, X, Y, mark, letter} of pins) {
+      const seen = rotation !== 0 && pin.direction === side;
+      mark.style.display = letter.style.display = seen ? "" : "none";
+      if (!seen) continue;
+      const at = places[pin.part], c = Math.cos(at.psi), s = Math.sin(at.psi);
+      const x = X(at.x + c * pin.point[0] - s * pin.point[1]), y = Y(at.y + s * pin.point[0] + c * pin.point[1]);
+      mark.setAttribute("cx", x); mark.setAttribute("cy", y);
+      letter.setAttribute("x", x + 7); letter.setAttribute("y", y - 7);
+    }
+  }
+  return {build, show, ratioOf};
+}
+
+// One chart over time: curves, a cursor, and a legend that reads the values under it.
+let charts = 0;
+function timeChart(root, {label, tall, levels, series}) {
+  const legend = element(root, "div", {class: "legend"});
+  element(legend, "span", {class: "heading"}, label);
+  const values = series.map(({name, look}) => {
+    const entry = element(legend, "span", {});
+    const swatch = shape(entry, "svg", {"aria-hidden": "true", viewBox: "0 0 34 10"});
+    shape(swatch, "line", {class: `trace ${look}`, x1: 1, x2: 33, y1: 5, y2: 5});
+    element(entry, "span", {}, ` ${name} `);
+    return element(entry, "span", {class: "value"});
+  });
+  const plot = element(root, "div", {class: "plot", role: "group", tabindex: "0", "aria-label":
+    `${label}, over time in seconds. Left and right arrow move the cursor, plus and minus zoom, zero shows all.`});
+  const svg = shape(plot, "svg", {"aria-hidden": "true"}), clip = `clip-${++charts}`;
+  const left = 52, right = 12, top = 8, bottom = 24, height = levels.length ? 210 : 150;
+  let cursor, width, view;
+  const X = t => left + (t - view[0]) / (view[1] - view[0]) * (width - left - right);
+  const Y = v => top + (1 - v / tall) / 2 * (height - top - bottom);
+  const timeAt = x => view[0] + (x / svg.clientWidth * width - left) / (width - left - right) * (view[1] - view[0]);
+
+  function build(wide, span) {
+    width = wide; view = span;
+    svg.replaceChildren();
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    const step = roundStep((view[1] - view[0]) * 70 / (width - left - right));
+    const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    const first = Math.ceil(view[0] / step - 1e-9);
+    for (let k = first; k * step <= view[1] * (1 + 1e-9); k++) {
+      shape(svg, "line", {class: "axis", x1: X(k * step), x2: X(k * step), y1: top, y2: height - bottom});
+      shape(svg, "text", {class: "small tick", x: X(k * step), y: height - 8, "text-anchor": "middle"},
+        (k * step).toFixed(digits) + (k === first ? " s" : ""));
+    }
+      const up = roundStep(tall / 2.5), fine = Math.max(0, -Math.floor(Math.log10(up) + 1e-9));
+    for (let k = -Math.floor(tall / up); k * up <= tall; k++) {
+      shape(svg, "line", {class: "axis", x1: left, x2: width - right, y1: Y(k * up), y2: Y(k * up)});
+      shape(svg, "text", {class: "small", x: left - 6, y: Y(k * up) + 4, "text-anchor": "end"}, fixed(k * up, fine));
+    }
+    for (const {at, text} of levels) if (Math.abs(at) < tall) {
+      shape(svg, "line", {class: "level", x1: left, x2: width - right, y1: Y(at), y2: Y(at)});
+      shape(svg, "text", {class: "small", x: left + 5, y: Y(at) + (at > 0 ? 14 : -5)}, text);
+    }
+    const inside = shape(shape(svg, "clipPath", {id: clip}), "rect", {});
+    for (const [key, value] of Object.entries({x: left, y: top, width: width - left - right, height: height - top - bottom}))
+      inside.setAttribute(key, value);
+    for (const {look, x, y} of series) {
+      const points = [];
+      for (let k = placeOf(x, view[0]); k < x.length; k++) {
+        points.push(`${X(x[k]).toFixed(1)},${Y(clamp(y[k], -9 * tall, 9 * tall)).toFixed(1)}`);
+        if (x[k] > view[1]) break;
+      }
+      shape(svg, "path", {class: `trace ${look}`, "clip-path": `url(#${clip})`, d: "M" + points.join("L")});
+    }
+    cursor = shape(svg, "line", {class: "cursor", y1: top, y2: height - bottom});
+  }
+  function show(time) {
+    cursor.setAttribute("x1", X(time)); cursor.setAttribute("x2", X(time));
+    series.forEach(({x, y}, k) => {
+      const known = time >= x[0] - 1e-9 && time <= x[x.length - 1] + 1e-9;
+      values[k].textContent = known ? fixed(y[nearest(x, time)], 3) : "–";
+    });
+  }
+  function select(from, to) {
+    svg.querySelector(".selection")?.remove();
+    if (from === undefined) return;
+    const [a, b] = [X(from), X(to)].map(x => clamp(x, left, width - right)).sort((p, q) => p - q);
+    shape(svg, "rect", {class: "selection", x: a, y: top, width: b - a, height: height - top - bottom});
+  }
+  const snap = time => series[0].x[nearest(series[0].x, time)];
+  return {plot, build, show, select, timeAt: event => timeAt(event.clientX - svg.getBoundingClientRect().left), snap};
+}
+
+// All of it in `root`. `moment` is what is shown first [s]; keys are listened for in `listener`.
+function motionView(root, {picture, colours, film, charts, label, speed, moment}, listener) {
+  const svg = shape(root, "svg", {role: "img", "aria-label": label, class: "stage"});
+  const stage = structureStage(svg, picture, colours, film.low, film.high);
+  const controls = element(root, "div", {class: "controls"});
+  const play = element(controls, "button", {type: "button", class: "play"}, "Play");
+  const slider = element(controls, "input", {type: "range", min: 0, max: film.end, step: "any", "aria-label": "time in seconds"});
+  const rate = element(element(controls, "label", {}, "speed "), "select", {});
+  for (const each of [...new Set([0.1, 0.25, 0.5, 1, 2, 4, speed])].sort((a, b) => a - b))
+    rate.add(new Option(`${Number(each.toPrecision(3))} ×`, each, false, each === speed));
+  const read = element(root, "output", {class: "now", "aria-live": "off"});
+  const drawn = charts.map(each => timeChart(root, each));
+  const zooms = element(root, "div", {class: "controls"});
+  const button = (text, act) => element(zooms, "button", {type: "button"}, text).addEventListener("click", act);
+  element(root, "p", {class: "hint"}, "Point at a chart to see the values and the structure at that moment. Drag across it, " +
+    "pinch it, or click it and turn the wheel, to zoom. Keys: space plays, arrows move, + and − zoom, 0 shows all.");
+  const end = Math.max(film.end, 1e-3), FINEST = 0.05;
+  let now = moment, view = [0, end], running = false, before = 0, frame = 0, width = 0;
+
+  function rotationAt(time) {
+    const k = clamp(time / film.step, 0, film.rotation.length - 1), low = Math.floor(k);
+    const high = Math.min(low + 1, film.rotation.length - 1);
+    return film.rotation[low] + (k - low) * (film.rotation[high] - film.rotation[low]);
+  }
+  function show() {
+    const rotation = rotationAt(now);
+    stage.show(rotation);
+    if (now < view[0] || now > view[1]) look(now - (view[1] - view[0]) / 2, view[1] - view[0]);
+    for (const chart of drawn) chart.show(now);
+    slider.value = now;
+    slider.setAttribute("aria-valuetext", `${now.toFixed(2)} seconds`);
+    read.textContent = `t = ${now.toFixed(2)} s, φ = ${fixed(rotation * 180 / Math.PI)}°, φ/φcr = ${fixed(stage.ratioOf(rotation))}`;
+  }
+  function look(from, span) {
+    const wide = clamp(span, Math.min(FINEST, end), end), start = clamp(from, 0, end - wide);
+    view = [start, start + wide];
+    for (const chart of drawn) { chart.build(width, view); chart.show(now); }
+  }
+  const zoom = (factor, at) => look(at - (at - view[0]) * factor, (view[1] - view[0]) * factor);
+  const whole = () => look(0, end);
+  function build() {
+    width = Math.max(280, root.clientWidth || 700);
+    stage.build(width, Math.max(240, Math.min(0.5 * width, 420)));
+    look(view[0], view[1] - view[0]);
+    show();
+  }
+  function tick(at) {
+    now = Math.min(film.end, now + (at - before) / 1000 * Number(rate.value));
+    before = at;
+    show();
+    if (now >= film.end) set(false);
+    if (running) frame = requestAnimationFrame(tick);
+  }
+  function set(on) {
+    running = on;
+    play.textContent = on ? "Pause" : "Play";
+    cancelAnimationFrame(frame);
+    if (!on) return;
+    if (now >= film.end) now = film.start;
+    before = performance.now();
+    frame = requestAnimationFrame(tick);
+  }
+  function go(time) { set(false); now = clamp(time, 0, film.end); show(); }
+
+  for (const chart of drawn) {
+    const fingers = new Map();
+    let from, spread;
+    const inView = event => clamp(chart.timeAt(event), ...view);
+    chart.plot.addEventListener("pointerdown", event => {
+      fingers.set(event.pointerId, event.clientX);
+      if (event.isPrimary) { from = inView(event); go(chart.snap(from)); }
+      if (event.pointerType === "mouse") chart.plot.setPointerCapture(event.pointerId);
+      spread = undefined;
+    });
+    chart.plot.addEventListener("pointermove", event => {
+      if (fingers.has(event.pointerId)) fingers.set(event.pointerId, event.clientX);
+      if (fingers.size === 2) {
+        const [a, b] = [...fingers.values()], wide = Math.max(20, Math.abs(a - b));
+        if (spread) zoom(spread / wide, chart.timeAt({clientX: (a + b) / 2}));
+        spread = wide;
+      } else if (event.pointerType === "mouse" && fingers.size) chart.select(from, inView(event));
+      else if (!running) go(chart.snap(inView(event)));
+    });
+    const lift = event => {
+      const to = inView(event), dragged = event.type === "pointerup" && event.pointerType === "mouse" && fingers.has(event.pointerId);
+      fingers.delete(event.pointerId);
+      chart.select();
+      if (dragged && Math.abs(to - from) > 0.01 * (view[1] - view[0])) look(Math.min(from, to), Math.abs(to - from));
+    };
+    chart.plot.addEventListener("pointerup", lift);
+    chart.plot.addEventListener("pointercancel", lift);
+    chart.plot.addEventListener("wheel", event => {
+      if (document.activeElement !== chart.plot && !event.ctrlKey) return;  // the wheel belongs to the page
+      event.preventDefault();
+      zoom(Math.exp(clamp(event.deltaY, -200, 200) / 400), inView(event));
+    }, {passive: false});
+  }
+  button("Zoom in", () => zoom(0.5, now));
+  button("Zoom out", () => zoom(2, now));
+  button("Show all", whole);
+  slider.addEventListener("input", () => go(Number(slider.value)));
+  play.addEventListener("click", () => set(!running));
+  listener.addEventListener("keydown", event => {
+    if (event.target === rate || event.ctrlKey || event.metaKey || event.altKey) return;
+    const to = {ArrowLeft: now - 0.1, ArrowRight: now + 0.1, Home: 0, End: film.end}[event.key];
+    if (to !== undefined) go(to);
+    else if (event.key === " " && event.target.tagName !== "BUTTON") set(!running);
+    else if (event.key === "+" || event.key === "-") zoom(event.key === "+" ? 0.5 : 2, now);
+    else if (event.key === "0") whole();
+    else return;
+    event.preventDefault();
+  });
+  addEventListener("resize", () => { if ((root.clientWidth || width) !== width) build(); });
+  build();
+  return {play: () => set(true)};
+}

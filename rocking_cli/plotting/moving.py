@@ -1,0 +1,105 @@
+"""What a page with a moving structure is made of: the data that `motionView` of data/motion.js reads."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.pulse_fit import PulseFit
+from rocking_cli.plotting.structure import colour
+from rocking_cli.plotting.thinning import BINS, visible
+from rocking_cli.studies.film import Film
+
+Reals = NDArray[np.float64]
+TALLEST = 1.6  # phi/phi_cr shown at most: what goes further overturns, or nearly does
+FINEST = 0.01  # s between the rotations of a page, at least
+MOST = 20_000  # of them
+POINTS = 200  # of a pulse
+NAMES: Mapping[ModelName, str] = {
+    "nonlinear": "nonlinear", "linear1": "linear, κ₁", "linear2": "linear, κ₂"
+}  # fmt: skip
+
+
+def asset(name: str) -> str:
+    """The text of a file of the package that a page is made of."""
+    return files("rocking_cli").joinpath("data", name).read_text(encoding="utf-8")
+
+
+def as_script(data: Mapping[str, Any]) -> str:
+    """JSON to stand in a script element: a name in it must not end the element."""
+    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+    for character in "<>&":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return text
+
+
+def moving(
+    film: Film, charts: Sequence[Mapping[str, Any]], *, label: str, speed: float, moment: float
+) -> dict[str, Any]:
+    """Everything that one moving structure on a page needs.
+
+    Parameters
+    ----------
+    film : Film
+        What moves.
+    charts : sequence of mapping
+        See `ratio_chart` and `ground_chart`.
+    label : str
+        What the drawing shows, for those who cannot see it.
+    speed : float
+        Seconds of motion a second, to begin with.
+    moment : float
+        What is shown first [s].
+    """
+    return {
+        "picture": film.picture.as_dict(),
+        "colours": [colour(film.picture, k) for k in range(len(film.picture.parts))],
+        "film": film.as_dict(max(FINEST, film.end / MOST)),
+        "charts": list(charts),
+        "label": label,
+        "speed": speed,
+        "moment": moment,
+    }
+
+
+def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dict[str, Any]:
+    """The rotation over the critical one over time, a curve for each model, of some two samples for each bin."""
+    series, reach = [], 0.0
+    for name, run in histories.items():
+        ratio = run.ratio[np.isfinite(run.ratio)]
+        reach = max(reach, float(np.abs(ratio).max()))
+        shown = visible(ratio, bins)
+        series.append(_series(NAMES[name], name, run.time[shown], ratio[shown]))
+    levels = [{"at": level, "text": "critical rotation"} for level in (1, -1)]
+    tall = min(1.1 * reach, TALLEST) if reach else TALLEST
+    return {"label": "rotation φ/φcr, clockwise up", "tall": tall, "levels": levels, "series": series}
+
+
+def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BINS) -> dict[str, Any]:
+    """The ground acceleration over time [g], and the pulses in it."""
+    ground = motion.acceleration / STANDARD_GRAVITY
+    shown = visible(ground, bins)
+    look = "record" if fits else "trace"
+    series = [_series("ground", look, shown.astype(np.float64) * motion.dt, ground[shown])]
+    for fit in fits:
+        t = fit.start + np.linspace(0.0, fit.pulse.duration, POINTS)
+        series.append(_series(f"pulse in it ({fit.pulse.title})", "pulse", t, fit.acceleration(t) / STANDARD_GRAVITY))
+    tall = 1.1 * max(max(abs(value) for value in each["y"]) for each in series)
+    return {"label": "ground acceleration [g]", "tall": tall or 1.0, "levels": [], "series": series}
+
+
+def _series(name: str, look: str, x: Reals, y: Reals) -> dict[str, Any]:
+    return {"name": name, "look": look, "x": _short(x, 7), "y": _short(y, 5)}
+
+
+def _short(values: Reals, digits: int) -> list[float]:
+    """Digits enough for what is shown, and little text."""
+    return [float(f"{value:.{digits}g}") for value in values.tolist()]
