@@ -15,3 +15,13 @@ RECORDS = PROJECT.parent / "shared" / "records"
 def _in_an_empty_folder(tmp_path, monkeypatch):
     """No test reads a `rocking.yaml` that happens to lie where pytest was started."""
     monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def frame_report(tmp_path_factory):
+    """The report on the example of a frame: its file, and what was printed."""
+    from tests.test_cli import run
+
+    out = tmp_path_factory.mktemp("report") / "r.html"
+    result = run("report", EXAMPLES / "frame.yaml", "--record", EXAMPLES / "accel.csv", "-o", out)
+    return out, result.stdout.strip()

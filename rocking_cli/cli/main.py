@@ -16,7 +16,7 @@ from rocking_cli.errors import RockingError
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "respond", "animate", "pulse", "overturning", "spectrum", "equivalent",
-    "fragility", "results", "figure", "mechanisms", "new",
+    "fragility", "results", "report", "figure", "mechanisms", "new",
 )  # fmt: skip
 
 
@@ -85,6 +85,7 @@ def main() -> None:
       rocking overturning block.yaml --plot map.png
       rocking fragility study.yaml
       rocking spectrum block.yaml --record "records/*.AT2"
+      rocking report block.yaml --record accel.csv -o report.html
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
     3 mechanism or plugin, 4 solver, 5 done except for records or runs that are reported.

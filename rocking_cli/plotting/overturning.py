@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from textwrap import shorten
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
@@ -19,7 +23,9 @@ FINE = 500  # points along either axis of the grid on which boundaries are trace
 PEAKS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr of the contour lines
 
 
-def draw_map(found: OverturningMap, title: str, *, dimensionless: bool) -> Figure:
+def draw_map(
+    found: OverturningMap, title: str, *, dimensionless: bool, marks: Sequence[tuple[str, float, float]] = ()
+) -> Figure:
     """Draw a map, with contours of the peak and the boundaries that are known in closed form.
 
     Parameters
@@ -30,6 +36,8 @@ def draw_map(found: OverturningMap, title: str, *, dimensionless: bool) -> Figur
         Heading.
     dimensionless : bool
         Over omega and a, or over the period [s] and the amplitude [g].
+    marks : sequence of (str, float, float)
+        Pulses to mark: what to call each, and where it is on the axes.
     """
     figure = style.new_figure(6.0)
     axes = figure.subplots()
@@ -49,6 +57,14 @@ def draw_map(found: OverturningMap, title: str, *, dimensionless: bool) -> Figur
     handles += contours
     handles += _draw_boundaries(axes, found, dimensionless=dimensionless)
     figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
+    for name, x, y in marks:
+        axes.plot(x, y, linestyle="none", zorder=6, **style.MARKED)
+        right = x > (across.min() + across.max()) / 2
+        axes.annotate(
+            shorten(name, 30, placeholder=" ..."), (x, y), (-9 if right else 9, 7), textcoords="offset points",
+            ha="right" if right else "left", fontsize=style.TICK, fontweight="bold", color=style.INK, zorder=7,
+            parse_math=False, path_effects=[withStroke(linewidth=2.5, foreground="white")],
+        )  # fmt: skip
     if dimensionless:
         axes.set_xlabel(r"frequency $\omega_g/p$", fontsize=style.LABEL)
         axes.set_ylabel(r"amplitude $a_g/(g\lambda)$", fontsize=style.LABEL)

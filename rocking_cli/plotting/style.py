@@ -51,6 +51,10 @@ BOUNDARIES: dict[str, dict[str, Any]] = {
     "impact_at_end": {"color": "#000000", "linestyle": (0, (1, 1.5)), "linewidth": 1.3},
 }
 
+MARKED: dict[str, Any] = {
+    "marker": "o", "markersize": 8, "color": "white", "markeredgecolor": "#000000", "markeredgewidth": 1.8
+}  # fmt: skip
+
 SPARED, EXCEEDED = "#1f77b4", "#b35900"  # runs below and above a limit, apart by their marks too
 
 # For any number of curves: dash and mark tell them apart in grey, and where they lie on one another.

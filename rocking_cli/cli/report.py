@@ -1,0 +1,193 @@
+"""`rocking report`: a document of one file on a structure, to hand over."""
+
+from __future__ import annotations
+
+import shlex
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rocking_cli.cli import motions, options, shaking, terminal
+
+if TYPE_CHECKING:
+    from rocking_cli.core import Equivalence, Mechanism
+    from rocking_cli.report.content import Content, File, Given
+
+POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
+
+
+@click.command(short_help="A document to hand over: one page with all that there is to say.")
+@click.argument("file", required=False, type=click.Path())
+@click.option(
+    "--record", "records", multiple=True, type=click.Path(), metavar="FILE", help="Ground motion; may be repeated."
+)
+@click.option(
+    "--pulse", "pulses", multiple=True, metavar="PULSE", help="A pulse, such as sine:0.6g:0.8s; may be repeated."
+)
+@options.reading
+@options.scaling("1", "-1", "both", both="the worse is shown", default="both")
+@click.option(
+    "-o", "--out", callback=options.output_path(".html"), metavar="FILE.html",
+    help="Where to.  [default: FILE with .html, in this folder; none with --json]",
+)  # fmt: skip
+@options.as_json
+@click.pass_context
+def command(
+    ctx: click.Context,
+    file: str | None,
+    records: tuple[str, ...],
+    pulses: tuple[str, ...],
+    units: str | None,
+    dt: float | None,
+    channel: str | None,
+    scale: float | None,
+    target_pga: float | None,
+    target_pgv: float | None,
+    polarity: str,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """Write a report on a structure: one HTML file that opens in any browser, without a network, and prints.
+
+    A summary in words first: will it uplift, will it overturn, how close, which model to trust, what is doubtful. Then
+    the drawing, the parameters, the response to each ground motion, the pulses and the overturning map, the error of
+    the equivalent block, and the inputs and versions to compute it again. Without a ground motion, what needs none.
+
+    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+
+    \b
+    Example:
+      rocking report frame.yaml --record accel.csv -o report.html
+      rocking report arch.yaml --record one.AT2 --record two.AT2 --target-pga 0.3
+    """
+    if not records and any(value is not None for value in (units, dt, channel)):
+        raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
+    motions.check_scaling(scale, target_pga, target_pgv)
+    if not records and not pulses and any(value is not None for value in (scale, target_pga, target_pgv)):
+        raise click.UsageError(
+            "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
+        )
+    from rocking_cli.cli.work import say_if_compiling
+    from rocking_cli.files import check_writable, keep_apart, write_whole
+    from rocking_cli.report.content import gather, steps
+
+    if out is None and not as_json:
+        out = Path(f"{Path(file).stem if file else 'rocking'}.html")
+        check_writable(out)
+    keep_apart([("--out", out)], [file, *records])
+    mechanism, source = _structure(file)
+    blocks = shaking.equivalence(mechanism)
+    asked = scale, target_pga, target_pgv
+    given = [_record(each, blocks, (dt, units, channel), asked) for each in records]
+    given += [_pulse(each, blocks, asked) for each in pulses]
+    say_if_compiling()
+    with terminal.progress(steps(given), "parts of the report") as advance:
+        content = gather(
+            mechanism, source, given, POLARITIES[polarity],
+            command=_command_line(ctx), date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"), progress=advance,
+        )  # fmt: skip
+    if out is not None:
+        from rocking_cli.report.page import render
+
+        page = render(content).encode()
+        write_whole(out, lambda stream: stream.write(page))
+        terminal.note(f"wrote {out} ({len(page) / 1e6:.2g} MB)")
+    if as_json:
+        terminal.print_json(_as_json(content))
+        return
+    from rocking_cli.report.words import in_a_sentence
+
+    terminal.result(in_a_sentence(content))
+
+
+def _structure(file: str | None) -> tuple[Mechanism, File]:
+    from rocking_cli.cli import structures
+    from rocking_cli.report.content import File
+
+    mechanism = structures.load([file] if file else [])[0]
+    path = Path(file or structures.HERE)
+    if file is None and not path.exists():
+        return mechanism, File("default block", structures.DEFAULT.encode())
+    return mechanism, File(str(path), path.read_bytes())
+
+
+def _record(
+    place: str,
+    blocks: Equivalence,
+    reading: tuple[float | None, str | None, str | None],
+    asked: tuple[float | None, float | None, float | None],
+) -> Given:
+    from rocking_cli.report.content import File, Given
+
+    motion = shaking.read("record", place, *reading)
+    return Given(motion, shaking.judge(motion, blocks, *asked), File(place, Path(place).read_bytes()))
+
+
+def _pulse(text: str, blocks: Equivalence, asked: tuple[float | None, float | None, float | None]) -> Given:
+    from rocking_cli.report.content import Given
+
+    pulse, motion = shaking.make(text)
+    return Given(motion, shaking.judge(motion, blocks, *asked), pulse=pulse)
+
+
+def _command_line(ctx: click.Context) -> str:
+    """The command as it was given, for a POSIX shell."""
+    from click.core import ParameterSource
+
+    said = ["rocking", "report"]
+    for param in ctx.command.params:
+        value = ctx.params.get(param.name or "")
+        if ctx.get_parameter_source(param.name or "") is not ParameterSource.COMMANDLINE:
+            continue
+        for each in value if isinstance(value, tuple) else (value,):
+            said += [] if isinstance(param, click.Argument) else [param.opts[0]]
+            said += [] if each is True else [str(each)]
+    return shlex.join(said)
+
+
+def _as_json(content: Content) -> dict[str, Any]:
+    from rocking_cli.cli.pulse_fits import fit_json
+    from rocking_cli.cli.responses import runs_json
+    from rocking_cli.core import Direction
+    from rocking_cli.report import words
+
+    verdicts = words.verdicts(content)
+    return {
+        "structure": {
+            "mechanism": content.mechanism.mechanism,
+            "name": content.name,
+            "file": content.file.name,
+            "sha256": content.file.checksum,
+        },
+        "answer": words.in_a_sentence(content),
+        "doubts": words.doubts(content),
+        "parameters": {each.label: content.equivalence[each].as_dict() for each in Direction},
+        "motions": [
+            {
+                "name": each.given.motion.name,
+                "file": each.given.file.name if each.given.file else None,
+                "sha256": each.given.file.checksum if each.given.file else None,
+                "factor": each.given.factor,
+                "pga": each.measured.pga,
+                "headline": said.headline,
+                "answers": {item.question: item.answer for item in said.answers},
+                "doubts": list(said.doubts),
+                **runs_json(each.runs, None),
+                "polarity": each.polarity,
+                "margin": {
+                    "uplift": each.margin.uplift,
+                    "overturning": each.margin.overturning,
+                    "safe_again": each.margin.safe_again,
+                    "other": each.margin.other,
+                },
+                "pulses": [fit_json(fit) for fit in each.fits],
+            }
+            for each, said in zip(content.shakings, verdicts, strict=True)
+        ],
+        "linearisation": content.trust,
+        "command": content.command,
+        "date": content.date,
+        "versions": dict(content.versions),
+    }

@@ -1,0 +1,350 @@
+"""Everything a report says, as plain data: gathered here, put into words and onto a page elsewhere."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from importlib.metadata import version
+from math import pi
+
+import numpy as np
+
+from rocking_cli.core import Equivalence, Mechanism, equivalent_block
+from rocking_cli.dynamics.history import History, respond
+from rocking_cli.dynamics.model import MODELS, ModelName
+from rocking_cli.dynamics.verdict import governs
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.doubts import Doubt, coarse_for, doubts
+from rocking_cli.excitation.measures import Measures, measure
+from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
+from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.registry import Registry
+from rocking_cli.studies.linearisation import Linearisation, compare
+from rocking_cli.studies.margin import Margin, margin
+from rocking_cli.studies.overturning import OverturningMap, Region, overturning_map
+from rocking_cli.studies.picture import Picture, picture
+from rocking_cli.studies.shaken import Shaken, outcomes, parse_shape, shaken
+from rocking_cli.studies.trust import trust
+
+AMPLITUDES, ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)  # at which the error of the block is said
+FITTED = ("sine", "ricker")  # the pulses with an amplitude and a period and nothing else: a map has these two axes
+POINTS = 80  # of each side of a map
+OMEGAS, TALLEST = (1.0, 10.0), 10.0  # omega_g/p of a map, and a_g/(g lambda) up to which it goes at least
+BEYOND = 1.15  # times a mark, that a map goes further
+PACKAGES = ("numpy", "numba", "scipy", "matplotlib")
+
+
+@dataclass(frozen=True)
+class File:
+    """An input as the user gave it: its name, what is in it, and the name by which its content can be checked."""
+
+    name: str
+    content: bytes
+
+    @property
+    def checksum(self) -> str:
+        """SHA-256, in hexadecimal."""
+        return sha256(self.content).hexdigest()
+
+    @property
+    def text(self) -> str:
+        """The content as text."""
+        return self.content.decode("utf-8", errors="replace")
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """A ground motion as the user gave it.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        As read, or the sampled pulse.
+    factor : float
+        The factor on it, polarity apart.
+    file : File or None
+        Where it was read; None for a pulse.
+    pulse : Pulse or None
+        The pulse, if it is one.
+    """
+
+    motion: GroundMotion
+    factor: float = 1.0
+    file: File | None = None
+    pulse: Pulse | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Shaking:
+    """A ground motion and what it does.
+
+    Parameters
+    ----------
+    given : Given
+        The motion as given.
+    measured : Measures
+        Of the motion as scaled.
+    doubts : tuple of Doubt
+        About the motion as read.
+    runs : mapping of int to mapping of str to History
+        The histories of each model under each polarity looked at.
+    polarity : int
+        The one that governs.
+    governs : str
+        A sentence on that; empty if one polarity was looked at.
+    margin : Margin
+        How far the motion is from lifting and overturning the structure.
+    fits : tuple of PulseFit
+        The pulses in it, the best first; of a pulse itself.
+    alone : float or None
+        What the best pulse alone does: the peak ratio, NaN if it overturns; None if there is no pulse.
+    """
+
+    given: Given
+    measured: Measures
+    doubts: tuple[Doubt, ...]
+    runs: Mapping[int, Mapping[ModelName, History]]
+    polarity: int
+    governs: str
+    margin: Margin
+    fits: tuple[PulseFit, ...]
+    alone: float | None
+
+    @property
+    def motion(self) -> GroundMotion:
+        """The motion as it governs: scaled, and reversed if that is the worse."""
+        return self.scaled(self.polarity)
+
+    def scaled(self, polarity: int) -> GroundMotion:
+        """The motion as scaled, under the name it was given."""
+        return replace(self.given.motion.scaled(polarity * self.given.factor), name=self.given.motion.name)
+
+    @property
+    def histories(self) -> Mapping[ModelName, History]:
+        """The histories of the polarity that governs."""
+        return self.runs[self.polarity]
+
+
+@dataclass(frozen=True, eq=False)
+class PulseMap:
+    """What pulses of one shape do, with the places of the ground motions on it.
+
+    Parameters
+    ----------
+    found : OverturningMap
+        The map, by the nonlinear model, of the worse polarity.
+    marks : tuple of (str, PulseFit)
+        Name of each motion whose pulse has this shape, and the pulse.
+    """
+
+    found: OverturningMap
+    marks: tuple[tuple[str, PulseFit], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """Everything a report says.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    file : File
+        Where it was read.
+    equivalence : Equivalence
+        Its equivalent blocks.
+    picture : Picture
+        What it looks like.
+    curves, asked : tuple of Linearisation
+        The error of the equivalent block over its range, and where it is said in numbers.
+    trust : str
+        What that means.
+    shakings : tuple of Shaking
+        What each ground motion does.
+    maps : tuple of PulseMap
+        One for each shape of pulse; empty if no history can be computed.
+    command : str
+        The command that wrote it.
+    date : str
+        When.
+    versions : mapping of str to str
+        Of the software.
+    """
+
+    mechanism: Mechanism
+    file: File
+    equivalence: Equivalence
+    picture: Picture
+    curves: tuple[Linearisation, ...]
+    asked: tuple[Linearisation, ...]
+    trust: str
+    shakings: tuple[Shaking, ...]
+    maps: tuple[PulseMap, ...]
+    command: str
+    date: str
+    versions: Mapping[str, str]
+
+    @property
+    def name(self) -> str:
+        """What the structure is called."""
+        return self.mechanism.name or self.mechanism.mechanism
+
+
+def gather(
+    mechanism: Mechanism,
+    file: File,
+    given: Sequence[Given],
+    polarities: Sequence[int],
+    *,
+    command: str,
+    date: str,
+    progress: Callable[[int], None] | None = None,
+) -> Content:
+    """Compute everything a report says.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    file : File
+        Where it was read.
+    given : sequence of Given
+        The ground motions; may be empty.
+    polarities : sequence of int
+        Of 1 and -1: those of the motions to look at.
+    command, date : str
+        For the reader: what wrote it, and when.
+    progress : callable, optional
+        Called with the number of steps done since the last call, of `steps(given)`.
+
+    Raises
+    ------
+    RockingError
+        Whatever the studies raise.
+    """
+    done = progress or (lambda count: None)
+    equivalence = equivalent_block(mechanism)
+    curves, asked = compare(mechanism, equivalence, AMPLITUDES, ACCELERATIONS)
+    done(1)
+    shakings = []
+    for each in given:
+        shakings.append(_shake(mechanism, equivalence, each, polarities))
+        done(1)
+    maps = _maps(mechanism, equivalence, shakings)
+    done(1)
+    return Content(
+        mechanism=mechanism,
+        file=file,
+        equivalence=equivalence,
+        picture=picture(mechanism),
+        curves=tuple(curves),
+        asked=tuple(asked),
+        trust=trust(curves, asked),
+        shakings=tuple(shakings),
+        maps=tuple(maps),
+        command=command,
+        date=date,
+        versions={
+            "rocking-cli": version("rocking-cli"),
+            f"mechanism {mechanism.mechanism}": _plugin(mechanism),
+            "Python": platform.python_version(),
+            **{name: version(name) for name in PACKAGES},
+        },
+    )
+
+
+def steps(given: Sequence[Given]) -> int:
+    """How many steps `gather` takes."""
+    return len(given) + 2
+
+
+def _plugin(mechanism: Mechanism) -> str:
+    registry = Registry()
+    return registry.package_of(mechanism.mechanism) if mechanism.mechanism in registry else "not installed as a plugin"
+
+
+def _shake(mechanism: Mechanism, equivalence: Equivalence, given: Given, polarities: Sequence[int]) -> Shaking:
+    asked = measure(given.motion)
+    p = max(equivalence.positive.p, equivalence.negative.p)
+    doubtful = [] if given.pulse is not None else doubts(given.motion, asked) + coarse_for(given.motion, p)
+    runs = {sign: respond(mechanism, given.motion.scaled(sign * given.factor), models=MODELS) for sign in polarities}
+    worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
+    scaled = given.motion.scaled(given.factor)
+    fits = _fits(given, scaled)
+    return Shaking(
+        given=given,
+        measured=measure(scaled),
+        doubts=tuple(doubtful),
+        runs=runs,
+        polarity=worse or polarities[0],
+        governs=said,
+        margin=margin(mechanism, scaled, polarities),
+        fits=fits,
+        alone=_alone(mechanism, fits[0], polarities) if fits else None,
+    )
+
+
+def _fits(given: Given, scaled: GroundMotion) -> tuple[PulseFit, ...]:
+    """The pulses in a motion as scaled, the best first: none in one too short or too quiet for any."""
+    if given.pulse is not None:
+        pulse = replace(given.pulse, amplitude=given.pulse.amplitude * abs(given.factor))
+        return (PulseFit(pulse, 0.0, 1 if given.factor > 0 else -1, "acceleration", 1.0),)
+    try:
+        fits = list(fit_pulses(scaled, FITTED, ("velocity",)))
+    except InputError:
+        return ()
+    return tuple(sorted(fits, key=lambda fit: -fit.captured))
+
+
+def _alone(mechanism: Mechanism, fit: PulseFit, polarities: Sequence[int]) -> float:
+    shape = _shape(fit.pulse)
+    structure = shaken(mechanism, "nonlinear", shape, (1, -1))
+    signs = [polarity * fit.sign for polarity in polarities]
+    period, amplitude = np.array([fit.pulse.period]), np.array([fit.pulse.amplitude])
+    return float(outcomes(structure, shape, period, amplitude, polarities=signs).peak_ratio[0])
+
+
+def _shape(pulse: Pulse) -> Pulse:
+    return replace(pulse, amplitude=1.0, period=1.0)
+
+
+def _maps(mechanism: Mechanism, equivalence: Equivalence, shakings: Sequence[Shaking]) -> list[PulseMap]:
+    """A map for each shape among the best pulses; of the sine if there is none."""
+    if min(equivalence.positive.eta, equivalence.negative.eta) <= 0:
+        return []  # no history of it can be computed
+    marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
+    for shaking in shakings:
+        if shaking.fits:
+            best = shaking.fits[0]
+            marks.setdefault(_shape(best.pulse), []).append((shaking.given.motion.name, best))
+    marks = marks or {parse_shape("sine"): []}
+    return [PulseMap(_map(mechanism, shape, each), tuple(each)) for shape, each in marks.items()]
+
+
+def _map(mechanism: Mechanism, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
+    structure = shaken(mechanism, "nonlinear", shape, (1, -1))
+    periods, tops = _axes(structure, [fit.pulse for _, fit in marks])
+    omega = structure.period(np.linspace(*periods, POINTS))
+    a = np.linspace(tops / POINTS, tops, POINTS)
+    return overturning_map(structure, shape, omega, a, polarities=(1, -1))
+
+
+def _axes(structure: Shaken, pulses: Sequence[Pulse]) -> tuple[tuple[float, float], float]:
+    """Periods [s] and the largest a, so that all pulses are on the map."""
+    usual = [2 * pi / (omega * structure.p) for omega in OMEGAS]
+    periods = [*usual, *(each.period / BEYOND for each in pulses), *(each.period * BEYOND for each in pulses)]
+    strongest = max([TALLEST, *(BEYOND * each.amplitude / structure.unit for each in pulses)])
+    return (min(periods), max(periods)), strongest
+
+
+def amplitude_in_g(fit: PulseFit) -> float:
+    """a_p of a fitted pulse [standard gravity]."""
+    return fit.pulse.amplitude / STANDARD_GRAVITY
+
+
+def share(found: OverturningMap) -> float:
+    """The part of a map that overturns."""
+    return sum(found.shares[region] for region in (Region.AFTER_IMPACT, Region.WITHOUT_IMPACT))

@@ -1,0 +1,40 @@
+"""The still pictures of a report: matplotlib figures as SVG that stands in a page."""
+
+from __future__ import annotations
+
+import re
+from io import StringIO
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+SANS = "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif"
+
+STILL = 'aria-hidden="true" focusable="false" style="stroke-linejoin: round; stroke-linecap: butt"'
+
+
+def inline_svg(figure: Figure, prefix: str) -> str:
+    """A figure as an svg element without a heading of its own file.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        What to show.
+    prefix : str
+        Put before every identifier, so that those of several pictures on a page differ.
+    """
+    stream = StringIO()
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):  # text stays text
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    text = stream.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<(metadata|style)\b.*?</\1>", "", text, flags=re.DOTALL)  # a style would hold for all of the page
+    return re.sub(r"<[^>]*>", lambda tag: _tag(tag[0], prefix), text)  # what a name says is left alone
+
+
+def _tag(tag: str, prefix: str) -> str:
+    tag = re.sub(r'\bid="', f'id="{prefix}-', tag)
+    tag = re.sub(r'(href="|url\()#', rf"\1#{prefix}-", tag)
+    tag = re.sub(r"'?DejaVu Sans'?[^;\"]*", SANS, tag)
+    # The picture has a description beside it: programs that read aloud take that.
+    return tag.replace("<svg ", f"<svg {STILL} ", 1)

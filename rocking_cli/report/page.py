@@ -1,0 +1,255 @@
+"""A report as one page: HTML that needs nothing else, and no network."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from math import degrees
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+from matplotlib.figure import Figure
+
+from rocking_cli.core import Angle, Direction, Length
+from rocking_cli.core.advice import preferred_kappa
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.verdict import SENSE
+from rocking_cli.excitation.pulse_fit import PulseFit
+from rocking_cli.plotting.linearisation import draw_linearisation
+from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
+from rocking_cli.plotting.overturning import draw_map
+from rocking_cli.plotting.structure import draw_structure
+from rocking_cli.report import words
+from rocking_cli.report.content import Content, PulseMap, Shaking, amplitude_in_g, share
+from rocking_cli.report.definitions import PARAMETERS
+from rocking_cli.report.figures import inline_svg
+from rocking_cli.studies.film import Film
+from rocking_cli.studies.linearisation import Linearisation
+
+BINS = 6000  # of all motions together: each curve has some two samples for a bin
+FEWEST, MOST = 300, 2500  # of one motion
+ABSENT = "-"
+SUBSCRIPT = re.compile(r"([φθλωψ]|\b[A-Za-z])_([A-Za-z]+(?:,\d)?)")
+GREEK = {"lambda": "λ", "kappa1": "κ₁", "kappa2": "κ₂", "phi": "φ"}
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+Rows = list[list[str]]
+
+
+def render(content: Content) -> str:
+    """The page.
+
+    Parameters
+    ----------
+    content : Content
+        What it says; every text in it is escaped.
+    """
+    environment = Environment(
+        loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    environment.filters["symbols"] = symbols
+    bins = int(np.clip(BINS // max(1, len(content.shakings)), FEWEST, MOST))
+    return environment.get_template("report.html").render(
+        content=content,
+        answer=words.in_a_sentence(content),
+        verdicts=words.verdicts(content),
+        doubts=words.doubts(content),
+        drawing=_still(draw_structure(content.picture, content.name), "drawing"),
+        measured=_dimensions(content),
+        directions=_directions(content),
+        parameters=_parameters(content),
+        advice=_advice(content),
+        trust=_greek(content.trust),
+        geometry=_geometry(content),
+        responses=[_response(content, each, k, bins) for k, each in enumerate(content.shakings)],
+        maps=[_map(each, k) for k, each in enumerate(content.maps)],
+        errors=_still(draw_linearisation(content.curves, content.asked, ""), "errors"),
+        error_tables=[
+            (each.direction.label if len(content.asked) > 1 else "", _errors(each)) for each in content.asked
+        ],
+        measures=[_measures(each) for each in content.shakings],
+        style=Markup(asset("motion.css")),
+        script=Markup(asset("motion.js")),
+    )
+
+
+def symbols(text: str) -> Markup:
+    """A text of our own as HTML: what follows an underscore after a symbol is its subscript."""
+    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
+
+
+def _greek(text: str) -> str:
+    """A text of our own that spells symbols, with the symbols themselves."""
+    return re.sub("|".join(GREEK), lambda word: GREEK[word[0]], text)
+
+
+def _still(figure: Figure, prefix: str) -> Markup:
+    return Markup(inline_svg(figure, prefix))
+
+
+def _dimensions(content: Content) -> list[str]:
+    measured: list[Length | Angle] = [*content.picture.sketch.lengths, *content.picture.sketch.angles]
+    return [f"{each.text} ({each.direction.label})" if each.direction else each.text for each in measured]
+
+
+def _number(value: float | None, digits: int = 4) -> str:
+    if value is None:
+        return ABSENT
+    mantissa, _, power = f"{value:.{digits}g}".partition("e")
+    return f"{mantissa} \N{MULTIPLICATION SIGN} 10{str(int(power)).translate(RAISED)}" if power else mantissa
+
+
+def _directions(content: Content) -> list[str]:
+    if content.equivalence.symmetric:
+        return ["value"]
+    return [f"{each.label} ({SENSE[each]})" for each in Direction]
+
+
+def _parameters(content: Content) -> list[dict[str, Any]]:
+    shown = [Direction.POSITIVE] if content.equivalence.symmetric else list(Direction)
+    blocks = [content.equivalence[each].as_dict() for each in shown]
+    return [
+        {
+            "symbol": each.symbol,
+            "values": [
+                _number(block[each.key]) + (f" ({degrees(block[each.key]):.3g}°)" if each.unit == "rad" else "")
+                for block in blocks
+            ],
+            "unit": each.unit,
+            "meaning": each.meaning,
+        }
+        for each in PARAMETERS
+    ]
+
+
+def _advice(content: Content) -> list[str]:
+    if content.equivalence.symmetric:
+        return [_greek(preferred_kappa(content.equivalence.positive).why)]
+    return [_greek(f"{each.label}: {preferred_kappa(content.equivalence[each]).why}") for each in Direction]
+
+
+def _geometry(content: Content) -> Rows:
+    """What the file gives: field, symbol, value, unit, meaning; of what is one number or word."""
+    rows = []
+    for key, info in type(content.mechanism).model_fields.items():
+        value = getattr(content.mechanism, key)
+        if key != "name" and isinstance(value, (int, float, str)):
+            extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+            shown = _number(value, 6) if isinstance(value, float) else str(value)
+            rows.append([key, str(extra.get("symbol", "")), shown, str(extra.get("unit", "")), info.description or ""])
+    return rows
+
+
+def _response(content: Content, shaking: Shaking, k: int, bins: int) -> dict[str, Any]:
+    best = shaking.histories["nonlinear"]
+    film = Film(content.picture, best, shaking.motion)
+    pulses = [replace(each, sign=each.sign * shaking.polarity) for each in shaking.fits[:1] if shaking.given.file]
+    charts = [ratio_chart(shaking.histories, bins), ground_chart(shaking.motion, pulses, bins)]
+    moment = _peak_time(best, film)
+    label = f"{content.name}, as it moves under {shaking.given.motion.name}"
+    data = moving(film, charts, label=label, speed=1.0, moment=moment)
+    return {
+        "name": shaking.given.motion.name,
+        "reversed": shaking.polarity == -1,
+        "moment": moment,
+        "data": Markup(as_script(data)),
+        "id": f"motion-{k}",
+        "models": [words.MODELS[name] for name in shaking.histories],
+        "rows": _outcomes(list(shaking.histories.values())),
+        "fits": [_fit(fit) for fit in shaking.fits if shaking.given.file],
+        "alone": words.alone(shaking),
+    }
+
+
+def _peak_time(run: History, film: Film) -> float:
+    """When the rotation is largest; of a motion that overturns, when it passes the critical one."""
+    if run.overturning_time is not None:
+        return min(float(run.time[int(np.searchsorted(run.time, run.overturning_time))]), film.end)
+    return float(run.time[int(np.nanargmax(np.abs(run.ratio)))]) if run.peak_ratio else film.start
+
+
+def _outcomes(runs: Sequence[History]) -> Rows:
+    def angle(phi: float | None) -> str:
+        return ABSENT if phi is None else f"{degrees(phi):.4g}"
+
+    return [
+        ["how it ends", *(run.outcome.value.split(",")[0] for run in runs), ""],
+        ["largest rotation over critical, |φ|/φ_cr", *(_number(run.peak_ratio) for run in runs), "1"],
+        ["largest rotation clockwise", *(angle(run.peak_positive) for run in runs), "°"],
+        ["largest rotation anticlockwise", *(angle(run.peak_negative) for run in runs), "°"],
+        ["first uplift", *(_number(run.uplift_time) for run in runs), "s"],
+        ["passes the critical rotation for good", *(_number(run.overturning_time) for run in runs), "s"],
+        ["number of impacts", *(str(run.impact_count) for run in runs), "1"],
+    ]
+
+
+def _fit(fit: PulseFit) -> list[str]:
+    return [
+        fit.pulse.title,
+        _number(amplitude_in_g(fit)),
+        _number(fit.pulse.period),
+        _number(fit.start),
+        "reversed" if fit.sign < 0 else "as it is",
+        f"{100 * fit.captured:.0f}",
+    ]
+
+
+def _map(each: PulseMap, k: int) -> dict[str, Any]:
+    shaken = each.found.structure
+    places = [(name, fit.pulse.period, amplitude_in_g(fit)) for name, fit in each.marks]
+    return {
+        "title": each.found.shape.title,
+        "picture": _still(draw_map(each.found, "", dimensionless=False, marks=places), f"map-{k}"),
+        "share": f"{100 * share(each.found):.0f} %",
+        "p": _number(shaken.p),
+        "lambda": _number(shaken.lambda_),
+        "rows": [
+            [
+                name,
+                _number(fit.pulse.period),
+                _number(amplitude_in_g(fit)),
+                _number(2 * np.pi / fit.pulse.period / shaken.p, 3),
+                _number(fit.pulse.amplitude / shaken.unit, 3),
+                f"{100 * fit.captured:.0f}",
+            ]
+            for name, fit in each.marks
+        ],
+    }
+
+
+def _errors(each: Linearisation) -> Rows:
+    def percent(ratio: float) -> str:
+        return "never uplifts" if np.isinf(ratio) else f"{100 * (ratio - 1):+.2g} %"
+
+    rows = [["uplift acceleration", "", percent(each.uplift_ratio1), percent(each.uplift_ratio2)]]
+    for r, ratio in zip(each.amplitude.tolist(), each.period_ratio.tolist(), strict=True):
+        rows.append(["free period", f"φ/φ_cr = {r:g}", percent(ratio), percent(ratio)])
+    both = (each.overturning_ratio1.tolist(), each.overturning_ratio2.tolist())
+    for a, one, two in zip(each.acceleration.tolist(), *both, strict=True):
+        rows.append(["overturning time", f"a/λ = {a:g}", percent(one), percent(two)])
+    return rows
+
+
+def _measures(shaking: Shaking) -> dict[str, Any]:
+    given, found = shaking.given, shaking.measured
+    motion = given.motion
+    return {
+        "name": motion.name,
+        "file": given.file,
+        "rows": [
+            ["format", motion.format, ""],
+            ["unit in the file", motion.unit, ""],
+            ["samples", f"{motion.npts}", "1"],
+            ["interval", _number(motion.dt), "s"],
+            ["factor on it", _number(given.factor, 6), "1"],
+            ["peak acceleration (PGA)", _number(found.pga), "g"],
+            ["peak velocity (PGV)", _number(found.pgv), "m/s"],
+            ["peak displacement (PGD)", _number(found.pgd), "m"],
+            ["Arias intensity", _number(found.arias), "m/s"],
+            ["significant duration, 5 to 95 % of it", _number(found.significant_duration), "s"],
+            ["mean period", _number(found.mean_period), "s"],
+        ],
+    }

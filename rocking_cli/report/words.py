@@ -1,0 +1,282 @@
+"""What a report says first, in words: will it uplift, will it overturn, how close, and what to trust."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import degrees, isnan
+
+from rocking_cli.core import Direction
+from rocking_cli.dynamics.history import History, Outcome
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import APART, CLOSE, NOTABLE, SENSE
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.report.content import Content, Shaking
+from rocking_cli.studies.margin import FACTORS, STEP
+
+NEAR = 1.25  # a factor on the motion within which the opposite outcome makes a result a close one
+MODELS: Mapping[ModelName, str] = {
+    "nonlinear": "nonlinear model",
+    "linear1": "equivalent block with κ₁",
+    "linear2": "equivalent block with κ₂",
+}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A question of the reader and its answer."""
+
+    question: str
+    answer: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The answers for one ground motion.
+
+    Parameters
+    ----------
+    name : str
+        Of the motion.
+    headline : str
+        A few words.
+    answers : tuple of Answer
+        One for each question.
+    doubts : tuple of str
+        What is doubtful about the motion and the result.
+    """
+
+    name: str
+    headline: str
+    answers: tuple[Answer, ...]
+    doubts: tuple[str, ...]
+
+
+def verdicts(content: Content) -> tuple[Verdict, ...]:
+    """The answers for each ground motion."""
+    return tuple(_verdict(content, each) for each in content.shakings)
+
+
+def in_a_sentence(content: Content) -> str:
+    """The answer of the whole report."""
+    name = content.name
+    if not content.shakings:
+        least = min(content.equivalence[direction].lambda_ for direction in Direction)
+        return (
+            f"{name} starts to rock when the ground accelerates sideways by {_ground(content, least)}. No ground "
+            "motion was given, so this report does not say whether an earthquake overturns it."
+        )
+    falls = [each for each in content.shakings if _overturns(each)]
+    doubtful = any(_close(each) for each in content.shakings)
+    close = " The result is a close one: read below what could change it." if doubtful else ""
+    if falls:
+        names = _listed([each.given.motion.name for each in falls])
+        of = f" ({len(falls)} of {len(content.shakings)} ground motions)" if len(content.shakings) > 1 else ""
+        return f"{name} overturns under {names}{of}.{close}"
+    ratios = [_worst_ratio(each) for each in content.shakings]
+    under = _listed([each.given.motion.name for each in content.shakings])
+    if max(ratios) == 0:
+        return f"{name} does not move: {under} {'are' if len(ratios) > 1 else 'is'} too weak to lift it.{close}"
+    return (
+        f"{name} rocks but does not overturn under {under}: it turns by at most {_share(max(ratios))} of the rotation "
+        f"from which it would fall.{close}"
+    )
+
+
+def doubts(content: Content) -> list[str]:
+    """What is doubtful about the structure and the method, whatever the motion."""
+    said = []
+    if not content.mechanism.verified:
+        said.append(f"Nobody has verified the mechanism {content.mechanism.mechanism}: its numbers need a check.")
+    etas = [content.equivalence[direction].eta for direction in Direction]
+    if min(etas) <= 0:
+        said.append(
+            "The structure is so stocky that its restitution from kinematics is not positive. Time histories and the "
+            "overturning map need a measured restitution in the file, and are left out."
+        )
+    elif content.mechanism.restitution is None:
+        said.append(
+            f"How much motion an impact takes away (η = {min(etas):.3g}) was computed for rigid bodies that "
+            "neither slide nor bounce. It was not measured, and the response depends on it."
+        )
+    said.append(
+        "The bodies are taken as rigid, on rigid ground, in one plane, without sliding and without crushing at their "
+        "edges. The vertical motion of the ground is left out. Worn edges and soft ground lower the "
+        "resistance."
+    )
+    return said
+
+
+def _verdict(content: Content, shaking: Shaking) -> Verdict:
+    best = shaking.histories["nonlinear"]
+    headline = (
+        "overturns" if _overturns(shaking) else "rocks, does not overturn" if best.peak_ratio else "does not uplift"
+    )
+    return Verdict(
+        shaking.given.motion.name,
+        f"{headline}{' (close)' if _close(shaking) else ''}",
+        (
+            Answer("Will it uplift?", _uplift(content, shaking)),
+            Answer("Will it overturn?", _overturning(shaking)),
+            Answer("How close is that?", _closeness(content, shaking)),
+            Answer("Which model to trust?", _trusted(shaking)),
+        ),
+        tuple(_doubts(shaking)),
+    )
+
+
+def _uplift(content: Content, shaking: Shaking) -> str:
+    best, pga = shaking.histories["nonlinear"], shaking.measured.pga
+    least = min(content.equivalence[direction].lambda_ for direction in Direction)
+    needed = f"A ground acceleration of {_ground(content, least)} is enough to lift it"
+    both = "" if content.equivalence.symmetric else " in its weaker direction"
+    if best.uplift_time is not None:
+        return f"Yes, first at {best.uplift_time:.2f} s. {needed}{both}; this motion reaches {pga:.3g} g."
+    factor = shaking.margin.uplift
+    weak = pga < least * content.mechanism.gravity / STANDARD_GRAVITY
+    but = f"this motion reaches {pga:.3g} g" if weak else f"this motion, of {pga:.3g} g, reaches it only the other way"
+    more = f" It would have to be {factor:.3g} times as strong to lift it." if factor is not None else ""
+    return f"No. {needed}{both}; {but}.{more}"
+
+
+def _overturning(shaking: Shaking) -> str:
+    said = [f"{_fate(shaking.histories['nonlinear'], capital=True)}, {_way(shaking.polarity)}."]
+    others = [(sign, runs["nonlinear"]) for sign, runs in shaking.runs.items() if sign != shaking.polarity]
+    said += [f"{_way(sign).capitalize()}: {_fate(run)}." for sign, run in others]
+    if len(shaking.runs) == 1:
+        said.append("The motion was looked at this way round only; the other may be worse.")
+    return " ".join(said)
+
+
+def _fate(run: History, *, capital: bool = False) -> str:
+    if run.overturned:
+        sense = f", {SENSE[run.fell_to]}" if run.fell_to is not None else ""
+        time = f" at {run.overturning_time:.2f} s" if run.overturning_time is not None else ""
+        said = f"yes, it overturns{sense}{time}"
+    elif run.peak_ratio:
+        said = f"no, it rocks to {_share(run.peak_ratio)} of the critical rotation"
+    else:
+        said = "no, it does not move"
+    return said[0].upper() + said[1:] if capital else said
+
+
+def _way(polarity: int) -> str:
+    return "with the motion as given" if polarity == 1 else "with the motion reversed"
+
+
+def _closeness(content: Content, shaking: Shaking) -> str:
+    best, found = shaking.histories["nonlinear"], shaking.margin
+    said = []
+    if best.peak_ratio:
+        turned = {Direction.POSITIVE: best.peak_positive or 0.0, Direction.NEGATIVE: best.peak_negative or 0.0}
+        side = max(turned, key=lambda each: turned[each] / content.equivalence[each].phi_cr)
+        said.append(
+            f"It turns by at most {degrees(turned[side]):.3g}° {SENSE[side]}. That is {_share(best.peak_ratio)} of the "
+            f"critical rotation, {degrees(content.equivalence[side].phi_cr):.3g}°, beyond which its weight pushes it "
+            "over instead of back."
+        )
+        if best.peak_ratio > 1:
+            said.append("It passes that, and only the next push of the ground brings it back.")
+    tried = f"factors from {FACTORS[0]:.2g} to {FACTORS[-1]:.2g} were tried in steps of {100 * (STEP - 1):.0f} %"
+    if found.overturning is None:
+        said.append(f"No factor on the motion overturns it ({tried}).")
+    elif _overturns(shaking):
+        said.append(f"The least factor on the motion that overturns it is about {found.overturning:.2f} ({tried}).")
+    elif found.overturning < 1:
+        said.append(
+            f"Yet a weaker motion, {found.overturning:.2f} times this one, overturns it ({tried}): overturning is "
+            "erratic here, and this result owes something to chance."
+        )
+    else:
+        said.append(
+            f"The motion would have to be about {found.overturning:.2f} times as strong to overturn it ({tried})."
+        )
+    if found.safe_again is not None:
+        said.append(
+            f"Not every stronger motion overturns it: {found.safe_again:.2f} times this one does not. Small "
+            "changes decide."
+        )
+    return " ".join(said)
+
+
+def _trusted(shaking: Shaking) -> str:
+    runs = shaking.histories
+    best = runs["nonlinear"]
+    itself = "The nonlinear model is the structure itself, and its numbers are quoted here."
+    if len({run.overturned for run in runs.values()}) > 1:
+        said = "; ".join(
+            f"{MODELS[name]}: {'overturns' if run.overturned else 'does not'}" for name, run in runs.items()
+        )
+        return (
+            f"None of them alone: the models disagree on whether it overturns ({said}). {itself} So near to "
+            "overturning small changes of the motion decide."
+        )
+    if best.overturned:
+        return f"All three models say that it overturns. {itself}"
+    peaks = {name: run.peak_ratio or 0.0 for name, run in runs.items()}
+    peak = peaks["nonlinear"]
+    if not any(peaks.values()):
+        return f"Any: by all three models it stays at rest. {itself}"
+    off = {name: other - peak for name, other in peaks.items() if abs(other - peak) > max(APART * peak, NOTABLE)}
+    if not off:
+        return f"Any: the three models agree closely. {itself} The simpler equivalent block serves for this motion."
+    each = _listed([f"{_share(peaks[name])} by the {MODELS[name]}" for name in off])
+    return (
+        f"The nonlinear one. {itself} The largest rotation is {_share(peak)} of the critical one by it, but {each}. "
+        "Such a difference is too large to rely on the block."
+    )
+
+
+def _doubts(shaking: Shaking) -> list[str]:
+    said = [f"{each.text[0].upper()}{each.text[1:]}." for each in shaking.doubts]
+    if _close(shaking):
+        said.append("The result is close to the other outcome. Do not rest a decision on this one computation.")
+    if any(run.outcome is Outcome.STILL_ROCKING for run in shaking.histories.values()):
+        said.append("A model is still rocking long after the motion has ended; it is certain not to overturn.")
+    if shaking.given.factor != 1:
+        said.append(
+            f"The motion was scaled by {shaking.given.factor:.4g}. Large factors make motions unlike any recorded."
+        )
+    return [text.replace("?.", "?") for text in said]
+
+
+def _overturns(shaking: Shaking) -> bool:
+    return shaking.histories["nonlinear"].overturned
+
+
+def _close(shaking: Shaking) -> bool:
+    """Whether a small change of the motion or the model could give the other outcome."""
+    runs = shaking.histories.values()
+    if len({run.overturned for run in runs}) > 1:
+        return True
+    other = shaking.margin.other
+    return (other is not None and 1 / NEAR < other < NEAR) or _worst_ratio(shaking) > CLOSE
+
+
+def _worst_ratio(shaking: Shaking) -> float:
+    return shaking.histories["nonlinear"].peak_ratio or 0.0
+
+
+def alone(shaking: Shaking) -> str:
+    """What the pulse in a motion alone does."""
+    ratio = shaking.alone
+    if ratio is None:
+        return "No pulse could be found in it."
+    if isnan(ratio):
+        return "This pulse alone overturns the structure."
+    if ratio == 0:
+        return "This pulse alone does not lift the structure."
+    return f"This pulse alone rocks the structure to {_share(ratio)} of its critical rotation."
+
+
+def _ground(content: Content, lambda_: float) -> str:
+    """A horizontal ground acceleration, from a multiple of the structure's own gravity."""
+    return f"{lambda_ * content.mechanism.gravity / STANDARD_GRAVITY:.3g} g"
+
+
+def _share(ratio: float) -> str:
+    return f"{100 * ratio:.3g} %" if ratio < 10 else f"{ratio:.3g} times"
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,299 @@
+"""The report without a browser: what it says, against what the other commands say."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+import re
+import shlex
+import subprocess
+import sys
+import zipfile
+from html.parser import HTMLParser
+from importlib.metadata import version
+
+import numpy as np
+import pytest
+
+from rocking_cli.core import EquivalentBlock
+from rocking_cli.dynamics.history import respond
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.records import read_record
+from rocking_cli.report.definitions import PARAMETERS
+from rocking_cli.report.page import symbols
+from rocking_cli.structure import load_structure
+from tests.conftest import EXAMPLES, PROJECT, RECORDS
+from tests.test_cli import run, run_json
+
+FRAME, BLOCK, ARCH = (EXAMPLES / f"{name}.yaml" for name in ("frame", "block", "arch"))
+ACCEL = EXAMPLES / "accel.csv"
+LARGEST = 3e6  # bytes
+
+
+class Reader(HTMLParser):
+    """The text of a page, and the data in it."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.text, self.data, self._where = [], [], []
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        self._where.append((tag, dict(attributes).get("type")))
+
+    def handle_endtag(self, tag):
+        while self._where and self._where.pop()[0] != tag:
+            pass
+
+    def handle_data(self, data):
+        tag, kind = self._where[-1] if self._where else (None, None)
+        if kind == "application/json":
+            self.data.append(json.loads(data))
+        elif tag not in ("script", "style"):
+            self.text.append(data)
+
+    @property
+    def words(self):
+        return " ".join("".join(self.text).split())
+
+
+def read(path):
+    return Reader(path.read_text(encoding="utf-8"))
+
+
+class TestContent:
+    def test_the_summary_has_the_numbers_of_respond_and_equiv(self, frame_report):
+        out, printed = frame_report
+        words = read(out).words
+        responses = run_json("respond", FRAME, "--record", ACCEL, "--polarity", "both")
+        assert responses["governs"] == 1
+        best = responses["polarities"]["1"]["responses"]["nonlinear"]
+        share = f"{100 * best['peak_ratio']:.3g} %"
+        assert printed in words and share in printed
+        assert f"Yes, first at {best['uplift_time']:.2f} s" in words
+        assert f"{np.degrees(best['peak_positive']):.3g}° clockwise" in words
+        other = responses["polarities"]["-1"]["responses"]["nonlinear"]
+        assert f"With the motion reversed: no, it rocks to {100 * other['peak_ratio']:.3g} %" in words
+        block = run_json("equiv", FRAME)["directions"]
+        assert all(f"{block[side]['lambda']:.4g}" in words for side in ("positive", "negative"))
+        for name, run_of in responses["polarities"]["1"]["responses"].items():
+            assert f"{run_of['peak_ratio']:.4g}" in words, name
+
+    def test_an_overturning_is_said_with_its_direction_and_time(self):
+        data = run_json("report", BLOCK, "--pulse", "sine:1g:2s", "--polarity", "1")
+        (motion,) = data["motions"]
+        alone = run_json("respond", BLOCK, "--pulse", "sine:1g:2s")["responses"]["nonlinear"]
+        said = motion["answers"]["Will it overturn?"]
+        sense = {"positive": "clockwise", "negative": "anticlockwise"}[alone["overturning_direction"]]
+        assert f"Yes, it overturns, {sense} at {alone['overturning_time']:.2f} s" in said
+        assert "this way round only" in said
+        assert data["answer"].endswith("overturns under sine:1g:2s.") and motion["headline"] == "overturns"
+        assert motion["margin"]["overturning"] < 1
+
+    def test_the_worse_polarity_is_shown(self, tmp_path):
+        out = tmp_path / "r.html"
+        data = run_json("report", FRAME, "--record", ACCEL, "--scale", "-1", "-o", out)  # 1 governs without the scale
+        assert data["motions"][0]["polarity"] == -1
+        page = read(out)
+        assert "reversed, which is the worse way round" in page.words
+        ground, pulse = (np.array(each["y"]) for each in page.data[0]["charts"][1]["series"])
+        record = read_record(ACCEL).acceleration / STANDARD_GRAVITY
+        assert ground[np.abs(ground).argmax()] == pytest.approx(record[np.abs(record).argmax()], rel=1e-4)
+        assert np.sign(pulse[np.abs(pulse).argmax()]) == np.sign(record[np.abs(record).argmax()])
+
+    @pytest.mark.parametrize(
+        ("structure", "pulse", "said"),
+        [
+            (BLOCK, "sine:0.1g:1s", "Any: by all three models it stays at rest"),
+            (FRAME, "sine:0.3g:1s", "Any: the three models agree closely"),
+            (ARCH, "sine:0.8g:0.8s", "The nonlinear one"),
+            (ARCH, "sine:0.9g:1.2s", "None of them alone: the models disagree"),
+            (BLOCK, "sine:1g:2s", "All three models say that it overturns"),
+        ],
+    )
+    def test_which_model_to_trust(self, structure, pulse, said):
+        # By `respond`: at rest, peaks within 3 %, linear1 far off, linear2 alone stands, all overturn.
+        (motion,) = run_json("report", structure, "--pulse", pulse, "--polarity", "1")["motions"]
+        assert motion["answers"]["Which model to trust?"].startswith(said)
+        disagree = len({each["overturned"] for each in motion["responses"].values()}) > 1
+        assert disagree == said.startswith("None")
+
+    def test_a_motion_beyond_the_critical_rotation_is_told_as_such(self):
+        (motion,) = run_json("report", ARCH, "--pulse", "sine:1.2g:1.2s", "--polarity", "1")["motions"]
+        assert motion["responses"]["nonlinear"]["peak_ratio"] > 1
+        assert "only the next push of the ground brings it back" in motion["answers"]["How close is that?"]
+
+    def test_a_close_result_and_models_that_disagree_are_doubted(self):
+        margin = run_json("report", BLOCK, "--pulse", "sine:0.5g:1s")["motions"][0]["margin"]["overturning"]
+        near = 0.5 * margin / 1.04
+        (motion,) = run_json("report", BLOCK, "--pulse", f"sine:{near:.6g}g:1s")["motions"]
+        assert motion["headline"].endswith("(close)") and any("close" in doubt for doubt in motion["doubts"])
+        far = run_json("report", BLOCK, "--pulse", f"sine:{near / 1.5:.6g}g:1s")
+        assert "(close)" not in far["motions"][0]["headline"] and "close" not in far["answer"]
+
+    def test_doubts_of_a_record_and_of_the_structure_are_in_it(self, tmp_path):
+        t = np.arange(200) * 0.02
+        record = tmp_path / "odd.csv"
+        lines = [f"{x:.2f},{0.3 * np.sin(6 * x) + 0.1:.6f}" for x in t]
+        record.write_text("t,accel_g\n" + "\n".join(lines) + "\n", encoding="utf-8")
+        out = tmp_path / "r.html"
+        result = run("report", BLOCK, "--record", record, "-o", out)
+        doubts = re.findall(r"warning: odd\.csv: (.*)", result.stderr)
+        words = read(out).words
+        assert len(doubts) > 1
+        assert all(doubt[1:40] in words for doubt in doubts)
+        assert "was not measured" in words
+
+    def test_a_stocky_structure_without_a_motion_says_what_is_left_out(self, tmp_path):
+        stocky = tmp_path / "stocky.yaml"
+        stocky.write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
+        out = tmp_path / "r.html"
+        run("report", stocky, "-o", out)
+        words = read(out).words
+        assert "need a measured restitution" in words and "There is no map" in words
+        assert "restitution" in run("report", stocky, "--record", ACCEL, "-o", out, code=2).stderr
+
+    def test_pulses_are_marked_where_they_are(self, tmp_path):
+        out = tmp_path / "r.html"
+        run("report", BLOCK, "--pulse", "sine:0.6g:0.8s", "--pulse", "ricker:0.4g:1.2s", "-o", out)
+        words = read(out).words
+        block = run_json("equiv", BLOCK)["directions"]["positive"]
+        omega, a = 2 * np.pi / 0.8 / block["p"], 0.6 / block["lambda"]
+        rows = re.sub(r"</t[hd]><td[^>]*>", " ", out.read_text(encoding="utf-8"))
+        assert f"sine:0.6g:0.8s 0.8 0.6 {omega:.3g} {a:.3g} 100" in rows
+        assert words.count("Where the ground motions are on this map") == 2  # one for each shape
+
+    def test_every_parameter_is_defined(self):
+        keys = EquivalentBlock(*[1.0] * 12).as_dict()
+        assert sorted(each.key for each in PARAMETERS) == sorted(keys)
+
+    def test_symbols_have_subscripts_and_nothing_else_does(self):
+        assert symbols("φ_cr/κ₁ & a_p") == "φ<sub>cr</sub>/κ₁ &amp; a<sub>p</sub>"
+        assert symbols("column_width <b> data_p") == "column_width &lt;b&gt; data_p"
+
+    def test_curves_are_those_of_the_history(self, frame_report):
+        (data,) = read(frame_report[0]).data
+        rotation, ground = (chart["series"] for chart in data["charts"])
+        runs = respond(load_structure(FRAME), read_record(ACCEL))
+        assert [each["look"] for each in rotation] == list(runs)
+        for each, run_of in zip(rotation, runs.values(), strict=True):
+            x, y = np.array(each["x"]), np.array(each["y"])
+            np.testing.assert_allclose(y, np.interp(x, run_of.time, run_of.ratio), rtol=1e-4, atol=1e-6)
+            assert x[-1] == pytest.approx(run_of.time[-1])
+        assert max(ground[0]["y"], key=abs) == pytest.approx(-0.55, rel=1e-3)
+        best = runs["nonlinear"]
+        assert data["moment"] == pytest.approx(best.time[np.abs(best.ratio).argmax()])
+
+
+class TestReproduction:
+    def test_files_are_quoted_with_their_checksums_and_the_command_is_repeated(self, frame_report):
+        out = frame_report[0]
+        words = read(out).words
+        assert " ".join(FRAME.read_text(encoding="utf-8").split()) in words
+        for file in (FRAME, ACCEL):
+            assert hashlib.sha256(file.read_bytes()).hexdigest() in words
+        assert shlex.join(["rocking", "report", str(FRAME), "--record", str(ACCEL), "-o", str(out)]) in words
+        for name in ("rocking-cli", "numpy", "numba", "scipy", "matplotlib"):
+            assert f"{name}: {version(name)}" in words
+        assert f"Python: {platform.python_version()}" in words
+
+    def test_the_command_has_every_option_given(self):
+        given = ["--pulse", "sine:0.1g:1s", "--pulse", "ricker:0.1g:1s", "--target-pga", "0.05", "--polarity", "-1"]
+        data = run_json("report", BLOCK, *given)
+        assert shlex.split(data["command"]) == ["rocking", "report", str(BLOCK), *given, "--json"]
+
+    def test_elsewhere_it_is_the_same_and_folders_stay_out_unless_given(self, frame_report, tmp_path, monkeypatch):
+        monkeypatch.chdir(EXAMPLES)
+        out = tmp_path / "r.html"
+        run("report", "frame.yaml", "--record", "accel.csv", "-o", out)
+        page = out.read_text(encoding="utf-8").replace(str(out), "")
+        assert str(EXAMPLES) not in page and str(PROJECT) not in page
+        first = frame_report[0].read_text(encoding="utf-8").replace(str(frame_report[0]), "")
+        assert first.replace(str(FRAME), FRAME.name).replace(str(ACCEL), ACCEL.name) == page
+
+    def test_nothing_is_fetched_and_no_identifier_stands_twice(self, frame_report):
+        page = frame_report[0].read_text(encoding="utf-8")
+        assert not re.search(r"<(link|iframe|object|embed|base)\b|@import|\bsrc=|\bfetch\(|XMLHttp", page)
+        targets = re.findall(r'href="([^"]*)"', page)
+        assert len(targets) > 10
+        assert [each for each in targets if each[0] != "#" and not each.startswith("data:image/png;base64,")] == []
+        identifiers = re.findall(r'\bid="([^"]*)"', page)
+        assert len(set(identifiers)) == len(identifiers)
+        assert {each[1:] for each in targets if each[0] == "#"} <= set(identifiers)
+
+    def test_templates_and_scripts_are_in_the_wheel(self, tmp_path):
+        build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
+        subprocess.run(build, cwd=PROJECT, check=True, capture_output=True)
+        (wheel,) = tmp_path.glob("*.whl")
+        names = set(zipfile.ZipFile(wheel).namelist())
+        assert {
+            "rocking_cli/report/templates/report.html", "rocking_cli/report/templates/report.css",
+            "rocking_cli/data/motion.js", "rocking_cli/data/motion.css", "rocking_cli/data/animation.html",
+        } <= names  # fmt: skip
+
+
+class TestCommand:
+    def test_the_page_is_named_after_the_structure_and_json_writes_none(self, tmp_path):
+        run("report", BLOCK)
+        assert (tmp_path / "block.html").exists()
+        (tmp_path / "block.html").unlink()
+        data = run_json("report", BLOCK)
+        assert list(tmp_path.iterdir()) == []
+        assert data["motions"] == [] and set(data["parameters"]) == {"positive", "negative"}
+
+    def test_the_default_block_is_quoted(self, tmp_path):
+        run("report")
+        assert "default block, 0.7 m x 2.8 m" in read(tmp_path / "rocking.html").words
+
+    @pytest.mark.parametrize(
+        ("arguments", "said"),
+        [
+            (["--dt", "0.01"], "give --record FILE"),
+            (["--scale", "2"], "give --record FILE or --pulse PULSE"),
+            (["--pulse", "sine:1g:1s", "--scale", "2", "--target-pga", "1"], "exclude each other"),
+            (["--record", "none.csv"], "none.csv"),
+            (["-o", "r.pdf"], "does not end in .html"),
+            (["-o", "none/r.html"], "does not exist"),
+        ],
+    )
+    def test_what_cannot_be_is_refused(self, arguments, said, tmp_path):
+        assert said in run("report", BLOCK, *arguments, code=2).stderr
+        assert list(tmp_path.iterdir()) == []
+
+    def test_an_input_is_not_written_over(self, tmp_path):
+        record = tmp_path / "r.html"
+        record.write_bytes(ACCEL.read_bytes())
+        assert "overwrite" in run("report", BLOCK, "--record", record, "-o", record, code=2).stderr
+        assert record.read_bytes() == ACCEL.read_bytes()
+
+
+class TestSize:
+    def test_one_record(self, frame_report):
+        assert frame_report[0].stat().st_size < LARGEST / 4
+
+    def test_many_long_records_too(self, tmp_path):
+        rng = np.random.default_rng(1)
+        records = []
+        for k in range(3):
+            path = tmp_path / f"long{k}.csv"
+            values = 0.05 * rng.standard_normal(30_000)
+            path.write_text("\n".join(f"{value:.6f}" for value in values) + "\n", encoding="utf-8")
+            records += ["--record", path]
+        out = tmp_path / "r.html"
+        run("report", BLOCK, *records, "--units", "g", "--dt", "0.01", "-o", out)
+        assert out.stat().st_size < LARGEST
+        ground = read(out).data[0]["charts"][1]["series"][0]
+        written = np.loadtxt(tmp_path / "long0.csv")
+        assert max(ground["y"]) == pytest.approx(written.max(), rel=1e-4)  # peaks survive the thinning
+        assert min(ground["y"]) == pytest.approx(written.min(), rel=1e-4)
+
+    @pytest.mark.skipif(not RECORDS.is_dir(), reason="the real records are not here")
+    def test_two_real_records(self, tmp_path):
+        out = tmp_path / "r.html"
+        names = ("RSN6_IMPVALL.I_I-ELC180.AT2", "Rinaldi228.AT2")
+        run("report", EXAMPLES / "wall.yaml", *(a for name in names for a in ("--record", RECORDS / name)), "-o", out)
+        assert out.stat().st_size < LARGEST
+        page = read(out)
+        assert len(page.data) == 2 and "facade overturns under Rinaldi228.AT2 (1 of 2 ground motions)" in page.words
+        assert max(map(abs, page.data[1]["charts"][1]["series"][0]["y"])) == pytest.approx(0.8741, rel=1e-3)
