@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import re
 from pathlib import Path
@@ -88,17 +89,17 @@ class TestPage:
         time = np.arange(rotation.size) * data["film"]["step"]
         np.testing.assert_allclose(rotation, shown.rotation(time), rtol=1e-4)
         assert time[-1] >= shown.end
-        t, ground = data["traces"]["ground"]
-        assert max(np.abs(ground)) == pytest.approx(0.3, rel=1e-4)
-        np.testing.assert_allclose(np.interp(1.0, t, ground), 0.0, atol=1e-6)
-        assert max(np.abs(data["traces"]["ratio"][1])) == pytest.approx(shown.history.peak_ratio, rel=1e-3)
+        ratio, ground = (each["series"][0] for each in data["charts"])
+        assert max(np.abs(ground["y"])) == pytest.approx(0.3, rel=1e-4)
+        np.testing.assert_allclose(np.interp(1.0, ground["x"], ground["y"]), 0.0, atol=1e-6)
+        assert max(np.abs(ratio["y"])) == pytest.approx(shown.history.peak_ratio, rel=1e-3)
         assert data["picture"] == shown.picture.as_dict()
 
     def test_it_needs_no_network(self):
         page = animation_page(film(0.3), "a block")
         addresses = set(re.findall(r"(?:https?:)?//[\w.]+", page)) - {"http://www.w3.org"}
         assert not {each for each in addresses if "." in each}
-        assert not re.search(r"\b(src|href)\s*=|@import|url\(|fetch\(|XMLHttpRequest", page)
+        assert not re.search(r"\b(src|href)\s*=|@import|url\((?!#)|fetch\(|XMLHttpRequest", page)
 
     def test_it_respects_what_a_reader_has_set(self):
         page = animation_page(film(0.3), "a block")
@@ -110,7 +111,7 @@ class TestPage:
         page = animation_page(film(0.3, name=evil), evil)
         assert page.count("</script>") == 2 and "<b>" not in page and "alert(1)</" not in page
         data = data_of(page)
-        assert data["title"] == evil and data["record"].startswith(evil)
+        assert f"<title>{html.escape(evil)}</title>" in page and data["about"].startswith(evil)
 
 
 class TestGif:
@@ -147,8 +148,8 @@ class TestCommand:
             "animate", EXAMPLES / "arch.yaml", "--pulse", "sine:0.7g:0.9s", "--out", "a.html", "--polarity", "-1"
         )
         assert "does not overturn" in result.stdout
-        data = data_of(Path("a.html").read_text(encoding="utf-8"))
-        assert data["title"].startswith("Oppenheim") and len(data["picture"]["parts"]) == 5
+        page = Path("a.html").read_text(encoding="utf-8")
+        assert "<h1>Oppenheim" in page and len(data_of(page)["picture"]["parts"]) == 5
 
     def test_polarity_and_scale_reach_the_motion(self, tmp_path):
         for out, more in (("a.html", []), ("b.html", ["--polarity", "-1"])):
