@@ -27,10 +27,7 @@ def _ratio(ctx: click.Context, param: click.Parameter, value: float) -> float:
     "--at", "ratio", type=options.Finite(), default=1.0, show_default=True, metavar="RATIO", callback=_ratio,
     help="How far it is displaced, as a multiple of phi_cr.",
 )  # fmt: skip
-@click.option(
-    "--plot", callback=options.output_path(".png", ".svg", ".pdf"), metavar="FILE.png",
-    help="Where to (.png, .svg or .pdf).  [default: FILE with .png, in this folder; none with --json]",
-)  # fmt: skip
+@options.plot("Where to", "[default: FILE with .png, in this folder; none with --json]")
 @options.as_json
 def command(file: str | None, ratio: float, plot: Path | None, as_json: bool) -> None:
     """Draw a structure at rest with its dimensions, and displaced in both directions, to scale.

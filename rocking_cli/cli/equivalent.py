@@ -44,12 +44,7 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
     help="Restitution of all: a number, that of the first FILE, or each its own.",
 )
 @click.option("--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the responses over p t.")
-@click.option(
-    "--plot",
-    callback=options.output_path(".png", ".svg", ".pdf"),
-    metavar="FILE.png",
-    help="Draw them (.png, .svg or .pdf).",
-)
+@options.plot("Draw them")
 @options.as_json
 def command(
     files: tuple[str, ...],

@@ -40,10 +40,7 @@ def _beyond_uplift(ctx: click.Context, param: click.Parameter, values: tuple[flo
     "--accel", "accelerations", type=options.Finite(), multiple=True, default=(2.0,), show_default="2",
     metavar="TIMES", callback=_beyond_uplift, help="Constant acceleration over that at uplift; may be repeated.",
 )  # fmt: skip
-@click.option(
-    "--plot", callback=options.output_path(".png", ".svg", ".pdf"), metavar="FILE.png",
-    help="Draw the errors over their ranges (.png, .svg or .pdf).",
-)  # fmt: skip
+@options.plot("Draw the errors over their ranges")
 @options.as_json
 def command(
     file: str | None, amplitudes: tuple[float, ...], accelerations: tuple[float, ...], plot: Path | None, as_json: bool

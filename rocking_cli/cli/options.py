@@ -59,6 +59,16 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
     return check
 
 
+def plot(what: str, more: str = "") -> Decorator:
+    """Where to draw a picture: `plot`; the help says what it shows, and what more there is to say."""
+    return click.option(
+        "--plot",
+        callback=output_path(".png", ".svg", ".pdf"),
+        metavar="FILE.png",
+        help=f"{what} (.png, .svg or .pdf).{'  ' * bool(more)}{more}",
+    )
+
+
 def _in_order(*decorators: Decorator) -> Decorator:
     """Several options as one decorator; the help lists them in this order."""
 

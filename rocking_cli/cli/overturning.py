@@ -56,12 +56,7 @@ SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
 @click.option(
     "--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the map, a line a point, or curves."
 )
-@click.option(
-    "--plot",
-    callback=options.output_path(".png", ".svg", ".pdf"),
-    metavar="FILE.png",
-    help="Draw it (.png, .svg or .pdf).",
-)
+@options.plot("Draw it")
 @options.as_json
 def command(
     files: tuple[str, ...],

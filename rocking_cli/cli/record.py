@@ -49,12 +49,7 @@ class Shown(NamedTuple):
 @click.option(
     "--to", type=click.Choice(["csv"]), help="Write each as a clean file of t and a, NAME.csv in this folder."
 )
-@click.option(
-    "--plot",
-    callback=options.output_path(".png", ".svg", ".pdf"),
-    metavar="FILE.png",
-    help="Draw one record (.png, .svg or .pdf).",
-)
+@options.plot("Draw one record")
 @options.as_json
 @click.pass_context
 def command(

@@ -105,12 +105,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     metavar="FILE.csv",
     help="Write the histories (.csv or .parquet).",
 )
-@click.option(
-    "--plot",
-    callback=options.output_path(".png", ".svg", ".pdf"),
-    metavar="FILE.png",
-    help="Draw them (.png, .svg or .pdf).",
-)
+@options.plot("Draw them")
 @options.as_json
 def command(
     file: str | None,

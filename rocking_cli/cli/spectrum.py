@@ -82,12 +82,7 @@ def _numbers(low: float, high: float, what: str) -> Any:
 @click.option(
     "--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the curves, with every motion's."
 )
-@click.option(
-    "--plot",
-    callback=options.output_path(".png", ".svg", ".pdf"),
-    metavar="FILE.png",
-    help="Draw them (.png, .svg or .pdf).",
-)
+@options.plot("Draw them")
 @options.as_json
 @click.pass_context
 def command(
