@@ -637,3 +637,28 @@ def test_check_says_what_would_be_run_and_runs_nothing(tmp_path):
     assert json.loads(result.stdout)["runs"] == 5 * 3 * 5 * 2
     assert "150" in CliRunner().invoke(main, ["fragility", str(path), "--check"]).stdout
     assert [each.name for each in tmp_path.iterdir()] == ["study.yaml"]
+
+
+def test_samples_that_differ_in_their_restitution_only(tmp_path):
+    text = STUDY.replace("      width: {normal: {mean: 0.7, deviation: 0.05}}\n", "").replace("[1, -1]", "[1]")
+    prepared = carry_out(write(tmp_path, text, count=3), tmp_path / "study.db")
+    study, plan = prepared.study, prepared.plan
+    with Store.reading(tmp_path / "study.db") as kept:
+        rows = kept.runs(0, plan.total)
+    assert len(set(rows.eta[9:].tolist())) == 4 and np.isnan(rows.eta[:9]).all()
+    motion = study.sources[1].read()
+    for k in range(9, plan.total):
+        sample, record, _, _, _ = (int(place) for place in np.unravel_index(k, plan.shape))
+        if record == 1:
+            history = respond(study.samples[sample].mechanism, motion.scaled(rows.scale[k]), models=("nonlinear",))
+            assert rows.eta[k] == study.samples[sample].mechanism.restitution
+            peak = history["nonlinear"].peak_ratio
+            assert np.isnan(rows.peak_ratio[k]) if peak is None else rows.peak_ratio[k] == pytest.approx(peak, rel=1e-9)
+
+
+def test_levels_are_over_the_uplift_of_the_weaker_direction(whole):
+    study, plan = load_study(whole[0]), whole[1].plan
+    equivalence = equivalent_block(study.structures[0])
+    one, other = equivalence.positive, equivalence.negative
+    assert one.lambda_ < other.lambda_ and one.p != other.p
+    assert (plan.trials[0].lambda_, plan.trials[0].p) == (one.lambda_, one.p)
