@@ -47,6 +47,8 @@ SHOWN = {
     "stronger": "rocking respond pedestal.yaml --record examples/accel.csv --scale 1.3 --model nonlinear",
     "overturning": "rocking overturning pedestal.yaml --plot map.png",
     "spectrum": "rocking spectrum pedestal.yaml --record examples/accel.csv --plot spectrum.png",
+    "animate": "rocking animate examples/frame.yaml --record examples/accel.csv --out moving.gif",
+    "report": "rocking report pedestal.yaml --record examples/accel.csv -o report.html",
     "blocks": "rocking spectrum pedestal.yaml --record examples/accel.csv --slenderness 0.2,0.3 --plot blocks.png",
     "frame": "rocking respond examples/frame.yaml --record examples/accel.csv --polarity both --plot frame.png",
 }

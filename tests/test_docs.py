@@ -76,7 +76,7 @@ def test_the_tutorial_shows_the_commands_that_are_run(pictures):
 
 @pytest.mark.parametrize("page", [*DOCS.glob("*.md"), *DOCS.glob("mechanisms/*.md")], ids=lambda page: page.stem)
 def test_what_a_page_shows_of_a_run_is_there(page, shown):
-    for name in re.findall(r"_generated/run/(\S+?)[)\s]", page.read_text(encoding="utf-8")):
+    for name in re.findall(r"_generated/run/(\S+?)[)>\s]", page.read_text(encoding="utf-8")):
         assert (shown[0] / name).stat().st_size > 0, name
 
 

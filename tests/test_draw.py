@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from math import atan2, degrees, hypot, pi
 
 import numpy as np
@@ -21,7 +22,7 @@ from rocking_cli.errors import MechanismError
 from rocking_cli.plotting import dimensions
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.structure import load_structure
-from rocking_cli.studies.picture import NODES, picture
+from rocking_cli.studies.picture import ASSUMED, NODES, picture
 from rocking_cli.testing import MechanismContract
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -112,12 +113,23 @@ class TestPicture:
         for direction in Direction:
             found = [pin.point for pin in shown.pins if pin.direction is direction]
             np.testing.assert_allclose(found, [0.2 * direction, -0.2 * direction + 2j], atol=1e-9)
+        # A box has said what shape it has.
+        assert not any(part.assumed for part in shown.parts) and not shown.sketch.notes
+        np.testing.assert_allclose(shown.parts[0].outlines[0], [-0.2, 0.2, 0.2 + 2j, -0.2 + 2j], atol=1e-12)
+        (ground,) = shown.ground
+        assert ground.imag.tolist() == [0.0, 0.0] and ground[0].real < -0.5 < 0.5 < ground[1].real
+
+    def test_of_a_body_without_a_shape_a_disc_is_drawn_and_said(self):
+        class Numbers(Bare):
+            def bodies(self):
+                return [replace(each, outline=()) for each in super().bodies()]
+
+        shown = picture(Numbers())
         assert all(part.assumed for part in shown.parts)
         # A disc of mass m and radius a has the inertia m a^2/2.
         radius = np.abs(shown.parts[0].outlines[0] - 1j)
         np.testing.assert_allclose(radius, np.sqrt(2 * (0.4**2 + 2.0**2) / 12))
-        (ground,) = shown.ground
-        assert ground.imag.tolist() == [0.0, 0.0] and ground[0].real < -0.5 < 0.5 < ground[1].real
+        assert list(shown.sketch.notes) == [ASSUMED] and shown.as_dict()["notes"] == [ASSUMED]
 
     def test_the_instantaneous_centre_of_a_beam_is_no_hinge(self):
         """Of a frame whose hinges are not given: A, B, C and D are found, and no centre that wanders."""

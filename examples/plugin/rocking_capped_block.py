@@ -6,7 +6,21 @@ from collections.abc import Sequence
 from math import pi
 from typing import ClassVar
 
-from rocking_cli.core import Body, Direction, Mechanism, Reals, RigidMotion, box, length, quantity, rotation
+from rocking_cli.core import (
+    Body,
+    Direction,
+    Hinge,
+    Length,
+    Mechanism,
+    Reals,
+    RigidMotion,
+    Sketch,
+    box,
+    disc,
+    length,
+    quantity,
+    rotation,
+)
 
 
 class CappedBlock(Mechanism):
@@ -36,3 +50,13 @@ class CappedBlock(Mechanism):
     def limit(self, direction: Direction) -> float:
         """The block lies on its side."""
         return pi / 2
+
+    def sketch(self) -> Sketch:
+        """Pivots with a letter, the size, and a bust that is drawn at will; the block has its shape already."""
+        b, top = self.width / 2, 1j * self.height
+        return Sketch(
+            outlines={"cap": [disc(top + 0.5j * b, b / 2)]},
+            hinges={direction: [Hinge("O", complex(direction * b), ("block",))] for direction in Direction},
+            lengths=[Length("2b", complex(-b), complex(b)), Length("2h", complex(-b), -b + top)],
+            notes=["the cap is a point: drawn at will"],
+        )

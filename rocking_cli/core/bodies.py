@@ -22,17 +22,22 @@ class Body:
         Moment of inertia about its centroid [kg m2].
     centroid : complex
         Rest position of its centroid, x + iy [m].
+    outline : sequence of complex
+        Its corners in that position [m], for pictures only; empty if its shape is not known.
     """
 
     name: str
     mass: float
     inertia: float
     centroid: complex
+    outline: Sequence[complex] = ()
 
 
 def box(name: str, mass: float, width: float, height: float, centroid: complex) -> Body:
     """A uniform rectangle `width` by `height` [m]."""
-    return Body(name, mass, mass * (width**2 + height**2) / 12, centroid)
+    across, up = width / 2, 1j * height / 2
+    outline = tuple(centroid + corner for corner in (-across - up, across - up, across + up, up - across))
+    return Body(name, mass, mass * (width**2 + height**2) / 12, centroid, outline)
 
 
 def polygon(name: str, mass: float, vertices: Sequence[complex]) -> Body:
@@ -45,7 +50,7 @@ def polygon(name: str, mass: float, vertices: Sequence[complex]) -> Body:
     area = twice_area.sum() / 2
     centroid = (twice_area * (z + w)).sum() / (6 * area)
     polar = (twice_area * (abs(z) ** 2 + abs(w) ** 2 + (z.conj() * w).real)).sum() / (12 * area)
-    return Body(name, mass, float(mass * (polar - abs(centroid) ** 2)), complex(origin + centroid))
+    return Body(name, mass, float(mass * (polar - abs(centroid) ** 2)), complex(origin + centroid), tuple(vertices))
 
 
 def annular_sector(name: str, density: float, inner: float, outer: float, start: float, end: float) -> Body:

@@ -14,6 +14,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.report.content import Content, Shaking
 from rocking_cli.studies.margin import FACTORS, STEP
 
+LARGE = 2.0  # a factor on a record that asks for a word of caution
 NEAR = 1.25  # a factor on the motion within which the opposite outcome makes a result a close one
 MODELS: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear model",
@@ -73,13 +74,20 @@ def in_a_sentence(content: Content) -> str:
         names = _listed([each.given.motion.name for each in falls])
         of = f" ({len(falls)} of {len(content.shakings)} ground motions)" if len(content.shakings) > 1 else ""
         return f"{name} overturns under {names}{of}.{close}"
-    ratios = [_worst_ratio(each) for each in content.shakings]
-    under = _listed([each.given.motion.name for each in content.shakings])
-    if max(ratios) == 0:
-        return f"{name} does not move: {under} {'are' if len(ratios) > 1 else 'is'} too weak to lift it.{close}"
+    moved = [each for each in content.shakings if _worst_ratio(each) > 0]
+    if not moved:
+        under = _listed([each.given.motion.name for each in content.shakings])
+        return (
+            f"{name} does not move: {under} {'are' if len(content.shakings) > 1 else 'is'} too weak to lift it.{close}"
+        )
+    worst = max(moved, key=_worst_ratio)
+    which = worst.given.motion.name
+    share = f"{_share(_worst_ratio(worst))} of the rotation from which it would fall"
+    if len(content.shakings) == 1:
+        return f"{name} rocks but does not overturn under {which}: it turns by at most {share}.{close}"
     return (
-        f"{name} rocks but does not overturn under {under}: it turns by at most {_share(max(ratios))} of the rotation "
-        f"from which it would fall.{close}"
+        f"{name} rocks under {len(moved)} of {len(content.shakings)} ground motions and overturns under none: it turns "
+        f"by at most {share}, under {which}.{close}"
     )
 
 
@@ -179,23 +187,21 @@ def _closeness(content: Content, shaking: Shaking) -> str:
             said.append("It passes that, and only the next push of the ground brings it back.")
     tried = f"factors from {FACTORS[0]:.2g} to {FACTORS[-1]:.2g} were tried in steps of {100 * (STEP - 1):.0f} %"
     if found.overturning is None:
-        said.append(f"No factor on the motion overturns it ({tried}).")
-    elif _overturns(shaking):
-        said.append(f"The least factor on the motion that overturns it is about {found.overturning:.2f} ({tried}).")
-    elif found.overturning < 1:
+        said.append(f"No factor on the motion that was tried overturns it ({tried}).")
+    elif found.overturning == FACTORS[0]:
+        said.append(f"Even the weakest that was tried, {found.overturning:.2f} times this one, overturns it ({tried}).")
+    elif _overturns(shaking) or found.overturning >= 1:
         said.append(
-            f"Yet a weaker motion, {found.overturning:.2f} times this one, overturns it ({tried}): overturning is "
-            "erratic here, and this result owes something to chance."
+            f"The least factor on the motion that was found to overturn it is {found.overturning:.3g} ({tried}; others "
+            "between these may, too)."
         )
     else:
         said.append(
-            f"The motion would have to be about {found.overturning:.2f} times as strong to overturn it ({tried})."
+            f"Yet a weaker motion, {found.overturning:.3g} times this one, overturns it ({tried}): overturning is "
+            "erratic here, and this result owes something to chance."
         )
     if found.safe_again is not None:
-        said.append(
-            f"Not every stronger motion overturns it: {found.safe_again:.2f} times this one does not. Small "
-            "changes decide."
-        )
+        said.append(f"Not every stronger motion overturns it: {found.safe_again:.3g} times this one does not.")
     return " ".join(said)
 
 
@@ -213,17 +219,27 @@ def _trusted(shaking: Shaking) -> str:
         )
     if best.overturned:
         return f"All three models say that it overturns. {itself}"
+    lifts = {name: run.uplift_time is not None for name, run in runs.items()}
+    if len(set(lifts.values())) > 1:
+        said = "; ".join(f"{MODELS[name]}: {'lifts' if lifted else 'stays'}" for name, lifted in lifts.items())
+        return f"The nonlinear one: the models disagree on whether the motion lifts it at all ({said}). {itself}"
+    if not any(lifts.values()):
+        return f"Any: by all three models it stays at rest. {itself}"
     peaks = {name: run.peak_ratio or 0.0 for name, run in runs.items()}
     peak = peaks["nonlinear"]
-    if not any(peaks.values()):
-        return f"Any: by all three models it stays at rest. {itself}"
-    off = {name: other - peak for name, other in peaks.items() if abs(other - peak) > max(APART * peak, NOTABLE)}
+    off = [name for name, other in peaks.items() if abs(other - peak) > max(APART * peak, NOTABLE)]
     if not off:
         return f"Any: the three models agree closely. {itself} The simpler equivalent block serves for this motion."
-    each = _listed([f"{_share(peaks[name])} by the {MODELS[name]}" for name in off])
+    far = _listed([f"{_share(peaks[name])} by the {MODELS[name]}" for name in off])
+    near = [name for name in peaks if name not in ("nonlinear", *off)]
+    rest = (
+        f"The {MODELS[near[0]]} agrees, with {_share(peaks[near[0]])}."
+        if near
+        else "With neither κ is the block close enough to rely on."
+    )
     return (
-        f"The nonlinear one. {itself} The largest rotation is {_share(peak)} of the critical one by it, but {each}. "
-        "Such a difference is too large to rely on the block."
+        f"The nonlinear one. {itself} The largest rotation is {_share(peak)} of the critical one by it, but {far}. "
+        f"{rest}"
     )
 
 
@@ -233,10 +249,12 @@ def _doubts(shaking: Shaking) -> list[str]:
         said.append("The result is close to the other outcome. Do not rest a decision on this one computation.")
     if any(run.outcome is Outcome.STILL_ROCKING for run in shaking.histories.values()):
         said.append("A model is still rocking long after the motion has ended; it is certain not to overturn.")
-    if shaking.given.factor != 1:
-        said.append(
-            f"The motion was scaled by {shaking.given.factor:.4g}. Large factors make motions unlike any recorded."
-        )
+    factor = abs(shaking.given.factor)
+    if factor == 0:
+        said.append("The motion was scaled by 0: this is no shaking at all.")
+    elif factor != 1:
+        more = " Large factors make motions unlike any recorded." if factor > LARGE else ""
+        said.append(f"The motion was scaled by {shaking.given.factor:.4g}.{more}")
     return [text.replace("?.", "?") for text in said]
 
 

@@ -14,8 +14,8 @@ from rocking_cli.dynamics.model import build_models
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 
-STEP = 1.05  # from one factor to the next
-FACTORS: NDArray[np.float64] = STEP ** np.arange(-33.0, 34.0)  # 0.2 to 5, with 1 itself
+STEP = 1.01  # from one factor to the next
+FACTORS: NDArray[np.float64] = STEP ** np.arange(-162.0, 163.0)  # 0.2 to 5, with 1 itself
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,8 @@ class Margin:
     uplift : float or None
         The least that lifts the structure, exact; None if none does.
     overturning : float or None
-        The least of `FACTORS` with which it overturns; None if it does with none of them.
+        The least of `FACTORS` with which it overturns; None if it does with none of them. Others between two of them
+        may overturn it, too: overturning comes and goes with the factor.
     safe_again : float or None
         The largest of them above that with which it does not overturn; None if there is none.
     other : float or None

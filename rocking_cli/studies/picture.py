@@ -6,7 +6,7 @@ Whoever draws it, on paper or on a page that moves, only has to place the parts.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from typing import Any
@@ -23,6 +23,10 @@ NODES = 60  # of a table of positions in either direction: straight lines betwee
 FURTHEST = 0.999  # of the kinematic limit, at which a linkage has no derivatives
 SAME = 1e-6  # of the size: points that are nearer are one
 STILL = 1e-9  # rate of turning below which a body does not turn
+
+ASSUMED = (
+    "dashed: a body whose shape the mechanism does not give, as a disc of the same mass and inertia, or as a point"
+)
 
 
 @dataclass(frozen=True)
@@ -225,7 +229,7 @@ def _picture(mechanism: Mechanism) -> Picture:
             k,
             body.centroid + shift,
             tuple(np.asarray(each, np.complex128) + shift for each in _outlines(body, sketch)),
-            assumed=body.name not in sketch.outlines,
+            assumed=body.name not in sketch.outlines and not body.outline,
             shift=shift,
         )
         for k, body in enumerate(bodies)
@@ -237,12 +241,16 @@ def _picture(mechanism: Mechanism) -> Picture:
         hinges = sketch.hinges.get(direction) or _found(bodies, mechanism.motion(phi, direction))
         pins += [pin for hinge in hinges for pin in _pins(hinge, direction, parts)]
     ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
+    if any(part.assumed for part in parts):
+        sketch = replace(sketch, notes=[*sketch.notes, ASSUMED])
     return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch)
 
 
 def _outlines(body: Body, sketch: Sketch) -> Sequence[Outline]:
     if body.name in sketch.outlines:
         return sketch.outlines[body.name]
+    if body.outline:
+        return [body.outline]
     radius = np.sqrt(2 * body.inertia / body.mass) if body.mass > 0 else 0.0  # of a disc: I = m r^2 / 2
     return [disc(body.centroid, float(radius))] if radius > 0 else []
 
