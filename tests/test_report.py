@@ -119,6 +119,31 @@ class TestContent:
         disagree = len({each["overturned"] for each in motion["responses"].values()}) > 1
         assert disagree == said.startswith("None")
 
+    def test_models_that_disagree_on_uplift_do_not_agree(self):
+        # Between the uplift of the arch, 0.37 g, and that of its linearised block, 0.25 g.
+        motion = run_json("report", ARCH, "--pulse", "sine:0.3g:0.5s")["motions"][0]
+        runs = motion["polarities"]["1"]["responses"]
+        assert [runs[name]["uplift_time"] is None for name in ("nonlinear", "linear1", "linear2")] == [
+            True,
+            False,
+            True,
+        ]
+        assert "disagree on whether the motion lifts it" in motion["answers"]["Which model to trust?"]
+
+    def test_the_headline_counts_the_motions_that_move_it(self):
+        pulses = ("sine:0.1g:1s", "sine:0.3g:0.5s", "sine:0.35g:0.5s")
+        found = run_json("report", BLOCK, *(word for each in pulses for word in ("--pulse", each)))
+        assert "rocks under 2 of 3 ground motions and overturns under none" in found["answer"]
+        peaks = [max(run["responses"]["nonlinear"]["peak_ratio"] for run in each["polarities"].values())
+                 for each in found["motions"]]  # fmt: skip
+        assert peaks[0] == 0 and f"{100 * max(peaks):.3g} %" in found["answer"]
+        assert f"under {pulses[int(np.argmax(peaks))]}" in found["answer"]
+
+    def test_a_least_factor_is_told_from_the_end_of_what_was_tried(self):
+        found = run_json("report", BLOCK, "--pulse", "sine:1g:2s", "--scale", "50")["motions"][0]
+        assert "Even the weakest that was tried, 0.20 times" in found["answers"]["How close is that?"]
+        assert any("Large factors" in each for each in found["doubts"])
+
     def test_a_motion_beyond_the_critical_rotation_is_told_as_such(self):
         (motion,) = run_json("report", ARCH, "--pulse", "sine:1.2g:1.2s", "--polarity", "1")["motions"]
         assert motion["responses"]["nonlinear"]["peak_ratio"] > 1
