@@ -75,9 +75,9 @@ class TestNumbers:
         assert {0, 1, 2} == set(own["overturned"])
         assert (blocks["slenderness"], blocks["given"], blocks["scale"], own["R"]) == (0.15, None, None, None)
 
-    def test_a_threads_number_changes_nothing(self, records):
+    def test_the_number_of_processors_changes_nothing(self, records):
         asked = (BLOCK, "--record", records, *QUICK)
-        assert run_json(*asked, "--threads", "1") == run_json(*asked)
+        assert run_json(*asked, "--jobs", "1") == run_json(*asked)
 
     def test_without_anything_it_takes_the_usual_structure_around_its_size(self):
         result = run("--pulse", "sine:0.4g:0.8s", "--pulse", "ricker:0.3g:1s", "--json")

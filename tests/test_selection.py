@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.selection import select, select_all
+from rocking_cli.excitation.selection import select
 
 
 @pytest.fixture
@@ -49,10 +49,3 @@ def test_a_name_that_looks_like_a_pattern_is_a_name_first(folder):
 def test_what_is_not_there_is_refused(folder, place, said):
     with pytest.raises(InputError, match=said):
         select(place, folder)
-
-
-def test_several_places_give_each_file_once_and_every_problem(folder):
-    assert names(select_all(["b.AT2", "*.AT2"], folder)) == ["b.AT2", "a.AT2", "odd[1].AT2"]
-    with pytest.raises(InputError) as caught:
-        select_all(["none.AT2", "a.AT2", "*.csv"], folder)
-    assert len(caught.value.problems) == 2

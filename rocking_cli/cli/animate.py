@@ -28,8 +28,7 @@ def _fps(ctx: click.Context, param: click.Parameter, value: float) -> float:
 
 @click.command(short_help="The mechanism moving under a ground motion: GIF or page.")
 @click.argument("file", required=False, type=click.Path())
-@click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format.")
-@click.option("--pulse", metavar="PULSE", help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD.")
+@options.shaking
 @options.reading
 @options.scaling("1", "-1")
 @click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help="Which history.")

@@ -80,6 +80,12 @@ def _in_order(*decorators: Decorator) -> Decorator:
     return decorate
 
 
+shaking: Decorator = _in_order(
+    click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format."),
+    click.option("--pulse", metavar="PULSE", help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD."),
+)
+"""One ground motion: `record` or `pulse`."""
+
 reading: Decorator = _in_order(
     click.option("--units", type=click.Choice(UNITS), help="Unit of the record, where the file does not say."),
     click.option("--dt", type=Finite(positive=True), metavar="SECONDS", help="Sample interval of a one-column record."),

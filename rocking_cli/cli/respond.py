@@ -54,8 +54,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 
 @click.command(short_help="Response to a ground motion: nonlinear and linear histories.")
 @click.argument("file", required=False, type=click.Path())
-@click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format.")
-@click.option("--pulse", metavar="PULSE", help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD.")
+@options.shaking
 @options.reading
 @click.option("--vertical", type=click.Path(), metavar="FILE", help="Its vertical component: g becomes g + v_g''.")
 @click.option(

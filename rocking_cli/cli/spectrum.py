@@ -78,7 +78,7 @@ def _numbers(low: float, high: float, what: str) -> Any:
     callback=_numbers(0, 1, "no fractile between 0 and 1"),
     help="Beside the median, of several motions.",
 )
-@click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Histories at a time.  [default: all cores]")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processors to use.  [default: all]")
 @click.option(
     "--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the curves, with every motion's."
 )
@@ -102,7 +102,7 @@ def command(
     target_pgv: float | None,
     polarity: str,
     fractiles: tuple[float, ...],
-    threads: int | None,
+    jobs: int | None,
     out: Path | None,
     plot: Path | None,
     as_json: bool,
@@ -148,7 +148,7 @@ def command(
             periods,
             [each.motion.scaled(each.factor) for each in chosen],
             polarities=polarities,
-            threads=threads,
+            threads=jobs,
             progress=progress,
         )
     lost = results.report_lost(found, chosen)

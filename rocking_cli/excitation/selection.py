@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem
@@ -46,17 +45,3 @@ def select(place: str, folder: Path | None = None) -> list[Path]:
     if not found:
         raise InputError(Problem("no file matches this pattern", place, hint="check the path"))
     return found
-
-
-def select_all(places: Sequence[str], folder: Path | None = None) -> list[Path]:
-    """The files of several names and patterns, each once. Raises as `select`, with the problems of all."""
-    found: dict[Path, None] = {}
-    problems: list[Problem] = []
-    for place in places:
-        try:
-            found |= dict.fromkeys(select(place, folder))
-        except InputError as error:
-            problems += error.problems
-    if problems:
-        raise InputError(*problems)
-    return list(found)

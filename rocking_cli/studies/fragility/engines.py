@@ -28,12 +28,21 @@ PATIENCE = 10.0  # s for an answer of the scheduler
 
 @dataclass(frozen=True)
 class Engine:
-    """Something that runs functions, so many at a time."""
+    """Something that runs functions, so many at a time.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor
+        Takes them.
+    workers : int
+        How many it runs at a time.
+    still_there : callable
+        Called where nothing has been finished for a while; raises if nothing will be.
+    """
 
     executor: Executor
     workers: int
     still_there: Callable[[], None] = lambda: None
-    """Called where nothing has been finished for a while; raises if nothing will be."""
 
     def map(self, function: Callable[[A], B], items: Iterable[A]) -> Iterator[B]:
         """What a function makes of each item, as they are finished; items are taken as there is room for them."""

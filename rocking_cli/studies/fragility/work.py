@@ -93,16 +93,18 @@ def units(
     models = _Models(samples, plan.etas, model)
     waiting: list[Integers] = []
     trials: set[int] = set()
-    npts: dict[int, int] = {}
-    held = 0
+    records: set[int] = set()
+    held, npts = 0, 0
     for sample, record, part in _parts(plan, finished, size):
-        trials.add(sample)
-        npts[record] = plan.records[record].npts
-        if waiting and (held + len(part) > size or len(trials) > MODELS or sum(npts.values()) > SAMPLES):
+        more = plan.records[record].npts if record not in records else 0
+        if waiting and (held + len(part) > size or len(trials | {sample}) > MODELS or npts + more > SAMPLES):
             yield _unit(plan, np.concatenate(waiting), models, motions)
-            waiting, trials, npts, held = [], {sample}, {record: npts[record]}, 0
+            waiting, trials, records, held, npts = [], set(), set(), 0, 0
+            more = plan.records[record].npts
         waiting.append(part)
-        held += len(part)
+        trials.add(sample)
+        records.add(record)
+        held, npts = held + len(part), npts + more
     if waiting:
         yield _unit(plan, np.concatenate(waiting), models, motions)
 
