@@ -1,15 +1,59 @@
-"""Writing files whole or not at all."""
+"""Reading files of a bounded size, and writing files whole or not at all."""
 
 from __future__ import annotations
 
 import os
 import shutil
+import stat
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
 from rocking_cli.errors import InputError, Problem
+
+
+def read_bytes(path: str | Path, what: str, most: int) -> bytes:
+    """Content of a file, after a look at what it is and how large.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    what : str
+        What it should be, for messages: "structure file".
+    most : int
+        How large it may be [bytes].
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it is a folder, a device or a pipe, is larger, or cannot be read.
+    """
+    shown = str(path)
+    try:
+        # Without O_NONBLOCK opening a pipe that nobody writes to would wait for ever; Windows has no such pipes here.
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with os.fdopen(handle, "rb") as file:
+            kind = os.fstat(handle).st_mode
+            if stat.S_ISDIR(kind):
+                raise IsADirectoryError
+            if not stat.S_ISREG(kind):
+                hint = "write what it gives to a file first"
+                raise InputError(Problem(f"this is a device or a pipe, not a {what}", shown, hint=hint))
+            content = file.read(most + 1)
+    except FileNotFoundError:
+        raise InputError(Problem("no such file", shown, hint="check the path")) from None
+    except IsADirectoryError:
+        raise InputError(Problem(f"this is a folder, not a {what}", shown)) from None
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        reason = getattr(error, "strerror", None) or error
+        if Path(shown.replace("\0", "")).is_dir():  # Windows does not open folders at all
+            reason = "it is a folder"
+        raise InputError(Problem(f"cannot be read: {reason}", shown)) from None
+    if len(content) > most:
+        raise InputError(Problem(f"this is no {what}: it is larger than {most / 1e6:.4g} MB", shown))
+    return content
 
 
 def check_writable(path: Path) -> None:

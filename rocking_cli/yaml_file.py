@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.files import read_bytes
 
 LARGEST = 1_000_000  # bytes; a structure takes a few hundred, a study a few thousand
 DEEPEST = 20  # nesting
@@ -133,18 +134,11 @@ def spell(place: Place) -> str | None:
 def read_text(path: Path, what: str) -> str:
     """The text of a file that should be a `what`. Raises `InputError` if there is none."""
     shown = str(path)
-    try:
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(Problem("no such file", shown)) from None
-    except IsADirectoryError:
-        raise InputError(Problem(f"this is a folder, not a {what} file", shown)) from None
-    except OSError as error:
-        raise InputError(Problem(f"cannot be read: {error.strerror or error}", shown)) from None
+    raw = read_bytes(path, f"{what} file", LARGEST)
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # what a redirection writes in older shells of Windows
         raw = raw.decode("utf-16", errors="replace").encode()
-    if b"\0" in raw or len(raw) > LARGEST:
-        raise InputError(Problem(f"this is not a {what} file: it is binary or far too large", shown))
+    if b"\0" in raw:
+        raise InputError(Problem(f"this is not a {what} file: it is binary", shown))
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
 PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLES = PROJECT / "examples"
-RECORDS = PROJECT.parent / "shared" / "records"
+SHARED = PROJECT.parent / "shared"
+# Real strong motion is not part of the project. Tests of it are skipped, and counted, where it is absent.
+RECORDS = Path(os.environ.get("ROCKING_RECORDS", SHARED / "records"))
+FORMATS = RECORDS / "formats"
+NEEDS_RECORDS = pytest.mark.skipif(not FORMATS.is_dir(), reason=f"no real records in {RECORDS} (ROCKING_RECORDS)")
 
 
 @pytest.fixture(autouse=True)
@@ -25,3 +30,23 @@ def frame_report(tmp_path_factory):
     out = tmp_path_factory.mktemp("report") / "r.html"
     result = run("report", EXAMPLES / "frame.yaml", "--record", EXAMPLES / "accel.csv", "-o", out)
     return out, result.stdout.strip()
+
+
+def record(name: str) -> Path:
+    """A real record; the test is skipped where it is absent."""
+    path = RECORDS / name
+    if not path.is_file():
+        pytest.skip(f"no real records in {RECORDS} (ROCKING_RECORDS): {name}")
+    return path
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Say how many tests were skipped for want of records: a green run without them has tested less."""
+    skipped = terminalreporter.stats.get("skipped", [])
+    wanting = [each for each in skipped if "no real records in" in str(each.longrepr)]
+    if wanting:
+        terminalreporter.write_line(
+            f"{len(wanting)} tests were skipped for want of real records in {RECORDS}: "
+            "set ROCKING_RECORDS to a folder that has them",
+            yellow=True,
+        )

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.registry import Registry
 from rocking_cli.structure import parse_structure
-from tests.conftest import EXAMPLES, RECORDS
+from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 ACCEL = str(EXAMPLES / "accel.csv")
 FRAME = str(EXAMPLES / "frame.yaml")
@@ -320,7 +320,7 @@ class TestRespond:
         file.write_text("mechanism: block\nwidth: 3\nheight: 1\nrestitution: 0.3\n", encoding="utf-8")
         run("respond", file, "--record", ACCEL)
 
-    @pytest.mark.skipif(not RECORDS.is_dir(), reason="the folder of real records is not beside the project")
+    @NEEDS_RECORDS
     def test_the_rinaldi_record_on_the_asymmetric_frame_nonlinear_and_linear(self):
         """As the paper's Fig. 14: the linear models follow the nonlinear one through the pulse."""
         data = run_json("respond", FRAME, "--record", RECORDS / "Rinaldi228.AT2", "--scale", "0.5")

@@ -15,7 +15,7 @@ from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure import load_structure
 from rocking_cli.studies import spectrum as study
-from tests.conftest import EXAMPLES, RECORDS
+from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 ACCEL, BLOCK, FRAME = (str(EXAMPLES / name) for name in ("accel.csv", "block.yaml", "frame.yaml"))
 QUICK = ("--sizes", "1:6:5")
@@ -198,7 +198,7 @@ class TestWrongUse:
         assert (tmp_path / "r0.csv").read_bytes() == before
 
 
-@pytest.mark.skipif(not RECORDS.is_dir(), reason="the real records are not beside the project")
+@NEEDS_RECORDS
 def test_real_records_of_one_station(tmp_path):
     place = str(RECORDS / "Rinaldi[23]*.AT2")
     found = run_json(BLOCK, "--record", place, "--polarity", "both", "--sizes", "2:9:8", "--plot", "s.png")["spectra"][

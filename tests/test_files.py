@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from rocking_cli.errors import InputError
-from rocking_cli.files import check_writable, keep_apart, write_whole
+from rocking_cli.files import check_writable, keep_apart, read_bytes, write_whole
 
 
 def test_a_file_is_written_with_the_usual_rights(tmp_path):
@@ -75,3 +75,21 @@ def test_outputs_are_kept_apart_from_inputs_and_from_each_other(tmp_path):
         keep_apart([("--out", tmp_path / "." / "read.csv")], [str(read)])
     with pytest.raises(InputError, match="--out and --plot cannot be the same file"):
         keep_apart([("--out", new), ("--plot", tmp_path / "." / "new.csv")], [])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has neither there")
+class TestReadBytes:
+    def test_a_device_is_refused_before_it_is_read(self):
+        with pytest.raises(InputError, match="a device or a pipe, not a record file"):
+            read_bytes("/dev/zero", "record file", 1000)
+
+    def test_a_pipe_that_nobody_writes_to_is_refused_at_once(self, tmp_path):
+        os.mkfifo(tmp_path / "pipe")
+        with pytest.raises(InputError, match="a device or a pipe"):
+            read_bytes(tmp_path / "pipe", "record file", 1000)
+
+    def test_no_more_is_read_than_may_be(self, tmp_path):
+        (tmp_path / "file").write_bytes(b"x" * 1001)
+        with pytest.raises(InputError, match=r"larger than 0\.001 MB"):
+            read_bytes(tmp_path / "file", "record file", 1000)
+        assert len(read_bytes(tmp_path / "file", "record file", 1001)) == 1001

@@ -17,7 +17,7 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.mechanism import DirectionalRestitution
 from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
-from tests.conftest import RECORDS
+from tests.conftest import record
 from tests.reference_history import Nonlinear
 
 # What the tables and a local error of 1e-10 allow; most structures come ten times closer.
@@ -123,10 +123,12 @@ def test_a_smaller_tolerance_brings_the_block_to_rounding_error():
 
 @pytest.mark.parametrize("polarity", [1, -1])
 def test_the_frame_under_the_strong_part_of_a_real_record(polarity):
-    path = RECORDS / "Rinaldi228.AT2"
-    if not path.exists():
-        pytest.skip("the real records are not here")
-    samples = np.array(path.read_text().split("\n", 4)[4].split(), float)[200:350] * 9.80665 * polarity * 0.4
+    samples = (
+        np.array(record("Rinaldi228.AT2").read_text().split("\n", 4)[4].split(), float)[200:350]
+        * 9.80665
+        * polarity
+        * 0.4
+    )
     agree(nonlinear(structure("frame"), 0.01, samples), Nonlinear(structure("frame")).follow(0.01, samples), 0.1)
 
 

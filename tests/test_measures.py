@@ -20,7 +20,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import arias_build_up, displacement, measure, velocity
 from rocking_cli.excitation.records import read_record
-from tests.conftest import EXAMPLES, RECORDS
+from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 MOTIONS = arrays(np.float64, st.integers(2, 30), elements=st.floats(-10, 10).map(lambda x: round(x, 3)))
 NOISE = GroundMotion("noise", 0.02, np.random.default_rng(5).normal(size=400))
@@ -217,12 +217,12 @@ class TestDoubts:
         (found,) = coarse_for(motion, 10.0)
         assert found.kind == "p_dt" and found.value == pytest.approx(0.2) and "p dt = 0.2" in found.text
 
-    @pytest.mark.skipif(not RECORDS.is_dir(), reason="the folder of real records is not beside the project")
+    @NEEDS_RECORDS
     def test_corrected_records_of_strong_motion_raise_none(self):
         for name in ("Rinaldi228", "Rinaldi318", "RinaldiUP", "RSN6_IMPVALL.I_I-ELC180", "RSN77_SFERN_PUL164"):
             assert kinds(read_record(RECORDS / f"{name}.AT2")) == []
 
-    @pytest.mark.skipif(not RECORDS.is_dir(), reason="the folder of real records is not beside the project")
+    @NEEDS_RECORDS
     @pytest.mark.parametrize("channel", [1, 2, 3])
     def test_peaks_that_a_data_centre_found(self, channel):
         """CSMIP prints the peaks of its own integration in the header; its velocity does not start from zero."""

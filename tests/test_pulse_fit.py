@@ -15,7 +15,7 @@ from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, _Search
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.simplex import maximise
-from tests.conftest import EXAMPLES, RECORDS
+from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 RINALDI = RECORDS / "Rinaldi228.AT2"
 PULSES = [
@@ -136,7 +136,7 @@ class TestInvariance:
         assert 1 - found.fun <= fit.captured + 2e-6
 
 
-@pytest.mark.skipif(not RINALDI.exists(), reason="the Rinaldi record is not here: it is not the project's to ship")
+@NEEDS_RECORDS
 class TestRinaldi:
     def test_its_velocity_is_mostly_one_pulse(self):
         """The record of the paper's Fig. 14, with the pulse that is highlighted there near 2.5 s."""

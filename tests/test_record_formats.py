@@ -16,10 +16,9 @@ from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records import layout, read_record
 from rocking_cli.excitation.records.registry import FALLBACK, GROUP, load_readers, reader_for, takes_bytes
-from tests.conftest import RECORDS
+from tests.conftest import FORMATS, NEEDS_RECORDS, RECORDS, record
 
 G = STANDARD_GRAVITY
-FORMATS = RECORDS / "formats"
 VALUES = np.array([0.0, 1.5, -2.25, 3.0, -4.5, 0.75, 1.25, -0.5, 2.0, 10.0, -7.0])  # more than a line of any format
 
 
@@ -48,13 +47,6 @@ def columns(values, form: str, per_line: int, margin: str = "") -> str:
 
 
 # --- real files -----------------------------------------------------------------------------------------------------
-
-
-def real(name: str) -> Path:
-    path = RECORDS / name
-    if not path.is_file():
-        pytest.skip(f"the real record {name} is not here (shared/records)")
-    return path
 
 
 @pytest.mark.parametrize(
@@ -87,7 +79,7 @@ def real(name: str) -> Path:
     ],
 )
 def test_real_records(name, channel, form, unit, npts, dt, pga, peak):
-    motion = read_record(real(name), channel=channel)
+    motion = read_record(record(name), channel=channel)
     assert (motion.format, motion.unit, motion.npts) == (form, unit, npts)
     assert motion.dt == pytest.approx(dt, rel=1e-9)
     largest = 100 * motion.acceleration[np.argmax(np.abs(motion.acceleration))]
@@ -105,12 +97,12 @@ def test_real_records(name, channel, form, unit, npts, dt, pga, peak):
     ],
 )
 def test_the_peak_of_a_real_record_is_when_its_header_says(name, seconds):
-    motion = read_record(real(f"formats/{name}"))
+    motion = read_record(record(f"formats/{name}"))
     assert np.argmax(np.abs(motion.acceleration)) * motion.dt == pytest.approx(seconds, abs=1.01 * motion.dt)
 
 
 def test_the_real_usc_record_is_the_same_straight_lines():
-    path = real("formats/017m30lw.s0a")
+    path = record("formats/017m30lw.s0a")
     motion = read_record(path)
     assert (motion.format, motion.unit, motion.dt, motion.npts) == ("USC V1", "g/10", 0.001, 34717)
     rows = path.read_text().split("\n")[27:]
@@ -123,11 +115,11 @@ def test_the_real_usc_record_is_the_same_straight_lines():
 
 
 def test_the_real_records_of_simcenter_and_peer_agree():
-    ours, theirs = read_record(real("SimCenter_Rinaldi.json")), read_record(real("Rinaldi228.AT2"))
+    ours, theirs = read_record(record("SimCenter_Rinaldi.json")), read_record(record("Rinaldi228.AT2"))
     np.testing.assert_array_equal(ours.acceleration, theirs.acceleration)
 
 
-@pytest.mark.skipif(not FORMATS.is_dir(), reason="the real records are not here (shared/records/formats)")
+@NEEDS_RECORDS
 def test_each_real_record_is_claimed_by_one_reader():
     files = [path for path in [*FORMATS.iterdir(), *RECORDS.iterdir()] if path.suffix not in ("", ".md", ".dat")]
     assert len(files) > 10

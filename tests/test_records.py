@@ -13,13 +13,12 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records import peer, read_record, text
 from rocking_cli.excitation.records.units import canonical, header_units
+from tests.conftest import NEEDS_RECORDS, record
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
-SHARED = Path(__file__).resolve().parents[2] / "shared" / "records"
 G = STANDARD_GRAVITY
 
 UNTIMED = settings(deadline=None)  # they write files: a slow disk is no failure
-NEEDS_SHARED = pytest.mark.skipif(not SHARED.is_dir(), reason="the real records are not here (shared/records)")
 
 
 @pytest.fixture
@@ -512,7 +511,7 @@ def test_the_file_is_named_as_the_user_named_it(tmp_path, monkeypatch):
 
 
 def test_directory(tmp_path):
-    assert "this is a directory" in problem(tmp_path).message
+    assert "this is a folder" in problem(tmp_path).message
 
 
 def test_a_path_no_file_can_have():
@@ -777,7 +776,7 @@ def test_readers_tell_the_formats_apart():
 # --- real records, and the example ----------------------------------------------------------------------------------
 
 
-@NEEDS_SHARED
+@NEEDS_RECORDS
 @pytest.mark.parametrize(
     ("name", "options", "npts", "dt", "pga", "form"),
     [
@@ -791,15 +790,15 @@ def test_readers_tell_the_formats_apart():
     ],
 )
 def test_real_records(name, options, npts, dt, pga, form):
-    motion = read_record(SHARED / name, **options)
+    motion = read_record(record(name), **options)
     assert (motion.name, motion.npts, motion.format, motion.unit) == (name, npts, form, "g")
     assert motion.dt == pytest.approx(dt, rel=1e-9)
     assert motion.pga == pytest.approx(pga, abs=0.0005)
 
 
-@NEEDS_SHARED
+@NEEDS_RECORDS
 def test_a_real_record_without_a_unit_is_refused():
-    assert "--units" in problem(SHARED / "elcentro_NS_full_2col.dat").hint
+    assert "--units" in problem(record("elcentro_NS_full_2col.dat")).hint
 
 
 @pytest.fixture(scope="module")

@@ -23,7 +23,7 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.report.definitions import PARAMETERS
 from rocking_cli.report.page import symbols
 from rocking_cli.structure import load_structure
-from tests.conftest import EXAMPLES, PROJECT, RECORDS
+from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS
 from tests.test_cli import run, run_json
 
 FRAME, BLOCK, ARCH = (EXAMPLES / f"{name}.yaml" for name in ("frame", "block", "arch"))
@@ -313,7 +313,7 @@ class TestSize:
         assert max(ground["y"]) == pytest.approx(written.max(), rel=1e-4)  # peaks survive the thinning
         assert min(ground["y"]) == pytest.approx(written.min(), rel=1e-4)
 
-    @pytest.mark.skipif(not RECORDS.is_dir(), reason="the real records are not here")
+    @NEEDS_RECORDS
     def test_two_real_records(self, tmp_path):
         out = tmp_path / "r.html"
         names = ("RSN6_IMPVALL.I_I-ELC180.AT2", "Rinaldi228.AT2")

@@ -8,8 +8,11 @@ from pathlib import Path
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.registry import load_readers, reader_for, takes_bytes
+from rocking_cli.files import read_bytes
 
 __all__ = ["read_record"]
+
+LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB
 
 # Bytes no text file holds. Ctrl-Z (0x1a) is allowed: DOS programs end text files with it.
 _BINARY = bytes(set(range(0x20)) - set(b"\t\n\v\f\r\x1a"))
@@ -46,26 +49,12 @@ def read_record(
     if dt is not None and not (math.isfinite(dt) and dt > 0):
         raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="--dt"))
     file = str(path)
-    data = _load(file)
+    data = read_bytes(file, "record file", LARGEST)
     text = _decoded(data, file)
     reader = reader_for(text, file, load_readers(), data)
     content = data if takes_bytes(reader) else text
     del data, text  # one of them is enough: a long record is large
     return reader.read(content, file, dt=dt, units=units, channel=channel)
-
-
-def _load(file: str) -> bytes:
-    """Content of a file."""
-    path = Path(file)
-    try:
-        if path.is_dir():
-            raise InputError(Problem("this is a directory", file=file, hint="give the path of a record file"))
-        return path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(Problem("no such file", file=file, hint="check the path")) from None
-    except (OSError, ValueError) as error:  # ValueError: a path with a null character
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(Problem(f"the file cannot be read: {reason}", file=file)) from None
 
 
 def _decoded(data: bytes, file: str) -> str | None:
