@@ -80,7 +80,7 @@ def command(
     if record is None and any(value is not None for value in (units, dt, channel)):
         raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
     motions.check_scaling(scale, target_pga, target_pgv)
-    from rocking_cli.cli import structures
+    from rocking_cli.cli import responses, structures
     from rocking_cli.files import keep_apart, write_whole
     from rocking_cli.studies.film import Film
     from rocking_cli.studies.picture import picture
@@ -118,6 +118,8 @@ def command(
                 "model": model,
                 "outcome": history.outcome.name.lower(),
                 "peak_ratio": history.peak_ratio,
+                "restitution": responses.restitution_json(mechanism, blocks),
+                "verdict": film.verdict,
                 "start": film.start,
                 "end": film.end,
                 "speed": speed,
@@ -127,6 +129,7 @@ def command(
         )
         return
     terminal.result(film.verdict)
+    terminal.result(responses.restitution_used(mechanism, blocks))
 
 
 def _write_gif(out: Path, film: Film, title: str, speed: float, fps: float) -> int:

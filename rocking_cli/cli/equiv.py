@@ -26,6 +26,7 @@ ROWS = (
     ("G_eq", "kg m", "linearised restoring moment over g"),
     ("B_eq", "kg m", "linearised drive of the ground"),
 )
+PER_MASS = {"kg m2": "m2", "kg m": "m"}  # of a structure whose file gives no masses
 
 
 @click.command(short_help="The equivalent single rocking block of structures.")
@@ -76,6 +77,9 @@ def _as_json(mechanism: Mechanism, equivalence: Equivalence) -> dict[str, Any]:
         "name": mechanism.name,
         "gravity": mechanism.gravity,
         "symmetric": equivalence.symmetric,
+        "per_unit_mass": not mechanism.has_mass,
+        "restitution": "given" if mechanism.restitution is not None else "kinematics",
+        "caution": mechanism.caution or None,
         "directions": {
             label: {**block.as_dict(), "prefer": advice[label].prefer, "lambda_ratio": advice[label].ratio}
             for label, block in _blocks(equivalence)
@@ -94,10 +98,12 @@ def _print_csv(found: list[tuple[Mechanism, Equivalence]]) -> None:
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
     units = [f"{key} [{unit}]" if unit else key for key, unit, _ in ROWS]
-    writer.writerow(["name", "mechanism", "direction", *units])
+    writer.writerow(["name", "mechanism", "direction", *units, "per unit mass"])
     for mechanism, equivalence in found:
         for label, block in _blocks(equivalence):
-            writer.writerow([mechanism.name, mechanism.mechanism, label, *(block.as_dict()[key] for key, _, _ in ROWS)])
+            values = (block.as_dict()[key] for key, _, _ in ROWS)
+            mass = "no" if mechanism.has_mass else "yes"
+            writer.writerow([mechanism.name, mechanism.mechanism, label, *values, mass])
     terminal.result(lines.getvalue().rstrip("\n"))
 
 
@@ -108,24 +114,39 @@ def _print_table(mechanism: Mechanism, equivalence: Equivalence) -> None:
     shown = [(name, block.as_dict(), preferred_kappa(block)) for name, block in _blocks(equivalence)]
     if equivalence.symmetric:
         shown = [("value", *shown[0][1:])]
-    rows = [
-        [key, *(terminal.number(block[key]) for _, block, _ in shown), unit, meaning] for key, unit, meaning in ROWS
-    ]
+    rows = [[key, *(terminal.number(block[key]) for _, block, _ in shown), unit, meaning]
+            for key, unit, meaning in (ROWS if mechanism.has_mass else _per_mass())]  # fmt: skip
     columns = ["", *(name for name, _, _ in shown), "unit", "meaning"]
     terminal.table(label(mechanism), columns, rows, numbers=range(1, len(shown) + 1), explained=True)
     for name, block, advice in shown:
         where = "" if equivalence.symmetric else f"{name}: "
         terminal.result(f"{where}critical rotation {degrees(block['phi_cr']):.4g} deg. {advice.why}")
+    terminal.result(
+        "Either kappa keeps phi_cr. That is all without an amplitude: `rocking error` compares free periods and "
+        "overturning times, `rocking respond` motions."
+    )
+    if mechanism.caution:
+        terminal.result(f"Caution: {mechanism.caution}")
+
+
+def _per_mass() -> list[tuple[str, str, str]]:
+    return [
+        (key, PER_MASS.get(unit, unit), f"{meaning}, per unit mass" if unit in PER_MASS else meaning)
+        for key, unit, meaning in ROWS
+    ]
 
 
 def _warn(mechanism: Mechanism, equivalence: Equivalence) -> None:
+    from rocking_cli.core.restitution import why_none
     from rocking_cli.excitation.base import STANDARD_GRAVITY
 
-    if any(block.eta <= 0 for _, block in _blocks(equivalence)):
-        terminal.warning(
-            f"{mechanism.name}: eta is not positive: too stocky to start rocking the other way after an impact; "
-            "histories need a measured restitution in the file"
-        )
+    for label, block in _blocks(equivalence)[: 1 if equivalence.symmetric else 2]:
+        if block.eta <= 0:
+            way = "" if equivalence.symmetric else f" ending {label} motion"
+            terminal.warning(
+                f"{mechanism.name}: the kinematics give eta = {block.eta:.4g}{way}: {why_none(block.eta)}; "
+                "histories need a measured restitution in the file"
+            )
     if mechanism.gravity != STANDARD_GRAVITY:
         terminal.note(
             f"{mechanism.name}: lambda is over its own gravity of {mechanism.gravity:g} m/s2; records and PGA are in "

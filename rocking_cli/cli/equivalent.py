@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import click
 
+from rocking_cli import names
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Quantity
@@ -115,7 +116,9 @@ def command(
 
 
 def _peak(ratio: float | None) -> str:
-    return "overturns" if ratio is None else f"{ratio:.4g}"
+    if ratio is None:
+        return names.OVERTURNS
+    return f"{ratio:.4g}" if ratio else names.NO_UPLIFT
 
 
 def _columns(found: EquivalentResponses) -> dict[str, Sequence[object]]:

@@ -64,7 +64,7 @@ def command(
     from rocking_cli.errors import RockingError
     from rocking_cli.files import keep_apart
     from rocking_cli.studies.linearisation import compare
-    from rocking_cli.studies.trust import trust
+    from rocking_cli.studies.trust import errors, trust
 
     keep_apart([("--plot", plot)], [file])
     mechanism = structures.load([file] if file else [])[0]
@@ -83,6 +83,8 @@ def command(
                 "name": mechanism.name,
                 "symmetric": equivalence.symmetric,
                 "directions": {each.direction.label: _as_json(each) for each in asked},
+                "prefer": _preferred(asked),
+                "grades": {f"kappa{kappa}": errors(asked, kappa).grade.key for kappa in (1, 2)},
                 "verdict": verdict,
             }
         )
@@ -120,7 +122,16 @@ def _rows(each: Linearisation) -> list[list[str]]:
 
 
 def _percent(ratio: float) -> str:
-    return "no uplift" if ratio == float("inf") else f"{100 * (ratio - 1):+.3g} %"
+    if ratio == float("inf"):
+        return "no uplift"
+    error = 100 * (ratio - 1)
+    return f"{error:+.0f} %" if abs(error) >= 99.95 else f"{error:+.3g} %"
+
+
+def _preferred(asked: list[Linearisation]) -> str | None:
+    from rocking_cli.studies.trust import preferred
+
+    return {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}[preferred(asked)]
 
 
 def _as_json(each: Linearisation) -> dict[str, Any]:

@@ -101,6 +101,7 @@ def _one(cls: type[Mechanism], package: str, as_json: bool) -> None:
         "package": package,
         "source": cls.source,
         "verified": cls.verified,
+        "caution": cls.caution or None,
     }
     if as_json:
         terminal.print_json({**facts, "fields": rows})
@@ -123,3 +124,5 @@ def _one(cls: type[Mechanism], package: str, as_json: bool) -> None:
         explained=True,
     )
     terminal.result(f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'by nobody yet'}")
+    if cls.caution:
+        terminal.result(f"caution:  {cls.caution}")

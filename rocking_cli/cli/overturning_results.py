@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from rocking_cli import names
 from rocking_cli.cli import terminal
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.core import Mechanism
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.files import write_whole
 from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
 from rocking_cli.studies.shaken import Reals, Shaken
@@ -129,6 +131,8 @@ def _print_map(found: OverturningMap, *, dimensionless: bool) -> None:
     terminal.table("", heads, rows, numbers=range(1, 4))
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     terminal.result(f"Of the map: {shares}.")
+    if not (found.peak_ratio != 0).any():
+        terminal.result(f"No pulse of the map lifts it: the largest has a = {found.a.max():.4g}, uplift needs a > 1.")
     step = unit * (found.a[1] - found.a[0])
     terminal.result(f"Amplitudes to a step of the map, {step:.2g}{'' if dimensionless else ' g'}.")
     if not np.isnan(safe).all():
@@ -193,12 +197,15 @@ def _print_comparison(found: Comparison, title: str) -> None:
         [f"{found.periods[k]:.3g}", *(_cell(least[k]) for least in found.least), firsts[k] or terminal.ABSENT]
         for k in _some(found.periods.size)
     ]
-    names = [each.name.replace(" ", "\n") for each in found.structures]
+    heads = [each.name.replace(" ", "\n") for each in found.structures]
     terminal.result(f"Least a_g [g] that overturns: {title}")
-    terminal.table("", ["T [s]", *names, "goes first"], rows, numbers=range(1, len(names) + 1))
+    terminal.table("", ["T [s]", *heads, "goes first"], rows, numbers=range(1, len(heads) + 1))
     counts = {name: firsts.count(name) for name in dict.fromkeys(firsts) if name is not None}
     if counts:
         said = ", ".join(f"{name} at {100 * count / len(firsts):.0f} %" for name, count in counts.items())
         terminal.result(f"Goes first, of the periods: {said}.")
     if np.isnan(found.least).any():
-        terminal.result(f"{terminal.ABSENT}: does not overturn up to {found.top:.4g} g.")
+        terminal.result(f"{terminal.ABSENT}: none up to {found.top:.4g} g {names.OVERTURNS} it.")
+    low = [each.name for each in found.structures if found.top * STANDARD_GRAVITY <= each.unit]
+    if low:
+        terminal.result(f"Not even {found.top:.4g} g lifts {', '.join(low)}.")

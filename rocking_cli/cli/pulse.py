@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from rocking_cli import names
 from rocking_cli.cli import options, terminal
+from rocking_cli.names import percent
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.pulse_response import ClosedForm, ExactPulse
 
-CONDITIONS = {
-    "uplift": "the pulse lifts the block (a > 1)",
-    "first_impact_after_pulse": "the first impact comes after the pulse",
-    "no_overturning_without_impact": "the block does not overturn before its first impact",
-}
 ETA = 0.9
 
 
@@ -106,13 +103,14 @@ def _on_block(a: float, omega: float, eta: float, shape: str, as_json: bool) -> 
     if as_json:
         from dataclasses import asdict
 
+        off = off_exact(closed, exact.first_rebound, exact.max_ratio) if closed is not None else {}
         terminal.print_json(
             {
                 "shape": shape,
                 "a": a,
                 "omega": omega,
                 "eta": eta,
-                "closed_form": None if closed is None else {**asdict(closed), "valid": closed.valid},
+                "closed_form": None if closed is None else {**closed_json(closed), **off},
                 "exact": asdict(exact),
             }
         )
@@ -130,7 +128,46 @@ def _on_block(a: float, omega: float, eta: float, shape: str, as_json: bool) -> 
 YES_NO = {True: "yes", False: "no", None: terminal.ABSENT}
 
 
+def closed_json(closed: ClosedForm) -> dict[str, Any]:
+    """The closed form, and why it cannot be used where it cannot."""
+    from dataclasses import asdict
+
+    return {**asdict(closed), "valid": closed.valid, "reason": closed.reason}
+
+
+def off_exact(closed: ClosedForm, first_rebound: float | None, peak: float | None) -> dict[str, float | None]:
+    """Eq. 41 as printed less the exact peak of the first rebound, and less the largest of all."""
+    printed = closed.printed_ratio
+    return {
+        f"off_{name}": None if printed is None or exact is None else printed - exact
+        for name, exact in (("first_rebound", first_rebound), ("peak_ratio", peak))
+    }
+
+
+def how_far_off(closed: ClosedForm, peak: float | None, *, overturns: bool) -> str:
+    """What Eq. 41 says beside the exact answer, after what it may be used for; nothing where they agree."""
+    printed = closed.printed_ratio
+    if closed.valid and closed.overturns != overturns:
+        return f": by Eq. 41 it {_fate(closed.overturns)}, exactly it {_fate(overturns)}"
+    if overturns or peak is None:
+        return "" if printed is None else f": Eq. 41 would give {printed:.4g}, and exactly it {_fate(overturns)}"
+    if printed is None:
+        return "" if closed.valid else f": Eq. 41 gives no rotation here, the exact one is {peak:.4g}"
+    if abs(printed - peak) < 1e-9:
+        return ""
+    off = percent(abs(printed - peak) / peak) if peak > 0 else f"{printed:.4g}"
+    first = ": it gives the first rebound only, and" if closed.valid else ":"
+    what = f"{off} too {'high' if printed > peak else 'low'}"
+    return f"{first} the largest rotation is {peak:.4g}, Eq. 41 says {printed:.4g}, {what}"
+
+
+def _fate(overturns: bool | None) -> str:
+    return names.outcome(uplifts=True, overturned=bool(overturns))
+
+
 def _closed_rows(closed: ClosedForm) -> list[list[str]]:
+    from rocking_cli.dynamics.pulse_response import CONDITIONS
+
     number = terminal.number
     return [
         ["closed form D0*", number(closed.D0), "energy of the free motion after the pulse (Eq. 42)"],
@@ -160,31 +197,21 @@ def impacts(count: int | None) -> str:
     )
 
 
-def failed(closed: ClosedForm) -> str:
-    """The conditions that do not hold, in words."""
-    return " and ".join(CONDITIONS[name] for name, holds in closed.conditions.items() if not holds)
-
-
 def _verdict(a: float, closed: ClosedForm | None, exact: ExactPulse) -> str:
     if a <= 1:
-        return "The pulse does not lift the block (a <= 1): it stays at rest."
+        return f"The linear block {names.NO_UPLIFT}: a <= 1."
     fate = (
-        f"overturns {impacts(exact.impacts_before_overturning)}"
+        f"{names.OVERTURNS} {impacts(exact.impacts_before_overturning)}"
         if exact.overturns
-        else f"rocks to {exact.max_ratio:.4g} of its critical rotation"
+        else f"{names.ROCKS} to {exact.max_ratio:.4g} of its critical rotation"
     )
     if closed is None:
         trust = "There is no closed form for this shape: Eqs. 41-42 are for a full sine"
-    elif closed.valid:
-        trust = "All conditions hold: the closed form can be used"
-        if (
-            exact.first_excursion is not None
-            and exact.first_rebound is not None
-            and exact.first_excursion > exact.first_rebound
-        ):
-            trust += ", but it gives the first rebound only, and the first excursion is larger"
-        elif exact.first_excursion is not None and exact.first_excursion > 1 and exact.first_rebound is None:
-            trust += "; the block passes its critical rotation before its first impact"
     else:
-        trust = f"Do not use the closed form: it is not true that {failed(closed)}"
+        use = "All conditions hold, the closed form can be used"
+        trust = use if closed.valid else f"Do not use the closed form, {closed.reason}"
+        if closed.valid and (exact.first_excursion or 0) > 1 and exact.first_rebound is None:
+            trust += "; the block passes its critical rotation before its first impact"
+        else:
+            trust += how_far_off(closed, exact.max_ratio, overturns=exact.overturns)
     return f"The linear block {fate}. {trust}."

@@ -9,18 +9,21 @@ from typing import Any
 
 import click
 
+from rocking_cli import names
 from rocking_cli.cli import structures, terminal
-from rocking_cli.cli.pulse import CONDITIONS, YES_NO, failed, impacts
+from rocking_cli.cli.pulse import YES_NO, closed_json, how_far_off, impacts, off_exact
+from rocking_cli.cli.responses import pulse_json, restitution_json, restitution_used
 from rocking_cli.cli.work import say_if_compiling
 from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.dynamics.exact import ExactResponse, exact_response
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import build_models
-from rocking_cli.dynamics.pulse_response import ClosedForm, closed_form
+from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm, closed_form
 from rocking_cli.dynamics.sampled_pulse import SampledHistory, sampled_history
 from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
+from rocking_cli.names import percent
 
 KAPPAS = {"linear1": 1, "linear2": 2}
 
@@ -116,7 +119,8 @@ def run(file: str | None, shape: str, ag: str, period: float, polarity: str, as_
     elif any(each.closed.conditions["uplift"] for each in closed.values()):
         _print_closed(closed, answers[signs[0]])
     else:
-        terminal.result("No closed form: the pulse does not lift the equivalent blocks (a <= 1).")
+        terminal.result(f"No closed form: by the equivalent blocks it {names.NO_UPLIFT} (a <= 1).")
+    terminal.result(restitution_used(mechanism, equivalence))
 
 
 def _pulse(shape: str, ag: str, period: float) -> Pulse:
@@ -186,14 +190,9 @@ def _closed(
     scaled, found = _scaled(mechanism, block, pulse), {}
     for name, kappa in KAPPAS.items():
         closed, exact = closed_form(scaled[f"a{kappa}"], scaled["omega"], block.eta), answers[name]
-        found[name] = Closed(
-            closed, _less(closed.max_ratio, exact.first_rebound), _less(closed.max_ratio, exact.peak_ratio)
-        )
+        off = off_exact(closed, exact.first_rebound, exact.peak_ratio)
+        found[name] = Closed(closed, **off)
     return found
-
-
-def _less(one: float | None, other: float | None) -> float | None:
-    return None if one is None or other is None else one - other
 
 
 def _directions(equivalence: Equivalence) -> dict[str, EquivalentBlock]:
@@ -214,18 +213,12 @@ def _as_json(
     }
     return {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
-        "pulse": {
-            "shape": pulse.name,
-            "amplitude": pulse.amplitude,
-            "period": pulse.period,
-            "duration": pulse.duration,
-            "polarity": polarity if polarity == "both" else int(polarity),
-        },
+        "pulse": {**pulse_json(pulse), "polarity": polarity if polarity == "both" else int(polarity)},
+        "restitution": restitution_json(mechanism, equivalence),
         "directions": {label: _scaled(mechanism, block, pulse) for label, block in _directions(equivalence).items()},
         "closed_form": {
             name: {
-                **asdict(found.closed),
-                "valid": found.closed.valid,
+                **closed_json(found.closed),
                 "off_first_rebound": found.off_first_rebound,
                 "off_peak_ratio": found.off_peak_ratio,
             }
@@ -278,19 +271,20 @@ def _verdict(answers: Mapping[str, Answer]) -> str:
     """What the nonlinear history says, and how the linear ones compare."""
     nonlinear = answers["nonlinear"]
     if nonlinear.uplift_time is None:
-        return "The pulse does not lift the structure: it stays at rest."
+        return f"The structure {names.NO_UPLIFT}."
     if nonlinear.overturned:
         sense = next(sense for direction, sense in SENSE.items() if direction.label == nonlinear.overturning_direction)
-        said = f"The structure overturns {sense}, {impacts(nonlinear.impacts_before_overturning)}."
+        said = f"The structure {names.OVERTURNS} {sense}, {impacts(nonlinear.impacts_before_overturning)}."
     else:
-        said = f"The structure rocks to {nonlinear.peak_ratio:.4g} of its critical rotation."
+        said = f"The structure {names.ROCKS} to {nonlinear.peak_ratio:.4g} of its critical rotation."
     for name in KAPPAS:
         answer = answers[name]
         if answer.over_nonlinear is not None:
-            off = 100 * (answer.over_nonlinear - 1)
-            said += f" {name} gives {abs(off):.2g} % {'more' if off > 0 else 'less'}."
+            off = answer.over_nonlinear - 1
+            said += f" {name} gives {percent(abs(off))} {'more' if off > 0 else 'less'}."
         elif answer.overturned != nonlinear.overturned:
-            said += f" By {name} it {'overturns' if answer.overturned else 'does not overturn'}."
+            lifts = answer.uplift_time is not None
+            said += f" By {name} it {names.outcome(uplifts=lifts, overturned=answer.overturned)}."
     return said
 
 
@@ -318,18 +312,10 @@ def _print_closed(found: Mapping[str, Closed], answers: Mapping[str, Answer]) ->
 def _trust(found: Closed, exact: Answer) -> str:
     closed = found.closed
     if not closed.conditions["uplift"]:
-        return "no closed form, the pulse does not lift it (a <= 1)."
-    if not closed.valid:
-        said = f"do not use the closed form, it is not true that {failed(closed)}"
-    else:
-        said = "all conditions hold, the closed form can be used"
-    if closed.overturns != exact.overturned:
-        return f"{said}: it {'overturns' if closed.overturns else 'does not'} by Eq. 41, the exact answer is otherwise."
-    if found.off_peak_ratio is None or abs(found.off_peak_ratio) < 1e-9:
-        return said + "."
-    assert closed.max_ratio is not None
-    where = ": it gives the first rebound only, and" if closed.valid else ":"
-    return f"{said}{where} the largest rotation is {exact.peak_ratio:.4g}, Eq. 41 says {closed.max_ratio:.4g}."
+        return f"it {names.NO_UPLIFT} (a <= 1)."
+    use = "all conditions hold, the closed form can be used"
+    said = use if closed.valid else f"do not use the closed form, {closed.reason}"
+    return f"{said}{how_far_off(closed, exact.peak_ratio, overturns=exact.overturned)}."
 
 
 def _why_no_closed_form(pulse: Pulse) -> str:

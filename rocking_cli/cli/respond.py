@@ -214,6 +214,7 @@ def command(
             "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
             "record": responses.record_json(as_read, factor, polarity, shape) if as_read is not None else None,
             "release": release,
+            "restitution": responses.restitution_json(mechanism, equivalence),
             **responses.runs_json(runs, etas),
         }
         if fit is not None and pulse_run is not None:
@@ -229,6 +230,7 @@ def command(
         terminal.result()
         responses.print_tables(f"{title}, under its pulse alone", {1: pulse_run}, etas)
         terminal.result(responses.share_of_pulse(runs[signs[0]], pulse_run))
+    terminal.result(responses.restitution_used(mechanism, equivalence))
     for note in notes:
         terminal.result(note)
 

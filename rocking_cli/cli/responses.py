@@ -8,10 +8,11 @@ from math import degrees
 from typing import Any
 
 from rocking_cli.cli import terminal
-from rocking_cli.core import Direction, Equivalence
+from rocking_cli.core import Direction, Equivalence, Mechanism
+from rocking_cli.core.restitution import restitution_in_words
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import SENSE, governs, verdict
+from rocking_cli.dynamics.verdict import SENSE, agreements, governs, verdict
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 
@@ -37,7 +38,7 @@ def pulse_json(pulse: Pulse) -> dict[str, Any]:
     """A pulse: its shape, amplitude [g], period and duration [s], and what else its shape has."""
     return {
         "shape": pulse.name,
-        "specification": str(pulse),
+        "specification": pulse.specification,
         "amplitude": pulse.amplitude / STANDARD_GRAVITY,
         "period": pulse.period,
         "duration": pulse.duration,
@@ -58,13 +59,48 @@ def _motion_json(motion: GroundMotion) -> dict[str, Any]:
 
 def runs_json(runs: Runs, etas: Equivalence | None) -> dict[str, Any]:
     """The responses, under their polarities if there are two; with the impacts if there are `etas`."""
-    each = {str(polarity): {"responses": histories_json(histories, etas)} for polarity, histories in runs.items()}
+    each = {
+        str(polarity): {
+            "responses": histories_json(histories, etas),
+            "agreement": agreement_json(histories),
+            "verdict": verdict(histories),
+        }
+        for polarity, histories in runs.items()
+    }
     return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]}
 
 
 def histories_json(histories: Histories, etas: Equivalence | None) -> dict[str, Any]:
     """The response of each model; with the impacts if there are `etas`."""
     return {name: _history_json(run, etas) for name, run in histories.items()}
+
+
+def agreement_json(histories: Histories) -> dict[str, Any]:
+    """How the motions of the equivalent blocks compare with the nonlinear one; empty without that."""
+    return {
+        name: {
+            "grade": found.grade.key,
+            "uplift_error": found.uplift_error,
+            "peak_error": found.peak_error,
+            "delay": found.peak_delay,
+            "rms_difference": found.difference,
+        }
+        for name, found in agreements(histories).items()
+    }
+
+
+def restitution_json(mechanism: Mechanism, etas: Equivalence) -> dict[str, Any]:
+    """The restitution that the histories used, and where it comes from."""
+    return {
+        "positive_to_negative": etas.positive.eta,
+        "negative_to_positive": etas.negative.eta,
+        "source": "kinematics" if mechanism.restitution is None else "given",
+    }
+
+
+def restitution_used(mechanism: Mechanism, etas: Equivalence) -> str:
+    """A sentence on that."""
+    return restitution_in_words([etas[each].eta for each in Direction], given=mechanism.restitution is not None)
 
 
 def _history_json(history: History, etas: Equivalence | None) -> dict[str, Any]:
@@ -118,7 +154,7 @@ def _print_table(title: str, histories: Histories) -> None:
         return terminal.ABSENT if phi is None else number(degrees(phi), 5)
 
     rows = [
-        ["outcome", *(run.outcome.name.lower().replace("_", " ") for run in runs), ""],
+        ["outcome", *(run.words for run in runs), ""],
         ["peak / phi_cr", *(number(run.peak_ratio, 5) for run in runs), ""],
         ["peak, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
         ["peak, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
@@ -146,9 +182,8 @@ def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     whole, alone = histories[model], to_pulse[model]
     if whole.overturned or alone.overturned:
-        fates = ["overturns" if run.overturned else "does not" for run in (whole, alone)]
-        return f"By the {model} model it {fates[0]} under the record; under its pulse alone it {fates[1]}."
+        return f"By the {model} model it {whole.words} under the record; under its pulse alone it {alone.words}."
     if not whole.peak_ratio:
-        return f"By the {model} model it does not rock under the record."
+        return f"By the {model} model it {whole.words} under the record."
     share = 100 * (alone.peak_ratio or 0.0) / whole.peak_ratio
     return f"By the {model} model the pulse alone rocks it to {share:.3g} % of the peak under the record."

@@ -15,6 +15,7 @@ from rocking_cli.cli.motions import Scaled
 from rocking_cli.cli.overturning_results import numbers
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.files import write_whole
+from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
 from rocking_cli.studies.shaken import Integers, Reals
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.table_csv import write_table_csv
@@ -149,7 +150,7 @@ def _finite(values: Reals) -> list[float | None]:
 def _peak(value: float) -> str:
     if value != value:
         return terminal.ABSENT
-    return "overturns" if np.isinf(value) else f"{value:.3g}"
+    return OVERTURNS if np.isinf(value) else f"{value:.3g}"
 
 
 def _print_table(results: Results, each: Spectrum) -> None:
@@ -202,8 +203,8 @@ def _itself(results: Results, each: Spectrum) -> str:
         if np.isnan(peaks[0]):
             return "its motion could not be followed"
         if np.isinf(peaks[0]):
-            return "it overturns"
-        return f"it rocks to {peaks[0]:.3g} of phi_cr" if peaks[0] else "it does not uplift"
+            return f"it {OVERTURNS}"
+        return f"it {ROCKS} to {peaks[0]:.3g} of phi_cr" if peaks[0] else f"it {NO_UPLIFT}"
     falls, count = np.flatnonzero(np.isinf(peaks)), np.count_nonzero(~np.isnan(peaks))
     if not count:
         return "no motion could be followed"

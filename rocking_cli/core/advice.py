@@ -1,20 +1,76 @@
-"""Which scaling kappa of the equivalent block to prefer, and why."""
+"""How far the equivalent block is to be trusted with either kappa: one rule and one vocabulary for every command.
+
+What is known decides how much is compared. Without an amplitude there is the uplift acceleration, which kappa2 keeps and
+kappa1 does not; at an amplitude, the free period and the overturning time too; under a ground motion, the motions. Each
+comparison is a relative error, and the largest gives the grade. A kappa whose uplift alone is out by more than `LARGE`
+is to be disregarded whatever else agrees: where it does, that is chance.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from math import tan
 from typing import Literal
 
-from rocking_cli.core.equivalence import EquivalentBlock
+from rocking_cli.core.equivalence import Equivalence, EquivalentBlock
+from rocking_cli.core.kinematics import Direction
+from rocking_cli.names import percent
 
 # The paper finds small errors with either kappa for walls of alpha < 0.2: lambda_lin/lambda = 0.2/tan(0.2) there.
 SLENDER = 0.2 / tan(0.2)
+SMALL, LARGE = 0.05, 0.15  # errors up to which a block agrees with its structure, and serves a first estimate
+
+
+class Grade(IntEnum):
+    """What an equivalent block is good for."""
+
+    AGREES = 0
+    ESTIMATE = 1
+    DISREGARD = 2
+
+    @property
+    def key(self) -> str:
+        """The grade in JSON."""
+        return ("agrees", "first_estimate", "disregard")[self]
+
+
+def grade(error: float, small: float = SMALL, large: float = LARGE) -> Grade:
+    """What an error of this size leaves a block good for; NaN counts as too large.
+
+    Parameters
+    ----------
+    error : float
+        Relative error of either sign.
+    small, large : float
+        Up to which it agrees, and serves a first estimate.
+
+    Examples
+    --------
+    >>> grade(-0.04).key, grade(0.1).key, grade(0.2).key
+    ('agrees', 'first_estimate', 'disregard')
+    """
+    size = abs(error)
+    return Grade.AGREES if size <= small else Grade.ESTIMATE if size <= large else Grade.DISREGARD
+
+
+def uplift_error(equivalence: Equivalence) -> float:
+    """By how much kappa1 misses the uplift acceleration, relative, in the direction where it misses it more.
+
+    kappa2 keeps it: its error is zero.
+    """
+    errors = [equivalence[each].lambda_lin / equivalence[each].lambda_ - 1 for each in Direction]
+    return max(errors, key=abs)
+
+
+def uplift_in_words(error: float) -> str:
+    """The error of an uplift acceleration, after "its uplift acceleration is"."""
+    return f"{percent(abs(error))} too {'low' if error < 0 else 'high'}"
 
 
 @dataclass(frozen=True)
 class Advice:
-    """A preferred scaling.
+    """A preferred scaling by what is known without an amplitude: the uplift acceleration.
 
     Parameters
     ----------
@@ -24,22 +80,26 @@ class Advice:
         lambda_lin/lambda, the paper's measure of effective slenderness: 1 for a slender structure.
     why : str
         The reason, in a sentence.
+    kappa1 : Grade
+        What its uplift acceleration leaves kappa1 good for.
     """
 
     prefer: Literal["kappa2", "either"]
     ratio: float
     why: str
+    kappa1: Grade
 
 
 def preferred_kappa(block: EquivalentBlock) -> Advice:
     """Which kappa to use for a structure, judged by how well the linearised mechanism keeps its uplift."""
     ratio = block.lambda_lin / block.lambda_
-    off = f"lambda_lin/lambda = {ratio:.4g}"
+    error, found = ratio - 1, grade(ratio - 1)
+    off = f"with kappa1 the uplift acceleration is {uplift_in_words(error)}, with kappa2 it is kept"
+    prefer: Literal["kappa2", "either"] = "kappa2"
     if SLENDER <= ratio <= 1 / SLENDER:
-        return Advice("either", ratio, f"{off}: effectively slender, kappa1 and kappa2 serve alike.")
-    share = f"{abs(1 - ratio):.0%}" if abs(1 - ratio) >= 0.1 else f"{abs(1 - ratio):.1%}"
-    way = "below" if ratio < 1 else "above"
-    why = (
-        f"prefer kappa2, which keeps the uplift; with kappa1 the block would uplift {share} {way} the true acceleration"
-    )
-    return Advice("kappa2", ratio, f"{off}: {why}.")
+        prefer, said = "either", f"effectively slender, either kappa may serve; {off}"
+    elif found is Grade.DISREGARD:
+        said = f"disregard kappa1; {off}"
+    else:
+        said = f"by the uplift prefer kappa2; {off}"
+    return Advice(prefer, ratio, f"lambda_lin/lambda = {ratio:.4g}: {said}.", found)

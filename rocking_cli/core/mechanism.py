@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -61,6 +62,10 @@ def geometry_error(field: str, message: str) -> PydanticCustomError:
     return PydanticCustomError("geometry", "{reason}", {"reason": message, "field": field})
 
 
+def _is_mass(unit: object) -> bool:
+    return isinstance(unit, str) and re.match(r"(kg|t)\b", unit) is not None
+
+
 class DirectionalRestitution(BaseModel):
     """Coefficients of restitution that differ between the two impacts."""
 
@@ -90,6 +95,8 @@ class Mechanism(BaseModel, ABC):
     """The publication and its equations."""
     verified: ClassVar[str] = ""
     """What its numbers were checked against; empty means nobody has, and the tool says so."""
+    caution: ClassVar[str] = ""
+    """Where its answers are on the unsafe side or mean less than they seem: a sentence or two that the tool shows."""
     starter: ClassVar[tuple[str, ...]] = ()
     """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
 
@@ -100,6 +107,17 @@ class Mechanism(BaseModel, ABC):
     restitution: Restitution | DirectionalRestitution | None = Field(
         None, description="coefficient of restitution eta; absent: from kinematics"
     )
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether the file gives masses. Without them, moments and inertias are per kilogram of the whole structure.
+
+        By default: whether a field is given whose unit is of mass, such as kg or kg/m3. A mechanism that knows its
+        masses otherwise overrides this.
+        """
+        extras = {key: info.json_schema_extra for key, info in type(self).model_fields.items()}
+        of_mass = [key for key, extra in extras.items() if isinstance(extra, dict) and _is_mass(extra.get("unit"))]
+        return any(getattr(self, key) is not None for key in of_mass)
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isclose
 
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import RigidMotion
@@ -34,3 +35,33 @@ def kinematic_restitution(bodies: Sequence[Body], before: Sequence[RigidMotion],
         mixed += body.mass * (u.conjugate() * v).real + body.inertia * old.dpsi[0] * new.dpsi[0]
         own += body.mass * abs(v) ** 2 + body.inertia * new.dpsi[0] ** 2
     return float(-mixed / own)
+
+
+def why_none(eta: float) -> str:
+    """Why kinematics give no restitution to rock on with, from the sign of what they give.
+
+    Parameters
+    ----------
+    eta : float
+        From kinematics, not positive.
+    """
+    product = "zero" if eta == 0 else "positive"
+    return (
+        f"the mass inner product of its motions before and after, <t+, t->, is {product}, so that no rocking the other "
+        "way follows the impact"
+    )
+
+
+def restitution_in_words(etas: Sequence[float], *, given: bool) -> str:
+    """Which restitution a history used, and where it comes from, in a sentence.
+
+    Parameters
+    ----------
+    etas : sequence of float
+        Of the impacts that end positive and negative motion.
+    given : bool
+        Whether the user gave it.
+    """
+    one, other = etas
+    values = f"{one:.4g}" if isclose(one, other, rel_tol=1e-9) else f"{one:.4g} and {other:.4g} (ending + and -)"
+    return f"Restitution eta = {values}, {'as given' if given else 'from kinematics, not measured'}."

@@ -9,6 +9,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build_models
@@ -64,6 +65,10 @@ class History:
         When it came to rest for good, or was certain to overturn [s].
     contact_lost : float or None
         When v_g'' first came down to -g [s]: the structure may leave the ground then, which no model here follows.
+    uplift_error : float
+        By how much the uplift acceleration of the model is off that of the structure, relative; see `Model`.
+    p : float
+        Frequency parameter [rad/s]: 1/p is the time in which a tilt near the critical one grows.
     """
 
     model: ModelName
@@ -82,6 +87,16 @@ class History:
     impacts: Reals
     end_time: float
     contact_lost: float | None = None
+    uplift_error: float = 0.0
+    p: float = float("nan")
+
+    @property
+    def words(self) -> str:
+        """How it ended, in the words of `rocking_cli.names`."""
+        lifted = self.uplift_time is not None or self.overturned or bool(self.peak_ratio)
+        return names.outcome(
+            uplifts=lifted, overturned=self.overturned, still_rocking=self.outcome is Outcome.STILL_ROCKING
+        )
 
     @property
     def overturned(self) -> bool:
@@ -209,6 +224,8 @@ def follow(
         impacts=impacts[: min(count, len(impacts))],
         end_time=ended,
         contact_lost=contact_lost(motion, model.gravity),
+        uplift_error=model.uplift_error,
+        p=model.p,
     )
 
 

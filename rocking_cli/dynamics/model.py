@@ -8,7 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core.advice import uplift_error
+from rocking_cli.core.restitution import why_none
 from rocking_cli.dynamics.tables import Table, tabulate
 from rocking_cli.errors import InputError, Problem
 
@@ -36,6 +38,8 @@ class Model:
         See `rocking_cli.dynamics.kernels.run`.
     tables : tuple of Table, optional
         What the arrays are made of, if nonlinear.
+    uplift_error : float
+        By how much its uplift acceleration is off that of the structure, relative, in the worse direction.
     """
 
     name: ModelName
@@ -46,6 +50,12 @@ class Model:
     angles: Reals
     certain: Reals
     tables: tuple[Table, Table] | None = None
+    uplift_error: float = 0.0
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter [rad/s], of two different directions the larger."""
+        return float(self.numbers[:, 7].max())
 
     @property
     def gravity(self) -> float:
@@ -92,7 +102,7 @@ def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) ->
             raise InputError(
                 Problem(
                     f"{mechanism.name or 'structure'}: the kinematics give {block.eta:.4g} for an impact that ends "
-                    f"motion in the {direction.label} direction: it is too stocky to start rocking the other way",
+                    f"motion in the {direction.label} direction: {why_none(block.eta)}",
                     field="restitution",
                     hint="give a measured value as restitution, a number in (0, 1]",
                 )
@@ -165,4 +175,5 @@ def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equ
         forces[0, d, [0, 1, 4]] = stiffness * block.phi_cr, -stiffness, stiffness * kappa  # Eq. 12
     angles = np.tile([0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (1, 2, 1))
     phi_cr = blocks[0].phi_cr, blocks[1].phi_cr
-    return Model(name, label, phi_cr, np.array(numbers), forces, angles, np.zeros((1, 2)))
+    error = uplift_error(Equivalence(*blocks)) if name == "linear1" else 0.0
+    return Model(name, label, phi_cr, np.array(numbers), forces, angles, np.zeros((1, 2)), uplift_error=error)

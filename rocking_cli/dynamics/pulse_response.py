@@ -15,35 +15,52 @@ from rocking_cli.errors import InputError
 
 # How many cycles they last, and their phase at the start: those of `rocking_cli.excitation.pulses`, without its numpy.
 SHAPES = {"sine": (1.0, 0.0), "cosine": (1.0, pi / 2), "half_sine": (0.5, 0.0), "rectangular": (1.0, pi / 2)}
+CONDITIONS = {
+    "uplift": "the pulse lifts the block (a > 1)",
+    "first_impact_after_pulse": "the first impact comes after the pulse",
+    "no_overturning_without_impact": "the block does not overturn before its first impact",
+}
 LARGEST = 1e6  # a or omega, and 1/omega
 LONG = 690.0  # exp of more, with a factor of omega^2, overflows
 
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """Eqs. 41-42 as printed, and whether they may be used.
+    """Eqs. 41-42 where they hold, and why they do not where not.
 
     Parameters
     ----------
     D0 : float or None
-        Energy of the free motion after the pulse [Eq. 42]; None where it does not exist or overflows.
+        Eq. 42: the energy of the free motion after the pulse, if the conditions hold; None where it does not exist or
+        overflows.
     max_ratio : float or None
-        phi_max/phi_cr of Eq. 41, the peak of the first rebound; None if it overturns or D0 does not exist.
-    overturns : bool
-        Whether eta^2 (1 - D0) >= 1: overturning after one impact.
+        phi_max/phi_cr of Eq. 41, the peak of the first rebound; None if it overturns or a condition does not hold.
+    overturns : bool or None
+        Whether eta^2 (1 - D0) >= 1: overturning after one impact. None if another condition than uplift does not hold;
+        without uplift it does not overturn.
     conditions : dict of str to bool or None
         `uplift` (a > 1), `first_impact_after_pulse`, `no_overturning_without_impact`; None where there is no motion.
+    printed_ratio : float or None
+        What Eq. 41 as printed says, whether or not the conditions hold, to see how far off it is; None where that is no
+        number from 0 to 1.
     """
 
     D0: float | None
     max_ratio: float | None
-    overturns: bool
+    overturns: bool | None
     conditions: dict[str, bool | None]
+    printed_ratio: float | None = None
 
     @property
     def valid(self) -> bool:
         """Whether every condition of the closed form holds."""
         return all(self.conditions.values())
+
+    @property
+    def reason(self) -> str | None:
+        """Why the closed form cannot be used, in words; None where it can."""
+        failed = [CONDITIONS[name] for name, holds in self.conditions.items() if holds is False]
+        return None if self.valid else f"it is not true that {' and '.join(failed)}"
 
 
 @dataclass(frozen=True)
@@ -120,19 +137,23 @@ def closed_form(a: float, omega: float, eta: float) -> ClosedForm:
     end = (2 * pi - asin(1 / a)) / omega  # tau from uplift to the end of the pulse
     if end + log(a) > LONG:
         # The growing term decides all: D0 is beyond numbers, with the sign of root - omega.
-        return ClosedForm(None, None, root < omega, _conditions(True, root >= omega, root <= omega))
+        conditions = _conditions(True, root >= omega, root <= omega)
+        return ClosedForm(None, None, False if all(conditions.values()) else None, conditions)
     grow, decay = exp(end), exp(-end)
     D0 = (omega / (omega**2 + 1)) ** 2 * (
         omega**2 - 2 * a**2 + 1 + (root + omega) * a * decay + (root - omega) * a * grow
     )  # Eq. 42
     lifted = (root - omega) * grow - (root + omega) * decay + 2 * (1 + omega**2) / omega >= 0
     left = eta**2 * (1 - D0)
-    overturns = left >= 1
+    conditions = _conditions(True, lifted, (root - omega) * grow < a)
+    valid = all(conditions.values())
+    ratio = 1 - sqrt(1 - left) if left < 1 else None  # Eq. 41
     return ClosedForm(
         D0=D0,
-        max_ratio=None if overturns else 1 - sqrt(1 - left),  # Eq. 41
-        overturns=overturns,
-        conditions=_conditions(True, lifted, (root - omega) * grow < a),
+        max_ratio=ratio if valid else None,
+        overturns=left >= 1 if valid else None,
+        conditions=conditions,
+        printed_ratio=ratio if ratio is not None and ratio >= 0 else None,
     )
 
 

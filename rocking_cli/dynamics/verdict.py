@@ -1,22 +1,127 @@
-"""What the histories of a structure say together, in words."""
+"""What the histories of a structure say together, in words, and how far they bear its equivalent blocks out."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isclose
+from dataclasses import dataclass
+from math import inf, isclose
 
+import numpy as np
+
+from rocking_cli import names
 from rocking_cli.core import Direction
+from rocking_cli.core.advice import Grade, grade, uplift_in_words
 from rocking_cli.dynamics.history import History, Outcome
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.names import percent
 
 CLOSE = 0.8  # phi/phi_cr from which a motion is close to overturning
 ALIKE = 1e-6  # relative difference below which neither polarity governs
-APART, NOTABLE = 0.2, 0.02  # relative and absolute difference of peak ratios from which models are far from each other
+# Of two motions, the rms of the difference over that of the nonlinear one, up to which the other agrees with it, and
+# serves a first estimate. Two motions of one size that have nothing to do with each other differ by 1.4 of it.
+FOLLOWS, STRAYS = 0.25, 0.5
+ANOTHER = 1.0  # p times the time between two peaks, or overturnings, beyond which they are not the same one
+PEAK = 0.999  # of its largest sample: when a motion first comes so far it has its peak, rounding apart
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
+@dataclass(frozen=True)
+class Agreement:
+    """How the motion of an equivalent block compares with that of the structure itself, the nonlinear one.
+
+    Parameters
+    ----------
+    grade : Grade
+        What the block is good for under this motion: the worst of what follows. It is to be disregarded, too, where
+        its own uplift acceleration is far off, or where one of the two overturns, or lifts, and the other does not.
+    uplift_error : float
+        Of its uplift acceleration, relative, in the worse direction: of the structure, whatever the motion.
+    same_fate : bool
+        Whether both overturn, both rock, or neither lifts.
+    peak_error : float or None
+        Of its largest phi/phi_cr, relative; None unless both rock.
+    peak_delay : float or None
+        How much later it has its peak, or overturns [s]; None unless both do the one or the other.
+    difference : float or None
+        The rms of the difference of phi/phi_cr over that of the nonlinear motion, until both are at rest; None unless
+        both rock.
+    """
+
+    grade: Grade
+    uplift_error: float
+    same_fate: bool
+    peak_error: float | None = None
+    peak_delay: float | None = None
+    difference: float | None = None
+
+    @property
+    def unfit(self) -> bool:
+        """Whether its uplift acceleration alone is so far off that it is to be disregarded under any motion."""
+        return grade(self.uplift_error) is Grade.DISREGARD
+
+
+def agreements(histories: Mapping[ModelName, History]) -> dict[ModelName, Agreement]:
+    """Compare the motion of each equivalent block with the nonlinear one; nothing without that.
+
+    Parameters
+    ----------
+    histories : mapping of str to History
+        Models of one structure under one motion, on the same samples.
+    """
+    if "nonlinear" not in histories:
+        return {}
+    best = histories["nonlinear"]
+    return {name: _compare(run, best) for name, run in histories.items() if name != "nonlinear"}
+
+
+def _compare(run: History, best: History) -> Agreement:
+    same = _fate(run) == _fate(best)
+    peak = delay = apart = None
+    if not same:
+        found = Grade.DISREGARD
+    elif best.overturned:
+        assert run.overturning_time is not None and best.overturning_time is not None
+        delay = run.overturning_time - best.overturning_time
+        alike = run.fell_to is best.fell_to and abs(delay) * best.p <= ANOTHER
+        found = Grade.AGREES if alike else Grade.ESTIMATE
+    elif not best.peak_ratio:
+        found = Grade.AGREES
+    else:
+        assert run.peak_ratio is not None
+        peak = run.peak_ratio / best.peak_ratio - 1
+        delay, apart = _peak_time(run) - _peak_time(best), _difference(run, best)
+        late = Grade.ESTIMATE if abs(delay) * best.p > ANOTHER else Grade.AGREES
+        found = max(grade(peak), grade(apart, FOLLOWS, STRAYS), late)
+    if grade(run.uplift_error) is Grade.DISREGARD:
+        found = Grade.DISREGARD
+    return Agreement(found, run.uplift_error, same, peak, delay, apart)
+
+
+def _fate(run: History) -> str:
+    return names.OVERTURNS if run.overturned else names.ROCKS if run.peak_ratio else names.NO_UPLIFT
+
+
+def _peak_time(run: History) -> float:
+    size = np.abs(run.ratio)
+    return float(run.time[int((size >= PEAK * size.max()).argmax())])
+
+
+def _difference(run: History, best: History) -> float:
+    shared = min(run.ratio.size, best.ratio.size)  # a longer one has gone on while the other is at rest
+    beyond = float(np.sum(run.ratio[shared:] ** 2) + np.sum(best.ratio[shared:] ** 2))
+    apart = float(np.sum((run.ratio[:shared] - best.ratio[:shared]) ** 2)) + beyond
+    own = float(np.sum(best.ratio**2))
+    return float(np.sqrt(apart / own)) if own > 0 else inf  # too short a motion to be seen in the samples
+
+
+def disagree(histories: Mapping[ModelName, History]) -> bool:
+    """Whether models that are fit for the structure differ in whether it overturns."""
+    fit = [run for run in histories.values() if grade(run.uplift_error) is not Grade.DISREGARD]
+    return len({run.overturned for run in fit}) > 1
+
+
 def verdict(histories: Mapping[ModelName, History]) -> str:
-    """Say whether a structure uplifts, how far it rocks, whether it overturns, and how far to trust that.
+    """Say whether a structure uplifts, how far it rocks, whether it overturns, and which model to trust for it.
 
     Parameters
     ----------
@@ -28,47 +133,91 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
     str
         A few sentences.
     """
-    fallen = {name: run for name, run in histories.items() if run.overturned}
-    said = []
-    if len(fallen) == len(histories):
-        said.append(_all_overturn(fallen))
-    elif fallen:
-        which = ", ".join(fallen)
-        said.append(
-            f"The models disagree: it overturns by {which} only. So close to overturning trust none alone; "
-            "small changes of the motion decide."
-        )
-    else:
-        said += _none_overturns(histories)
-    still = [name for name, run in histories.items() if run.outcome is Outcome.STILL_ROCKING]
+    best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
+    run = histories[best]
+    by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
+    said = [f"{by or 'The'} structure {_ends(run)}."]
+    said += bearing(histories, {name: name for name in histories})
+    if disagree(histories):
+        said.append("Trust none of them alone: vary the motion.")
+    elif not run.overturned and (run.peak_ratio or 0.0) > CLOSE:
+        said.append("That is close to overturning: vary the motion before relying on it.")
+    still = [name for name, each in histories.items() if each.outcome is Outcome.STILL_ROCKING]
     if still:
         said.append(f"{', '.join(still)}: {Outcome.STILL_ROCKING.value}.")
     return " ".join(said)
 
 
-def _all_overturn(fallen: Mapping[ModelName, History]) -> str:
-    senses = {name: SENSE[run.fell_to] for name, run in fallen.items() if run.fell_to is not None}
-    if len(set(senses.values())) == 1:
-        return f"The structure overturns {next(iter(senses.values()))}."
-    each = ", ".join(f"{name} {sense}" for name, sense in senses.items())
-    return f"The structure overturns, but the models disagree which way ({each}): small changes of the motion decide."
+def _ends(run: History) -> str:
+    """What becomes of the structure, after "it" or its name."""
+    if run.overturned:
+        return f"{names.OVERTURNS} {SENSE[run.fell_to]}" if run.fell_to is not None else names.OVERTURNS
+    if not run.peak_ratio:
+        return names.NO_UPLIFT
+    if run.peak_ratio > 1:
+        return f"{names.ROCKS}: it passes its critical rotation, to {run.peak_ratio:.4g} of it, and is brought back"
+    return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation"
 
 
-def _none_overturns(histories: Mapping[ModelName, History]) -> list[str]:
-    peaks = {name: run.peak_ratio or 0.0 for name, run in histories.items()}
-    best: ModelName = "nonlinear" if "nonlinear" in peaks else next(iter(peaks))
-    if peaks[best] == 0:
-        said = ["The structure does not uplift."]
-    elif peaks[best] > 1:
-        said = [f"The structure passes its critical rotation, to {peaks[best]:.4g} of it, and is brought back."]
-    else:
-        said = [f"The structure rocks to {peaks[best]:.4g} of its critical rotation and does not overturn."]
-    far = [name for name, peak in peaks.items() if abs(peak - peaks[best]) > max(APART * peaks[best], NOTABLE)]
-    if far:
-        each = ", ".join(f"{name} ({peaks[name]:.3g})" for name in far)
-        said.append(f"Far from the {best} model: {each}.")
-    if max(peaks.values()) > CLOSE:
-        said.append("That is close to overturning: vary the motion before relying on it.")
+def bearing(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:
+    """A sentence on each equivalent block: what it is good for under this motion, and the numbers that say so.
+
+    Parameters
+    ----------
+    histories : mapping of str to History
+        One or more models of the same structure and motion.
+    called : mapping of str to str
+        What to call the models.
+    """
+    found = agreements(histories)
+    if not found:
+        return _without_the_structure(histories, called)
+    best = histories["nonlinear"]
+    said = [_bears(called[name], each, histories[name], best) for name, each in found.items()]
+    if any(each.peak_error is not None and each.grade is not Grade.DISREGARD for each in found.values()):
+        said.append("That is for this motion alone: one history is one sample.")
+    return said
+
+
+def _bears(name: str, found: Agreement, run: History, best: History) -> str:
+    beside = _beside(found, run, best)
+    if found.unfit:
+        return f"Disregard {name}: its uplift acceleration is {uplift_in_words(found.uplift_error)}; here {beside}."
+    if found.same_fate and found.grade is Grade.DISREGARD:
+        return f"Disregard {name} here: {beside}."
+    if not found.same_fate:
+        return f"{name} disagrees: {beside}."
+    return f"{name} {'agrees' if found.grade is Grade.AGREES else 'serves a first estimate'}: {beside}."
+
+
+def _beside(found: Agreement, run: History, best: History) -> str:
+    """What a block does beside the nonlinear model."""
+    if not found.same_fate:
+        return f"it {_ends(run)}"
+    if best.overturned:
+        way = " too" if run.fell_to is best.fell_to else " the other way"
+        return f"it {names.OVERTURNS}{way}, {_later(found.peak_delay or 0.0)}"
+    if found.peak_error is None or found.difference is None or found.peak_delay is None:
+        return f"it {names.NO_UPLIFT} either"
+    size = f"{percent(abs(found.peak_error))} {'higher' if found.peak_error > 0 else 'lower'}"
+    late = f" and {_later(found.peak_delay)}" if abs(found.peak_delay) * best.p > ANOTHER else ""
+    apart = f"its motion {percent(found.difference)} off (rms)" if found.difference < inf else "its motion another"
+    return f"its peak is {size}{late}, {apart}"
+
+
+def _later(delay: float) -> str:
+    return f"{abs(delay):.3g} s {'later' if delay >= 0 else 'earlier'}"
+
+
+def _without_the_structure(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:
+    """Of equivalent blocks alone: what is unfit, and what the others do."""
+    first, *others = histories
+    said = [f"By {called[name]} it {_ends(histories[name])}." for name in others]
+    said += [
+        f"Disregard {called[name]}: its uplift acceleration is {uplift_in_words(run.uplift_error)}."
+        for name, run in histories.items()
+        if grade(run.uplift_error) is Grade.DISREGARD
+    ]
     return said
 
 

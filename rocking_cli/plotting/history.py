@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
@@ -125,7 +126,7 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
 
 def _draw_run(axes: Axes, name: str, run: History, height: float) -> None:
     look = style.LINES[name]
-    fate = ", overturns" if run.overturned else ""
+    fate = f", {names.OVERTURNS}" if run.overturned else ""
     followed = run.ratio[np.isfinite(run.ratio)]  # all, or all before overturning
     if run.overturned:
         followed = followed[: np.flatnonzero(np.abs(followed) <= FALLING)[-1] + 1]

@@ -15,6 +15,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
+from rocking_cli import names
 from rocking_cli.plotting import style
 from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
 
@@ -92,7 +93,7 @@ def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line
         place = line[np.abs(line[:, 1] - line[:, 1].mean()).argmin()]
         axes.annotate(
             f"{level:g}", place, ha="center", va="center", fontsize=style.SMALL, color=style.MEASURE,
-            bbox={"facecolor": style.REGIONS["rocks"], "edgecolor": "none", "pad": 0.5},
+            bbox={"facecolor": style.REGIONS[names.ROCKS], "edgecolor": "none", "pad": 0.5},
         )  # fmt: skip
     return [Line2D([], [], color=style.MEASURE, linewidth=style.CURVE, label=r"peak $\phi/\phi_{cr}$")]
 

@@ -8,6 +8,8 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rocking_cli import names
+
 WIDTH = 7.2  # inches: the width of a page of text
 DPI = 150
 LONGEST = 95  # characters of a heading
@@ -38,11 +40,11 @@ LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2":
 # Regions of a plane of pulses, and the boundaries between them.
 # From white to dark, so that the order is seen in grey; blue to orange to brown for the colour-blind.
 REGIONS = {
-    "no uplift": "#ffffff",
-    "rocks": "#d6e6f2",
-    "overturns after one impact": "#f2b04a",
-    "overturns after two or more": "#c46a1b",
-    "overturns without impact": "#5b3a55",
+    names.NO_UPLIFT: "#ffffff",
+    names.ROCKS: "#d6e6f2",
+    f"{names.OVERTURNS} after one impact": "#f2b04a",
+    f"{names.OVERTURNS} after two or more": "#c46a1b",
+    f"{names.OVERTURNS} without impact": "#5b3a55",
 }
 BOUNDARIES: dict[str, dict[str, Any]] = {
     "uplift": {"color": "#222222", "linestyle": "-", "linewidth": 1.0},

@@ -32,6 +32,7 @@ from rocking_cli.studies.linearisation import Linearisation
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
 FEWEST, MOST = 300, 2500  # of one motion
 ABSENT = "-"
+PER_MASS = " Per unit mass of the whole structure: the file gives no masses."
 SUBSCRIPT = re.compile(r"([φθλωψ]|\b[A-Za-z])_([A-Za-z]+(?:,\d)?)")
 GREEK = {"lambda": "λ", "kappa1": "κ₁", "kappa2": "κ₂", "phi": "φ"}
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -57,6 +58,7 @@ def render(content: Content) -> str:
         answer=words.in_a_sentence(content),
         verdicts=words.verdicts(content),
         doubts=words.doubts(content),
+        restitution=words.restitution(content),
         drawing=_still(draw_structure(content.picture, content.name), "drawing"),
         measured=_dimensions(content),
         directions=_directions(content),
@@ -118,11 +120,15 @@ def _parameters(content: Content) -> list[dict[str, Any]]:
                 _number(block[each.key]) + (f" ({degrees(block[each.key]):.3g}°)" if each.unit == "rad" else "")
                 for block in blocks
             ],
-            "unit": each.unit,
-            "meaning": each.meaning,
+            "unit": each.unit if content.mechanism.has_mass else each.unit.removeprefix("kg "),
+            "meaning": each.meaning + (PER_MASS if _per_mass(content, each.unit) else ""),
         }
         for each in PARAMETERS
     ]
+
+
+def _per_mass(content: Content, unit: str) -> bool:
+    return unit.startswith("kg ") and not content.mechanism.has_mass
 
 
 def _advice(content: Content) -> list[str]:
@@ -176,7 +182,7 @@ def _outcomes(runs: Sequence[History]) -> Rows:
         return ABSENT if phi is None else f"{degrees(phi):.4g}"
 
     return [
-        ["how it ends", *(run.outcome.value.split(",")[0] for run in runs), ""],
+        ["outcome", *(run.words for run in runs), ""],
         ["largest rotation over critical, |φ|/φ_cr", *(_number(run.peak_ratio) for run in runs), "1"],
         ["largest rotation clockwise", *(angle(run.peak_positive) for run in runs), "°"],
         ["largest rotation anticlockwise", *(angle(run.peak_negative) for run in runs), "°"],
@@ -222,7 +228,10 @@ def _map(each: PulseMap, k: int) -> dict[str, Any]:
 
 def _errors(each: Linearisation) -> Rows:
     def percent(ratio: float) -> str:
-        return "never uplifts" if np.isinf(ratio) else f"{100 * (ratio - 1):+.2g} %"
+        if np.isinf(ratio):
+            return "never uplifts"
+        error = 100 * (ratio - 1)
+        return f"{error:+.0f} %" if abs(error) >= 9.95 else f"{error:+.2g} %"
 
     rows = [["uplift acceleration", "", percent(each.uplift_ratio1), percent(each.uplift_ratio2)]]
     for r, ratio in zip(each.amplitude.tolist(), each.period_ratio.tolist(), strict=True):

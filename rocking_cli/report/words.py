@@ -6,10 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees, isnan
 
+from rocking_cli import names
 from rocking_cli.core import Direction
+from rocking_cli.core.advice import Grade
+from rocking_cli.core.restitution import restitution_in_words, why_none
 from rocking_cli.dynamics.history import History, Outcome
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import APART, CLOSE, NOTABLE, SENSE
+from rocking_cli.dynamics.verdict import CLOSE, SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.report.content import Content, Shaking
 from rocking_cli.studies.margin import FACTORS, STEP
@@ -71,20 +74,20 @@ def in_a_sentence(content: Content) -> str:
     doubtful = any(_close(each) for each in content.shakings)
     close = " The result is a close one: read below what could change it." if doubtful else ""
     if falls:
-        names = _listed([each.given.motion.name for each in falls])
+        under = _listed([each.given.motion.name for each in falls])
         of = f" ({len(falls)} of {len(content.shakings)} ground motions)" if len(content.shakings) > 1 else ""
-        return f"{name} overturns under {names}{of}.{close}"
+        return f"{name} {names.OVERTURNS} under {under}{of}.{close}"
     moved = [each for each in content.shakings if _worst_ratio(each) > 0]
     if not moved:
         under = _listed([each.given.motion.name for each in content.shakings])
         return (
-            f"{name} does not move: {under} {'are' if len(content.shakings) > 1 else 'is'} too weak to lift it.{close}"
+            f"{name} {names.NO_UPLIFT}: {under} {'are' if len(content.shakings) > 1 else 'is'} too weak to lift it.{close}"
         )
     worst = max(moved, key=_worst_ratio)
     which = worst.given.motion.name
     share = f"{_share(_worst_ratio(worst))} of the rotation from which it would fall"
     if len(content.shakings) == 1:
-        return f"{name} rocks but does not overturn under {which}: it turns by at most {share}.{close}"
+        return f"{name} {names.ROCKS} under {which} and does not overturn: it turns by at most {share}.{close}"
     return (
         f"{name} rocks under {len(moved)} of {len(content.shakings)} ground motions and overturns under none: it turns "
         f"by at most {share}, under {which}.{close}"
@@ -96,10 +99,12 @@ def doubts(content: Content) -> list[str]:
     said = []
     if not content.mechanism.verified:
         said.append(f"Nobody has verified the mechanism {content.mechanism.mechanism}: its numbers need a check.")
+    if content.mechanism.caution:
+        said.append(content.mechanism.caution)
     etas = [content.equivalence[direction].eta for direction in Direction]
     if min(etas) <= 0:
         said.append(
-            "The structure is so stocky that its restitution from kinematics is not positive. Time histories and the "
+            f"Kinematics give a restitution of {min(etas):.3g}: {why_none(min(etas))}. Time histories and the "
             "overturning map need a measured restitution in the file, and are left out."
         )
     elif content.mechanism.restitution is None:
@@ -118,7 +123,7 @@ def doubts(content: Content) -> list[str]:
 def _verdict(content: Content, shaking: Shaking) -> Verdict:
     best = shaking.histories["nonlinear"]
     headline = (
-        "overturns" if _overturns(shaking) else "rocks, does not overturn" if best.peak_ratio else "does not uplift"
+        names.OVERTURNS if _overturns(shaking) else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
     )
     return Verdict(
         shaking.given.motion.name,
@@ -164,7 +169,7 @@ def _fate(run: History, *, capital: bool = False) -> str:
     elif run.peak_ratio:
         said = f"no, it rocks to {_share(run.peak_ratio)} of the critical rotation"
     else:
-        said = "no, it does not move"
+        said = f"no, it {names.NO_UPLIFT}"
     return said[0].upper() + said[1:] if capital else said
 
 
@@ -209,38 +214,20 @@ def _trusted(shaking: Shaking) -> str:
     runs = shaking.histories
     best = runs["nonlinear"]
     itself = "The nonlinear model is the structure itself, and its numbers are quoted here."
-    if len({run.overturned for run in runs.values()}) > 1:
-        said = "; ".join(
-            f"{MODELS[name]}: {'overturns' if run.overturned else 'does not'}" for name, run in runs.items()
-        )
-        return (
-            f"None of them alone: the models disagree on whether it overturns ({said}). {itself} So near to "
-            "overturning small changes of the motion decide."
-        )
-    if best.overturned:
-        return f"All three models say that it overturns. {itself}"
-    lifts = {name: run.uplift_time is not None for name, run in runs.items()}
-    if len(set(lifts.values())) > 1:
-        said = "; ".join(f"{MODELS[name]}: {'lifts' if lifted else 'stays'}" for name, lifted in lifts.items())
-        return f"The nonlinear one: the models disagree on whether the motion lifts it at all ({said}). {itself}"
-    if not any(lifts.values()):
-        return f"Any: by all three models it stays at rest. {itself}"
-    peaks = {name: run.peak_ratio or 0.0 for name, run in runs.items()}
-    peak = peaks["nonlinear"]
-    off = [name for name, other in peaks.items() if abs(other - peak) > max(APART * peak, NOTABLE)]
-    if not off:
-        return f"Any: the three models agree closely. {itself} The simpler equivalent block serves for this motion."
-    far = _listed([f"{_share(peaks[name])} by the {MODELS[name]}" for name in off])
-    near = [name for name in peaks if name not in ("nonlinear", *off)]
-    rest = (
-        f"The {MODELS[near[0]]} agrees, with {_share(peaks[near[0]])}."
-        if near
-        else "With neither κ is the block close enough to rely on."
-    )
-    return (
-        f"The nonlinear one. {itself} The largest rotation is {_share(peak)} of the critical one by it, but {far}. "
-        f"{rest}"
-    )
+    grades = {each.grade for each in agreements(runs).values()}
+    if disagree(runs):
+        first = "None of them alone: the models disagree on whether it overturns."
+    elif len({run.overturned for run in runs.values()}) == 1 and best.overturned:
+        first = "All three models say that it overturns."
+    elif grades == {Grade.AGREES}:
+        lifted = "the three models agree closely" if best.peak_ratio else f"by all three models it {names.NO_UPLIFT}"
+        first = f"Any: {lifted}."
+    else:
+        first = "The nonlinear one."
+    said = [first, itself, *(text[0].upper() + text[1:] for text in bearing(runs, MODELS))]
+    if disagree(runs):
+        said.append("So near to overturning small changes of the motion decide.")
+    return " ".join(said)
 
 
 def _doubts(shaking: Shaking) -> list[str]:
@@ -264,8 +251,7 @@ def _overturns(shaking: Shaking) -> bool:
 
 def _close(shaking: Shaking) -> bool:
     """Whether a small change of the motion or the model could give the other outcome."""
-    runs = shaking.histories.values()
-    if len({run.overturned for run in runs}) > 1:
+    if disagree(shaking.histories):
         return True
     other = shaking.margin.other
     return (other is not None and 1 / NEAR < other < NEAR) or _worst_ratio(shaking) > CLOSE
@@ -296,5 +282,11 @@ def _share(ratio: float) -> str:
     return f"{100 * ratio:.3g} %" if ratio < 10 else f"{ratio:.3g} times"
 
 
-def _listed(names: Sequence[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+def restitution(content: Content) -> str:
+    """Which restitution the histories used, and where it comes from."""
+    etas = [content.equivalence[direction].eta for direction in Direction]
+    return restitution_in_words(etas, given=content.mechanism.restitution is not None).replace("eta", "η")
+
+
+def _listed(words: Sequence[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

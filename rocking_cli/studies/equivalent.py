@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli import names
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
@@ -77,7 +78,7 @@ class EquivalentResponses:
     direction : Direction
         The direction that the pulse lifts first.
     linear_peak : float or None
-        Largest phi/phi_cr of the linear block that all share; None if it overturns.
+        Largest phi/phi_cr of the linear block that all share; 0 if it does not uplift, None if it overturns.
     linear : History
         The motion of that block, under the first structure's pulse.
     tau : ndarray
@@ -103,7 +104,7 @@ class EquivalentResponses:
 
     @property
     def relative_spread(self) -> float | None:
-        """The spread over the linear peak; None if anything overturns."""
+        """The spread over the linear peak; None if anything overturns, or the linear block does not uplift."""
         return self.spread / self.linear_peak if self.spread is not None and self.linear_peak else None
 
     @property
@@ -148,7 +149,7 @@ def equivalent(
     Raises
     ------
     InputError
-        If the pulse does not lift the first structure, or a restitution cannot be used.
+        If a restitution cannot be used.
     """
     first = _equivalence(mechanisms[0])
     ground = pulse.sampled().scaled(polarity)
@@ -157,14 +158,6 @@ def equivalent(
     scaling: ModelName = "linear1" if kappa == 1 else "linear2"
     a = pulse.amplitude / (mechanisms[0].gravity * uplift(block, scaling))  # Eq. 40
     omega = 2 * pi / (pulse.period * block.p)  # Eq. 40
-    if a <= 1:
-        least = mechanisms[0].gravity * uplift(block, scaling) / STANDARD_GRAVITY
-        raise InputError(
-            Problem(
-                f"the pulse does not lift {_name(mechanisms[0])}: a = {a:.4g}, and uplift needs a > 1",
-                hint=f"give an amplitude above {least:.4g} g",
-            )
-        )
     shared = _shared_eta(eta, block, mechanisms[0])
     members = [_member(each, pulse, a, omega, direction, polarity, scaling, shared) for each in mechanisms]
     both = replace(block, eta=members[0].eta)
@@ -254,7 +247,15 @@ def judge(found: EquivalentResponses) -> list[str]:
     said = []
     fallen = [each for each in found.members if each.history.overturned]
     peaks = {each.name: each.history.peak_ratio or 0.0 for each in found.members if not each.history.overturned}
-    linear = "overturns" if found.linear_peak is None else f"rocks to {found.linear_peak:.4g}"
+    linear = (
+        names.OVERTURNS
+        if found.linear_peak is None
+        else f"{names.ROCKS} to {found.linear_peak:.4g}"
+        if found.linear_peak
+        else names.NO_UPLIFT
+    )
+    if not fallen and not any(peaks.values()) and found.linear_peak == 0:
+        return [f"The linear block {names.NO_UPLIFT} (a = {found.a:.4g}, uplift needs a > 1), nor does any structure."]
     if not peaks:
         said.append(f"All overturn; the linear block {linear}.")
     elif fallen:
@@ -267,7 +268,10 @@ def judge(found: EquivalentResponses) -> list[str]:
         part = "" if found.relative_spread is None else f", {100 * found.relative_spread:.2g} % of it"
         said.append(f"The linear block {linear}; the structures differ by {found.spread:.3g}{part}.")
         if found.relative_spread is None:
-            said.append("The linear block overturns and none of the structures does: here the equivalence breaks.")
+            what = f"{names.OVERTURNS} and none of the structures does" if found.linear_peak is None else (
+                f"{names.NO_UPLIFT} and a structure does"
+            )  # fmt: skip
+            said.append(f"The linear block {what}: here the equivalence breaks.")
         elif found.relative_spread > FAR:
             middle = found.linear_peak or 0.0
             far = max(peaks, key=lambda name: abs(peaks[name] - middle))

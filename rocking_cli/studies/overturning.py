@@ -9,6 +9,7 @@ from itertools import count
 
 import numpy as np
 
+from rocking_cli import names
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
@@ -33,7 +34,12 @@ class Region(IntEnum):
     @property
     def label(self) -> str:
         """In words."""
-        return ("no uplift", "rocks", "overturns after impact", "overturns without impact")[self]
+        return (
+            names.NO_UPLIFT,
+            names.ROCKS,
+            f"{names.OVERTURNS} after impact",
+            f"{names.OVERTURNS} without impact",
+        )[self]
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,14 +143,10 @@ def overturning_map(
     Raises
     ------
     InputError
-        If no pulse lifts the structure, or a number is not positive.
+        If a number is not positive.
     """
     if not ((omega > 0).all() and (a > 0).all()):
         raise InputError("omega and a must be positive")
-    if a.max() <= 1:
-        raise InputError(
-            f"no pulse of the map lifts the structure: the largest has a = {a.max():.4g}, and uplift needs a > 1"
-        )
     periods, amplitudes = (each.ravel() for each in np.meshgrid(structure.period(omega), a * structure.unit))
     found = outcomes(structure, shape, periods, amplitudes, polarities=polarities, progress=progress)
     plane = a.size, omega.size
@@ -224,14 +226,7 @@ def compare(
     Amplitudes from uplift to the largest are tried, at equal ratios of a - 1; then as many just below the least that
     overturns, until nothing lower is found; the interval that is left is halved. An island of overturning narrower
     than a step, 0.7 % of a - 1, may be missed.
-
-    Raises
-    ------
-    InputError
-        If not even the largest amplitude lifts any of the structures.
     """
-    if top * STANDARD_GRAVITY <= min(each.unit for each in structures):
-        raise InputError(f"no pulse up to {top:g} g lifts any of the structures: take larger accelerations")
     least = np.array([_least(each, shape, periods, top, polarities, progress) for each in structures])
     return Comparison(tuple(structures), shape, tuple(polarities), periods, least / STANDARD_GRAVITY, top)
 

@@ -1,15 +1,63 @@
-"""What the error of the equivalence means for a practitioner, in words."""
+"""What the error of the equivalence means for a practitioner, in words: the rule of `rocking_cli.core.advice`."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.core.advice import preferred_kappa
+from rocking_cli.core.advice import SMALL, Grade, grade, preferred_kappa, uplift_in_words
+from rocking_cli.names import percent
 from rocking_cli.studies.linearisation import Linearisation
 
-SMALL, LARGE = 0.05, 0.15  # errors up to which an equivalent block serves design, and serves a first estimate
+NEVER = "infinite (it never uplifts)"
+KEPT = 1e-9  # an error of the uplift acceleration that is none
+
+
+@dataclass(frozen=True)
+class Errors:
+    """The largest errors of an equivalent block at the amplitudes asked for, of two directions the worse.
+
+    Parameters
+    ----------
+    uplift : float
+        Of its uplift acceleration, relative, with its sign.
+    period, overturning : float
+        Sizes of those of the free period and of the overturning time, relative; infinite where it never uplifts.
+    """
+
+    uplift: float
+    period: float
+    overturning: float
+
+    @property
+    def grade(self) -> Grade:
+        """What the largest of them leaves the block good for."""
+        return max(grade(self.uplift), grade(self.period), grade(self.overturning))
+
+
+def errors(asked: Sequence[Linearisation], kappa: int) -> Errors:
+    """The largest errors of the block with kappa1 or kappa2; see `trust`."""
+    uplifts = [getattr(each, f"uplift_ratio{kappa}") - 1 for each in asked]
+    return Errors(
+        max(uplifts, key=abs),
+        max(_worst(each.period_ratio) for each in asked),
+        max(_worst(getattr(each, f"overturning_ratio{kappa}")) for each in asked),
+    )
+
+
+def preferred(asked: Sequence[Linearisation]) -> int | None:
+    """Which kappa to prefer at the amplitudes asked for: 1, 2, 0 if either will do, None if neither does.
+
+    The better grade decides; of two that are alike, the uplift acceleration, as `preferred_kappa` has it.
+    """
+    one, two = (errors(asked, kappa).grade for kappa in (1, 2))
+    if one is two is Grade.DISREGARD:
+        return None
+    if one is not two:
+        return 1 if one < two else 2
+    return 2 if any(preferred_kappa(each.block).prefer == "kappa2" for each in asked) else 0
 
 
 def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> str:
@@ -27,24 +75,40 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
     str
         Some sentences; of two directions the larger error counts.
     """
-    said = [preferred_kappa(each.block).why for each in curves]
-    if len(curves) > 1:
-        said = [f"{each.direction.label}: {why}" for each, why in zip(curves, said, strict=True)]
-    period = max(_worst(each.period_ratio) for each in asked)
-    one, two = (max(_worst(getattr(each, f"overturning_ratio{k}")) for each in asked) for k in (1, 2))
-    better = 2 if two <= one else 1
-    said.append(
-        f"Expect an error of {_percent(period)} in the free period and, with kappa{better}, of "
-        f"{_percent(min(one, two))} in the overturning time (kappa{3 - better}: {_percent(max(one, two))})."
-    )
-    worst = max(period, min(one, two))
-    if worst <= SMALL:
-        said.append("The equivalent block serves design there.")
-    elif worst <= LARGE:
-        said.append("The equivalent block serves a first estimate there; decide by the nonlinear history.")
+    prefer = preferred(asked)
+    order = (1, 2) if prefer == 1 else (2, 1)
+    one, two = (_on(kappa, errors(asked, kappa)) for kappa in order)
+    said = [f"{_where(asked)}: {one}; {two}."]
+    if prefer is None:
+        said.append("Rely on neither there: use the nonlinear history.")
+    elif prefer == 0:
+        said.append("Either kappa will do there.")
     else:
-        said.append("Do not rely on the equivalent block there: use the nonlinear history.")
-    return " ".join([*said, *_ranges(curves, better)])
+        said.append(f"Prefer kappa{prefer} there.")
+    if prefer is not None and min(errors(asked, kappa).grade for kappa in (1, 2)) is Grade.ESTIMATE:
+        said.append("Decide by the nonlinear history.")
+    return " ".join([*said, *_ranges(curves, order[0])])
+
+
+def _where(asked: Sequence[Linearisation]) -> str:
+    """The amplitudes and accelerations, and that of two directions the worse counts."""
+    amplitudes = ", ".join(f"{r:g}" for r in asked[0].amplitude.tolist())
+    accelerations = ", ".join(f"{a:g}" for a in asked[0].acceleration.tolist())
+    worse = ", of both directions the worse" if len(asked) > 1 else ""
+    return f"At phi/phi_cr = {amplitudes} and {accelerations} times the uplift acceleration{worse}"
+
+
+def _on(kappa: int, found: Errors) -> str:
+    """What a kappa is good for, and the errors that say so."""
+    uplift = "kept" if abs(found.uplift) < KEPT else uplift_in_words(found.uplift)
+    overturning = f"off by {percent(found.overturning)}" if np.isfinite(found.overturning) else NEVER
+    numbers = f"uplift {uplift}, free period off by {percent(found.period)}, overturning time {overturning}"
+    good = {
+        Grade.AGREES: f"kappa{kappa} agrees",
+        Grade.ESTIMATE: f"kappa{kappa} serves a first estimate",
+        Grade.DISREGARD: f"disregard kappa{kappa}",
+    }[found.grade]
+    return f"{good} ({numbers})"
 
 
 def _ranges(curves: Sequence[Linearisation], kappa: int) -> list[str]:
@@ -59,19 +123,15 @@ def _ranges(curves: Sequence[Linearisation], kappa: int) -> list[str]:
             if any(values.size == each.amplitude.size for values, each in zip(far, curves, strict=True))
             else f"for phi/phi_cr from {low:.2g} to {high:.2g}"
         )
-        said.append(f"The free period is off by more than {SMALL:.0%} {where}.")
+        said.append(f"The free period is off by more than {percent(SMALL)} {where}.")
     slow = [each.acceleration[np.abs(getattr(each, f"overturning_ratio{kappa}") - 1) > SMALL] for each in curves]
     late = [values.max() for values in slow if values.size]
     if late:
         everywhere = any(values.size == each.acceleration.size for values, each in zip(slow, curves, strict=True))
         where = "at every acceleration" if everywhere else f"for accelerations below {max(late):.3g} times uplift"
-        said.append(f"The overturning time with kappa{kappa} is off by more than {SMALL:.0%} {where}.")
+        said.append(f"The overturning time with kappa{kappa} is off by more than {percent(SMALL)} {where}.")
     return said
 
 
 def _worst(ratios: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
     return float(np.abs(ratios - 1).max())
-
-
-def _percent(error: float) -> str:
-    return "infinity (it never uplifts)" if np.isinf(error) else f"{100 * error:.2g} %"

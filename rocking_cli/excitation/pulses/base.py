@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import isfinite
 from typing import ClassVar, NamedTuple
 
@@ -15,6 +15,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 
 Reals = NDArray[np.float64]
 SAMPLES = 400  # to a period of the sampled motion: chords of a sine are then off by 3e-5 of its amplitude
+DIGITS = 17  # that tell any two numbers apart
 NODES = 48  # of Gauss's rule for the velocity
 
 
@@ -129,7 +130,34 @@ class Pulse(ABC):
         """
         steps = int(np.ceil(self.span * per_period - 1e-9))
         x = np.linspace(0.0, self.span, steps + 1)
-        return GroundMotion(str(self), self.duration / steps, self.amplitude * self.shape(x), "m/s2", "pulse")
+        return GroundMotion(str(self), self.duration / steps, self.amplitude * self.shape(x), "g", "pulse")
+
+    @property
+    def specification(self) -> str:
+        """What `parse_pulse` makes this very pulse of, to the last bit.
+
+        Examples
+        --------
+        >>> from rocking_cli.excitation.pulses import parse_pulse
+        >>> parse_pulse("sine:0.6g:0.8s").specification
+        'sine:0.6g:0.8s'
+        """
+        further = [
+            f"{_shortest(getattr(self, field.name))}{field.metadata.get('unit', '')}" for field in fields(self)[2:]
+        ]
+        return ":".join([self.name, _amplitude(self.amplitude), f"{_shortest(self.period)}s", *further])
 
     def __str__(self) -> str:
         return f"{self.name}:{self.amplitude / STANDARD_GRAVITY:.6g}g:{self.period:.6g}s"
+
+
+def _shortest(value: float) -> str:
+    """The shortest text that is read as this number."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def _amplitude(value: float) -> str:
+    """The shortest text in g or m/s2 that is read as this number [m/s2]; some numbers are no multiple of g."""
+    texts = (f"{value / STANDARD_GRAVITY:.{digits}g}" for digits in range(1, DIGITS + 1))
+    in_g = [f"{text}g" for text in texts if float(text) * STANDARD_GRAVITY == value]
+    return min([*in_g[:1], f"{_shortest(value)}m/s2"], key=len)

@@ -52,7 +52,8 @@ VIEW = """
 CREATE VIEW runs AS SELECT
     run.id, sample.structure, sample.number AS sample, record.name AS record, level.value AS level,
     polarity.value AS polarity, run.eta, run.scale, run.scale * record.pga AS pga, run.scale * record.pgv AS pgv,
-    CASE run.outcome WHEN 0 THEN 'stands' WHEN 2 THEN 'failed' ELSE 'overturns' END AS outcome,
+    CASE WHEN run.outcome = 2 THEN 'failed' WHEN run.outcome != 0 THEN 'overturns'
+        WHEN run.uplift_time IS NULL THEN 'does not uplift' ELSE 'rocks' END AS outcome,
     CASE WHEN run.outcome IN (1, -1) THEN run.outcome ELSE 0 END AS fell_to,
     run.peak_ratio, run.peak_positive, run.peak_negative, run.uplift_time, run.overturning_time
 FROM run

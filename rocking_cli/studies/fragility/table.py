@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import isnan
 
 import numpy as np
 
+from rocking_cli import names
 from rocking_cli.studies.fragility.intensity import MEASURES, intensity, label
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import FAILED, STANDS, Rows, Store
@@ -41,7 +43,6 @@ def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
     pga = rows.scale * np.array([each.pga for each in records])
     pgv = rows.scale * np.array([each.pgv for each in records])
     scales = plan.scales(sample)
-    outcomes = {STANDS: "stands", FAILED: "failed"}
     return {
         "run": rows.id.tolist(),
         "structure": [each.structure for each in trials],
@@ -52,7 +53,7 @@ def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
         "eta": rows.eta.tolist(),
         "scale": rows.scale.tolist(),
         **{label(name): intensity(name, pga, pgv, scales).tolist() for name in MEASURES},
-        "outcome": [outcomes.get(code, "overturns") for code in rows.outcome.tolist()],
+        "outcome": [_outcome(*each) for each in zip(rows.outcome.tolist(), rows.uplift_time.tolist(), strict=True)],
         "fell_to": np.where(np.abs(rows.outcome) == 1, rows.outcome, 0).tolist(),
         "phi/phi_cr": rows.peak_ratio.tolist(),
         "phi positive [rad]": rows.peak_positive.tolist(),
@@ -60,3 +61,10 @@ def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
         "uplift [s]": rows.uplift_time.tolist(),
         "overturning [s]": rows.overturning_time.tolist(),
     }
+
+
+def _outcome(code: int, uplift_time: float | None) -> str:
+    if code == FAILED:
+        return "failed"
+    lifts = uplift_time is not None and not isnan(uplift_time)
+    return names.outcome(uplifts=lifts, overturned=code != STANDS)
