@@ -167,7 +167,10 @@ class TestInARecord:
 class TestWithPulse:
     def test_json_has_the_pulse_and_the_responses_to_it_alone(self, made):
         data = run_json("respond", FRAME, "--record", made, "--with-pulse", "sine", "--polarity", "-1")
-        assert list(data) == ["structure", "record", "release", "responses", "pulse", "pulse_responses", "notes"]
+        assert list(data) == [
+            "structure", "record", "release", "restitution", "responses", "agreement", "verdict", "pulse",
+            "pulse_responses", "notes",
+        ]  # fmt: skip
         assert list(data["pulse"]) == KEYS and data["pulse"]["sign"] == 1
         motion = read_record(made).scaled(-1)
         alone = fit_pulse(motion, "sine", "velocity").alone(motion)
@@ -201,7 +204,7 @@ class TestWithPulse:
         over = run("respond", FRAME, "--record", made, "--with-pulse", "sine", "--scale", "4").stdout
         assert "it overturns under the record; under its pulse alone it overturns" in over
         rest = run("respond", FRAME, "--record", made, "--with-pulse", "sine", "--scale", "0.1").stdout
-        assert "does not rock under the record" in rest
+        assert "does not uplift under the record" in rest
 
     def test_files_and_pictures_have_both(self, made, tmp_path):
         run("respond", FRAME, "--record", made, "--with-pulse", "--out", "out.csv", "--plot", "plot.png")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from dataclasses import replace
 from math import cos, sin, tan
 
 import numpy as np
@@ -14,6 +16,7 @@ from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.advice import grade, preferred_kappa
 from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
@@ -182,12 +185,103 @@ def test_a_symmetric_structure_has_one_table_and_an_asymmetric_one_two():
 
 
 def test_the_words_follow_the_numbers():
-    assert "serves design" in run_json("error", EXAMPLES / "block.yaml")["verdict"]
+    assert "kappa2 agrees" in run_json("error", EXAMPLES / "block.yaml")["verdict"]
     arch = run_json("error", EXAMPLES / "arch.yaml")["verdict"]
-    assert "prefer kappa2" in arch and "first estimate" in arch and "more than 5%" in arch
+    assert "Prefer kappa2" in arch and "kappa2 serves a first estimate" in arch and "more than 5 %" in arch
     stocky = arch_of(3.0, 100.0)
     curves = [linearisation(stocky, Direction.POSITIVE, np.linspace(0.05, 0.95, 9), np.geomspace(1.1, 10, 9))]
     assert "use the nonlinear history" in trust(curves, [linearisation(stocky, Direction.POSITIVE, 0.1, 1.1)])
+
+
+GRADES = (("agrees", 0.05), ("first_estimate", 0.15), ("disregard", np.inf))
+SENTENCES = {"agrees": "kappa{} agrees (", "first_estimate": "kappa{} serves a first estimate (",
+             "disregard": "disregard kappa{} ("}  # fmt: skip
+TALL = AsymmetricFrame(
+    column_width=4.0, left_height=3.0, right_height=30.0, spacing=4.5, beam_depth=12.0, density=2500.0, depth=1.0
+)
+VALLEY = AsymmetricFrame(
+    column_width=2.606, left_height=9.0, right_height=15.91, spacing=5.4, beam_depth=4.5, density=2500.0, depth=1.0
+)
+
+
+@pytest.mark.parametrize("structure", [VALLEY, TALL, wall_of(0.1), wall_of(0.5), arch_of(1.5, 150.0), arch_of(3.0, 100.0)])
+@pytest.mark.parametrize("asked", [(0.5, 2.0), (0.5, 1.01), (0.05, 1.1), (0.95, 8.0)])
+def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
+    file = tmp_path / "s.yaml"
+    fields = structure.model_dump(exclude_none=True)
+    file.write_text(json.dumps({"mechanism": structure.mechanism, **fields}), encoding="utf-8")
+    data = run_json("error", file, "--at", asked[0], "--accel", asked[1])
+    sides = data["directions"].values()
+    said, names = data["verdict"], [name for name, _ in GRADES]
+    found = {}
+    for kappa in ("kappa1", "kappa2"):
+        uplift = max((side["uplift_ratio"][kappa] - 1 for side in sides), key=abs)
+        period = max(abs(row["ratio"] - 1) for side in sides for row in side["free_period"])
+        ratios = [row["ratio"][kappa] for side in sides for row in side["overturning_time"]]
+        late = max(np.inf if ratio is None else abs(ratio - 1) for ratio in ratios)
+        grade = next(name for name, most in GRADES if max(abs(uplift), period, late) <= most)
+        found[kappa] = names.index(grade)
+        assert data["grades"][kappa] == grade
+        sentence = SENTENCES[grade].format(kappa[-1])
+        numbers = said[said.index(sentence) + len(sentence):]
+        if kappa == "kappa1":
+            way = "low" if uplift < 0 else "high"
+            shown = float(re.match(rf"uplift ([\d.]+) % too {way}", numbers)[1])
+            assert shown == pytest.approx(100 * abs(uplift), rel=0.06)
+        else:
+            assert numbers.startswith("uplift kept")
+        assert float(re.search(r"free period off by ([\d.]+) %", numbers)[1]) == pytest.approx(100 * period, rel=0.06)
+        time = re.search(r"overturning time (?:off by ([\d.]+) %|infinite)", numbers)[1]
+        assert (time is None) == np.isinf(late)
+        assert time is None or float(time) == pytest.approx(100 * late, rel=0.06)
+    assert not re.search(r"\de[+-]", said)  # no powers of ten
+    advice = {side["prefer"] for side in run_json("equiv", file)["directions"].values()}
+    better = {"kappa2"} & advice or {"either"}
+    expected = None if min(found.values()) == 2 else (
+        better.pop() if found["kappa1"] == found["kappa2"] else min(found, key=found.__getitem__)
+    )  # fmt: skip
+    assert data["prefer"] == expected
+    last = {None: "Rely on neither there", "either": "Either kappa will do there"}.get(expected, f"Prefer {expected} there")
+    assert last in said and said.count("Prefer") == (expected in ("kappa1", "kappa2"))
+
+
+def test_equiv_error_and_respond_disregard_the_same_kappa1(tmp_path):
+    for structure in (VALLEY, TALL, wall_of(0.3), arch_of(1.5, 157.5)):
+        file = tmp_path / "s.yaml"
+        fields = {**structure.model_dump(exclude_none=True), "restitution": 0.9}
+        file.write_text(json.dumps({"mechanism": structure.mechanism, **fields}), encoding="utf-8")
+        block = equivalent_block(structure)
+        off = max((block[side].lambda_lin / block[side].lambda_ - 1 for side in Direction), key=abs)
+        unfit = abs(off) > 0.15
+        assert ("disregard kappa1" in run("equiv", file).stdout) == unfit
+        assert unfit <= (run_json("error", file)["grades"]["kappa1"] == "disregard")
+        top = 0.7 * max(block[side].lambda_ for side in Direction)
+        data = run_json("respond", file, "--pulse", f"sine:{2 * top:.4g}g:0.5s", "--model", "nonlinear,linear1")
+        assert data["agreement"]["linear1"]["uplift_error"] == pytest.approx(off, rel=1e-12)
+        assert ("Disregard linear1: its uplift acceleration" in data["verdict"]) == unfit
+        alone = run("respond", file, "--pulse", f"sine:{2 * top:.4g}g:0.5s", "--model", "linear1").stdout
+        assert ("Disregard linear1: its uplift acceleration" in " ".join(alone.split())) == unfit
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [(0.05, "agrees"), (0.05 + 1e-9, "first_estimate"), (-0.15, "first_estimate"), (0.15 + 1e-9, "disregard"),
+     (float("nan"), "disregard"), (float("inf"), "disregard"), (0.0, "agrees")],
+)  # fmt: skip
+def test_grades_on_both_sides_of_their_bounds(error, expected):
+    assert grade(error).key == expected
+
+
+@pytest.mark.parametrize(
+    ("ratio", "prefer", "words"),
+    [(0.98664, "either", "effectively slender"), (0.9865, "kappa2", "by the uplift prefer kappa2"),
+     (0.8501, "kappa2", "by the uplift prefer kappa2"), (0.8499, "kappa2", "disregard kappa1"),
+     (1.1501, "kappa2", "disregard kappa1; with kappa1 the uplift acceleration is 15 % too high")],
+)  # fmt: skip
+def test_advice_on_both_sides_of_its_bounds(ratio, prefer, words):
+    block = replace(equivalent_block(Block(width=0.7, height=2.8)).positive, lambda_lin=0.25 * ratio)
+    advice = preferred_kappa(block)
+    assert advice.prefer == prefer and words in advice.why and f"lambda_lin/lambda = {ratio:.4g}" in advice.why
 
 
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])

@@ -6,6 +6,7 @@ the one before, the first of them between two zeros of cos.
 """
 
 import json
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -299,12 +300,29 @@ def test_D0_is_the_energy_of_the_free_motion(point):
     # what rounding may do: every term, and the error of a large exponent
     terms = (omega / (omega**2 + 1)) ** 2 * (omega**2 + 2 * a**2 + 1 + 2 * a * (a + omega) * (1 + end) * exp(end))
     assert approx(wanted.D0, rel=1e-12, abs=1e-15 * terms) == got.D0
-    assert got.overturns == wanted.overturns_after_it
+    assert got.overturns == (wanted.overturns_after_it if got.valid else None)
     if wanted.overturns_after_it:
-        assert got.max_ratio is None
-    else:
-        root = sqrt(wanted.left)
-        assert got.max_ratio == approx(1 - root, rel=1e-12, abs=1e-15 * (1 + eta**2 * terms / root))
+        assert got.max_ratio is None and got.printed_ratio is None
+        return
+    root = sqrt(wanted.left)
+    ratio = approx(1 - root, rel=1e-12, abs=1e-15 * (1 + eta**2 * terms / root))
+    assert got.max_ratio == (ratio if got.valid else None)
+    assert got.printed_ratio == (ratio if root <= 1 else None)  # a rotation below zero is none
+
+
+@pytest.mark.parametrize("point", [*CLOSED, (8, 3, 0.9), (1.3, 8, 0.9), (0.7, 3, 0.9)])
+def test_out_of_its_domain_the_closed_form_says_nothing_but_why(point):
+    got = closed_form(*point)
+    assert (got.reason is None) == got.valid
+    assert got.printed_ratio is None or 0 <= got.printed_ratio <= 1
+    if got.valid:
+        assert got.max_ratio == got.printed_ratio
+        return
+    assert got.max_ratio is None and got.overturns in (None, False)
+    assert (got.overturns is False) == (point[0] <= 1)
+    for name, words in (("uplift", "a > 1"), ("first_impact_after_pulse", "first impact comes after the pulse"),
+                        ("no_overturning_without_impact", "before its first impact")):  # fmt: skip
+        assert (words in got.reason) == (got.conditions[name] is False)
 
 
 def test_conditions_are_in_the_air_and_coming_back_at_the_end_of_the_pulse():
@@ -369,7 +387,7 @@ def test_closed_form_of_a_very_slow_pulse_keeps_to_its_formulas(point):
     assert_conditions(got, end)
     assert not got.valid
     assert got.D0 is None  # beyond 1e308
-    assert got.overturns == end.overturns_after_it
+    assert got.overturns is None
 
 
 # The exact answer
@@ -515,8 +533,9 @@ def test_the_command_prints_both_answers_as_one_line_of_json():
     assert set(got["closed_form"]) >= {"D0", "max_ratio", "overturns", "valid", "conditions"}
     assert set(got["exact"]) >= EXACT_KEYS
     closed, exact = closed_form(4, 6, 0.9), exact_pulse(4, 6, 0.9)
-    for name in ("D0", "max_ratio", "overturns", "valid", "conditions"):
+    for name in ("D0", "max_ratio", "overturns", "valid", "conditions", "printed_ratio", "reason"):
         assert got["closed_form"][name] == getattr(closed, name)
+    assert got["closed_form"]["off_first_rebound"] == closed.max_ratio - exact.first_rebound
     for name in EXACT_KEYS:
         assert got["exact"][name] == getattr(exact, name)
 
@@ -531,3 +550,30 @@ def test_what_has_no_value_is_null_in_json(a, omega):
     assert got["closed_form"]["valid"] is False
     assert got["exact"]["first_impact"] is None
     assert got["exact"]["first_rebound"] is None
+
+
+def test_how_far_off_the_closed_form_is_out_of_its_domain_is_said():
+    got = run("--a", 1.3, "--omega", 8)
+    closed, peak = got["closed_form"], got["exact"]["max_ratio"]
+    assert closed["max_ratio"] is None and closed["overturns"] is None and "after the pulse" in closed["reason"]
+    assert closed["off_peak_ratio"] == approx(closed["printed_ratio"] - peak)
+    said = words("--a", 1.3, "--omega", 8)
+    value, high = re.search(r"Eq. 41 says ([\d.]+), (\d+) % too high", said).groups()
+    assert float(value) == approx(closed["printed_ratio"], rel=1e-3)
+    assert float(high) == approx(100 * closed["off_peak_ratio"] / peak, abs=0.5)
+
+
+def test_a_block_that_overturns_without_impact_has_no_closed_form():
+    got = run("--a", 8, "--omega", 3)
+    assert got["exact"]["overturns"] and got["exact"]["impacts_before_overturning"] == 0
+    closed = got["closed_form"]
+    assert (closed["max_ratio"], closed["overturns"], closed["printed_ratio"], closed["off_peak_ratio"]) == (None,) * 4
+    assert "does not overturn before its first impact" in closed["reason"]
+    said = words("--a", 8, "--omega", 3)
+    assert "Do not use the closed form" in said and "-2.85" not in said
+
+
+def words(*arguments):
+    result = CliRunner().invoke(main, ["pulse", *map(str, arguments)])
+    assert result.exit_code == 0, result.output
+    return " ".join(result.stdout.split())

@@ -163,7 +163,7 @@ class TestEvery:
             assert errors == [0, 0, 0]
         else:
             assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(2, abs=0.1)
-        assert (motion.format, motion.name, motion.unit) == ("pulse", str(pulse), "m/s2")
+        assert (motion.format, motion.name, motion.unit) == ("pulse", str(pulse), "g")
 
     @each
     def test_the_usual_samples_are_fine_enough(self, pulse):

@@ -101,7 +101,9 @@ def test_each_run_is_what_respond_gives(whole):
 def test_the_view_says_in_words_what_the_numbers_stand_for(whole):
     _, prepared, place = whole
     connection = sqlite3.connect(place)
-    rows = connection.execute("SELECT structure, sample, record, level, polarity, pga, outcome FROM runs").fetchall()
+    rows = connection.execute(
+        "SELECT structure, sample, record, level, polarity, pga, uplift_time, fell_to, outcome FROM runs"
+    ).fetchall()
     connection.close()
     plan = prepared.plan
     for k in range(0, plan.total, 11):
@@ -111,7 +113,9 @@ def test_the_view_says_in_words_what_the_numbers_stand_for(whole):
             trial.structure, trial.number, plan.records[record].name, plan.levels[level], plan.polarities[polarity],
         )  # fmt: skip
         assert rows[k][5] * STANDARD_GRAVITY / (trial.gravity * trial.lambda_) == pytest.approx(plan.levels[level])
-    assert {row[-1] for row in rows} == {"stands", "overturns"}
+    for *_, uplift_time, fell_to, outcome in rows:
+        assert outcome == ("overturns" if fell_to else "does not uplift" if uplift_time is None else "rocks")
+    assert {row[-1] for row in rows} == {"does not uplift", "rocks", "overturns"}
 
 
 class TestSameResults:

@@ -14,6 +14,7 @@ from rocking_cli.cli import structures, terminal
 from rocking_cli.cli.pulse import YES_NO, closed_json, how_far_off, impacts, off_exact
 from rocking_cli.cli.responses import pulse_json, restitution_json, restitution_used
 from rocking_cli.cli.work import say_if_compiling
+from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
 from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.dynamics.exact import ExactResponse, exact_response
 from rocking_cli.dynamics.history import History
@@ -113,6 +114,9 @@ def run(file: str | None, shape: str, ag: str, period: float, polarity: str, as_
         terminal.result()
         _print_answers(f"Polarity {sign}: {'as it is' if sign > 0 else 'reversed'}", found)
         terminal.result(_verdict(found))
+    unfit = uplift_error(equivalence)
+    if grade(unfit) is Grade.DISREGARD:
+        terminal.result(f"Disregard linear1: its uplift acceleration is {uplift_in_words(unfit)}.")
     terminal.result()
     if not closed:
         terminal.result(_why_no_closed_form(pulse))
@@ -253,7 +257,7 @@ def _print_answers(title: str, answers: Mapping[str, Answer]) -> None:
 
     rows = [
         ["pulse", *("exact" if each.exact else "sampled" for each in found), ""],
-        ["overturns", *(impacts(each.impacts_before_overturning) or "no" for each in found), ""],
+        ["outcome", *(_outcome(each) for each in found), ""],
         ["peak / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
         ["  over nonlinear", *(number(each.over_nonlinear, 5) for each in found), ""],
         ["peak, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
@@ -265,6 +269,11 @@ def _print_answers(title: str, answers: Mapping[str, Answer]) -> None:
         ["overturning time", *(number(each.overturning_time, 5) for each in found), "s"],
     ]
     terminal.table(title, ["", *answers, "unit"], rows, numbers=range(1, len(found) + 1))
+
+
+def _outcome(answer: Answer) -> str:
+    said = names.outcome(uplifts=answer.uplift_time is not None, overturned=answer.overturned)
+    return f"{said}\n{impacts(answer.impacts_before_overturning)}" if answer.overturned else said
 
 
 def _verdict(answers: Mapping[str, Answer]) -> str:

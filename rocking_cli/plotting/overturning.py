@@ -146,6 +146,9 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
         axes.plot(found.periods, least, label=name, markevery=(k * every // 4, every), **style.distinct(k))
     axes.set_xscale("log")  # a curve is steep where pulses are short
     axes.set_yscale("log")
+    if np.isnan(found.least).all():
+        axes.set_ylim(found.top / 10, found.top)  # there is no curve to choose them by
+        style.note(axes, "none overturns")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

@@ -214,6 +214,7 @@ def _trusted(shaking: Shaking) -> str:
     runs = shaking.histories
     best = runs["nonlinear"]
     itself = "The nonlinear model is the structure itself, and its numbers are quoted here."
+    called = {name: f"the {model}" for name, model in MODELS.items()}
     grades = {each.grade for each in agreements(runs).values()}
     if disagree(runs):
         first = "None of them alone: the models disagree on whether it overturns."
@@ -224,7 +225,7 @@ def _trusted(shaking: Shaking) -> str:
         first = f"Any: {lifted}."
     else:
         first = "The nonlinear one."
-    said = [first, itself, *(text[0].upper() + text[1:] for text in bearing(runs, MODELS))]
+    said = [first, itself, *(text[0].upper() + text[1:] for text in bearing(runs, called))]
     if disagree(runs):
         said.append("So near to overturning small changes of the motion decide.")
     return " ".join(said)
