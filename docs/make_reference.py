@@ -71,6 +71,7 @@ def mechanism(name: str, cls: Any, file: str) -> str:
     return (
         drawing
         + f"**Source:** {plain(cls.source)}.\n\n**Verified against:** {plain(cls.verified or 'nothing yet')}.\n\n"
+        + (f"**Caution:** {plain(cls.caution)}\n\n" if cls.caution else "")
         + f"## Fields\n\n{table_of_fields(cls)}\n\n"
         + f"## Example\n\n`examples/{file}`:\n\n```{{literalinclude}} ../../examples/{file}\n:language: yaml\n```\n\n"
         + f"Its equivalent block:\n\n    {shown[f'equiv_{name}']}\n\n"

@@ -204,7 +204,9 @@ VALLEY = AsymmetricFrame(
 )
 
 
-@pytest.mark.parametrize("structure", [VALLEY, TALL, wall_of(0.1), wall_of(0.5), arch_of(1.5, 150.0), arch_of(3.0, 100.0)])
+@pytest.mark.parametrize(
+    "structure", [VALLEY, TALL, wall_of(0.1), wall_of(0.5), arch_of(1.5, 150.0), arch_of(3.0, 100.0)]
+)
 @pytest.mark.parametrize("asked", [(0.5, 2.0), (0.5, 1.01), (0.05, 1.1), (0.95, 8.0)])
 def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
     file = tmp_path / "s.yaml"
@@ -223,7 +225,7 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
         found[kappa] = names.index(grade)
         assert data["grades"][kappa] == grade
         sentence = SENTENCES[grade].format(kappa[-1])
-        numbers = said[said.index(sentence) + len(sentence):]
+        numbers = said[said.index(sentence) + len(sentence) :]
         if kappa == "kappa1":
             way = "low" if uplift < 0 else "high"
             shown = float(re.match(rf"uplift ([\d.]+) % too {way}", numbers)[1])
@@ -241,7 +243,9 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
         better.pop() if found["kappa1"] == found["kappa2"] else min(found, key=found.__getitem__)
     )  # fmt: skip
     assert data["prefer"] == expected
-    last = {None: "Rely on neither there", "either": "Either kappa will do there"}.get(expected, f"Prefer {expected} there")
+    last = {None: "Rely on neither there", "either": "Either kappa will do there"}.get(
+        expected, f"Prefer {expected} there"
+    )
     assert last in said and said.count("Prefer") == (expected in ("kappa1", "kappa2"))
 
 

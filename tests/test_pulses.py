@@ -23,6 +23,7 @@ from rocking_cli.excitation.pulses.shapes import (
     Ricker,
     Sine,
 )
+from tests.test_cli import run_json
 
 A, T = 3.0, 0.8
 ALL = [shape(A, T) for shape in (Sine, Cosine, HalfSine, Rectangular, Ricker, AntisymmetricRicker)] + [
@@ -328,3 +329,37 @@ class TestPlugins:
         install(monkeypatch, ("triangle", f"{__name__}:Triangle"), ("triangle", f"{__name__}:Nameless"))
         with pytest.raises(MechanismError, match="claimed by two packages"):
             parse_pulse("triangle:1g:1s")
+
+
+class TestSpecification:
+    """What is echoed makes the same pulse again, to the last bit."""
+
+    @pytest.mark.parametrize("text", [
+        "sine:2.7265m/s2:1.536s", "cosine:5.168m/s2:0.839s", "sine:0.6g:0.8s", "ricker:0.123456789g:1.23456789012s",
+        "half_sine:590gal:333ms", "rectangular:1e-3g:7Hz", "mavroeidis:0.3g:1.1s:37.123456789deg:2.3456789",
+        "sine:1e-7g:1e3s", "sine:9.80665m/s2:1s",
+    ])  # fmt: skip
+    def test_round_trip(self, text):
+        pulse = parse_pulse(text)
+        assert parse_pulse(pulse.specification) == pulse
+
+    def test_round_trip_of_any_number(self):
+        rng = np.random.default_rng(5)
+        for amplitude, period, phase in 10 ** rng.uniform(-6, 3, (500, 3)):
+            pulse = MavroeidisPapageorgiou(float(amplitude), float(period), float(-phase), 1.5 + float(phase) % 1)
+            assert parse_pulse(pulse.specification) == pulse
+
+    @pytest.mark.parametrize("text", ["sine:0.6g:0.8s", "sine:2.7265m/s2:1.536s", "mavroeidis:0.6g:0.8s:90deg:2"])
+    def test_it_is_what_was_typed(self, text):
+        assert parse_pulse(text).specification == text
+
+    def test_the_commands_echo_it_and_give_amplitudes_in_g(self):
+        given = "sine:2.7265m/s2:1.536s"
+        respond = run_json("respond", "--pulse", given)["record"]
+        assert respond["pulse"]["specification"] == given and respond["unit"] == "g"
+        pulse = run_json("pulse", "--ag", "2.7265m/s2", "--period", "1.536")["pulse"]
+        for key in ("shape", "specification", "amplitude", "period", "duration"):
+            assert pulse[key] == respond["pulse"][key]
+        assert pulse["amplitude"] == pytest.approx(2.7265 / 9.80665)
+        again = run_json("respond", "--pulse", respond["pulse"]["specification"])
+        assert again == run_json("respond", "--pulse", given)

@@ -130,7 +130,7 @@ class TestContent:
         ]
         said = motion["answers"]["Which model to trust?"]
         assert said.startswith("The nonlinear one.")
-        assert "Disregard the equivalent block with κ₁: its uplift acceleration is 33 % too low; here it rocks to" in said
+        assert "Disregard the equivalent block with κ₁: its uplift acceleration is 33 % too low; here it rocks" in said
 
     def test_the_headline_counts_the_motions_that_move_it(self):
         pulses = ("sine:0.1g:1s", "sine:0.3g:0.5s", "sine:0.35g:0.5s")

@@ -23,7 +23,9 @@ from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.mechanism import DirectionalRestitution
+from rocking_cli.core.restitution import why_none
 from tests.reference_mechanics import cross, link_rates, polygon_moments, sector_moments
+from tests.test_cli import run, run_json
 
 BOTH = list(Direction)
 POSITIVE, NEGATIVE = Direction.POSITIVE, Direction.NEGATIVE
@@ -315,3 +317,43 @@ def test_a_restitution_outside_0_to_1_is_refused(eta):
         Block(width=0.7, height=2.8, restitution=eta)
     with pytest.raises(ValidationError, match="positive_to_negative"):
         DirectionalRestitution(positive_to_negative=eta, negative_to_positive=0.9)
+
+
+# What is said of it
+
+
+def test_the_reason_for_no_restitution_is_the_sign_of_the_product():
+    for structure in (Block(width=3.0, height=1.0), Block(width=2.0, height=2.0**0.5)):
+        t = [structure.motion(np.zeros(1), side)[0] for side in (Direction.POSITIVE, Direction.NEGATIVE)]
+        (body,) = structure.bodies()
+        one, other = (each.carry(body.centroid)[1][0] for each in t)
+        product = body.mass * (one.conjugate() * other).real + body.inertia * t[0].dpsi[0] * t[1].dpsi[0]
+        eta = structure.eta(Direction.POSITIVE)
+        assert (product >= -1e-12) == (eta <= 1e-12)
+    assert "<t+, t->, is positive" in why_none(-0.1) and "is zero" in why_none(0.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("", "Restitution eta = 0.9118, from kinematics, not measured."),
+        ("restitution: 0.85\n", "Restitution eta = 0.85, as given."),
+        (
+            "restitution: {positive_to_negative: 0.8, negative_to_positive: 0.9}\n",
+            "Restitution eta = 0.8 and 0.9 (ending + and -), as given.",
+        ),
+    ],
+)
+def test_a_history_says_which_restitution_it_used(given, said, tmp_path):
+    file, pulse = tmp_path / "b.yaml", ("--pulse", "sine:0.4g:0.5s")
+    file.write_text(f"mechanism: block\nwidth: 0.7\nheight: 2.8\n{given}", encoding="utf-8")
+    assert said in run("respond", file, *pulse).stdout.splitlines()
+    assert said in run("animate", file, *pulse, "--out", tmp_path / "a.html").stdout.splitlines()
+    assert said in run("pulse", file, "--ag", "0.4g", "--period", "0.5").stdout.splitlines()
+    run("report", file, *pulse, "-o", tmp_path / "r.html")
+    assert said.replace("eta", "η") in (tmp_path / "r.html").read_text(encoding="utf-8")
+    for data in (run_json("respond", file, *pulse), run_json("animate", file, *pulse, "--out", tmp_path / "a.html")):
+        assert data["restitution"]["source"] == ("given" if given else "kinematics")
+        assert data["restitution"]["positive_to_negative"] == run_json("equiv", file)["directions"]["positive"]["eta"]
+    for text in (run("spectrum", file, *pulse).stdout, run("overturning", file, "--points", 4).stdout):
+        assert ("(from kinematics, not measured)" in text) == (not given)

@@ -429,7 +429,7 @@ class TestBadParts:
         (tmp_path / "stocky.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
         text = STUDY.replace("structures:", "structures:\n  - stocky.yaml")
         result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text)), "--json"])
-        assert result.exit_code == 5 and "too stocky" in result.stderr
+        assert result.exit_code == 5 and "its kinematics give a restitution of -0.35" in result.stderr
         assert {each["structure"] for each in json.loads(result.stdout)["curves"]} == {"valley bridge", "uncertain"}
         given = STUDY.replace("structures:", "eta: [0.5]\nstructures:\n  - stocky.yaml").replace(
             "restitution", "height"

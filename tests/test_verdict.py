@@ -45,26 +45,65 @@ LOW = {"uplift_error": -0.33}
     ("histories", "words", "not_said"),
     [
         ({"nonlinear": peak(0.0), "linear2": peak(0.0)}, "linear2 agrees: it does not uplift either", "Disregard"),
-        ({"nonlinear": peak(0.0), "linear1": peak(0.3)}, "does not uplift. linear1 disagrees: it rocks to 0.3", " agrees"),
-        ({"nonlinear": peak(0.4), "linear1": peak(0.41)}, "rocks to 0.4 of its critical rotation. linear1 agrees", "Disr"),
-        ({"nonlinear": peak(0.4), "linear1": peak(0.45)}, "linear1 serves a first estimate: its peak is 12 % higher", "Disr"),
-        ({"nonlinear": peak(0.4), "linear1": peak(0.6)}, "Disregard linear1 here: its peak is 50 % higher, its motion 50 %", "close"),
-        ({"nonlinear": peak(0.4), "linear1": peak(0.4, **LOW)}, "Disregard linear1: its uplift acceleration is 33 % too low; here", "agrees"),
+        (
+            {"nonlinear": peak(0.0), "linear1": peak(0.3)},
+            "does not uplift. linear1 disagrees: it rocks to 0.3",
+            " agrees",
+        ),
+        (
+            {"nonlinear": peak(0.4), "linear1": peak(0.41)},
+            "rocks to 0.4 of its critical rotation. linear1 agrees",
+            "Disr",
+        ),
+        (
+            {"nonlinear": peak(0.4), "linear1": peak(0.45)},
+            "linear1 serves a first estimate: its peak is 12 % higher",
+            "Disr",
+        ),
+        (
+            {"nonlinear": peak(0.4), "linear1": peak(0.6)},
+            "Disregard linear1 here: its peak is 50 % higher, its motion 50 %",
+            "close",
+        ),
+        (
+            {"nonlinear": peak(0.4), "linear1": peak(0.4, **LOW)},
+            "Disregard linear1: its uplift acceleration is 33 % too low; here",
+            "agrees",
+        ),
         ({"linear2": peak(0.9)}, "rocks to 0.9 of its critical rotation. That is close", "linear2"),
         ({"linear1": peak(0.2, **LOW)}, "Disregard linear1: its uplift acceleration is 33 % too low.", "here"),
-        ({"linear1": peak(0.2), "linear2": fell(UP)}, "By linear2 it overturns clockwise. Trust none of them alone", "close"),
+        (
+            {"linear1": peak(0.2), "linear2": fell(UP)},
+            "By linear2 it overturns clockwise. Trust none of them alone",
+            "close",
+        ),
         ({"nonlinear": peak(1.75)}, "passes its critical rotation, to 1.75 of it, and is brought back", "rocks to"),
         ({"nonlinear": fell(UP)}, "The structure overturns clockwise.", "linear"),
-        ({"nonlinear": fell(UP), "linear1": fell(DOWN)}, "serves a first estimate: it overturns the other way", "agrees"),
+        (
+            {"nonlinear": fell(UP), "linear1": fell(DOWN)},
+            "serves a first estimate: it overturns the other way",
+            "agrees",
+        ),
         ({"nonlinear": fell(UP), "linear1": fell(UP, 2.4)}, "linear1 agrees: it overturns too, 0.4 s later", "Trust"),
-        ({"nonlinear": fell(UP), "linear1": fell(UP, 4.0)}, "linear1 serves a first estimate: it overturns too, 2 s later", " agrees"),
-        ({"nonlinear": peak(0.9), "linear2": fell(UP)}, "linear2 disagrees: it overturns clockwise. Trust none of them", "close"),
+        (
+            {"nonlinear": fell(UP), "linear1": fell(UP, 4.0)},
+            "linear1 serves a first estimate: it overturns too, 2 s later",
+            " agrees",
+        ),
+        (
+            {"nonlinear": peak(0.9), "linear2": fell(UP)},
+            "linear2 disagrees: it overturns clockwise. Trust none of them",
+            "close",
+        ),
         # What overturns by kappa1 alone, its uplift a third too low, is not near to overturning for that.
-        ({"nonlinear": peak(0.01), "linear1": fell(UP, **LOW), "linear2": peak(0.01)},
-         "Disregard linear1: its uplift acceleration is 33 % too low; here it overturns clockwise. linear2 agrees", "Trust"),
+        (
+            {"nonlinear": peak(0.01), "linear1": fell(UP, **LOW), "linear2": peak(0.01)},
+            "Disregard linear1: its uplift acceleration is 33 % too low; here it overturns clockwise. linear2 agrees",
+            "Trust",
+        ),
         ({"nonlinear": replace(peak(0.4), outcome=Outcome.STILL_ROCKING)}, "nonlinear: still rocking", "overturns"),
     ],
-)  # fmt: skip
+)
 def test_the_verdict_says_what_happened(histories, words, not_said):
     said = verdict(histories)
     assert words in said
@@ -215,7 +254,9 @@ def check(text, motion, folder):
         if unfit:
             worst = 2
             percent, way = re.search(r"uplift acceleration is ([\d.]+) % too (low|high)", sentence).groups()
-            assert float(percent) == pytest.approx(100 * abs(uplift), rel=0.06) and way == ("low" if uplift < 0 else "high")
+            assert float(percent) == pytest.approx(100 * abs(uplift), rel=0.06) and way == (
+                "low" if uplift < 0 else "high"
+            )
         else:
             assert "uplift acceleration" not in sentence
             differ.add(fates[0] == "falls")
@@ -261,11 +302,12 @@ def test_an_outcome_has_one_name(facts, word):
 def test_every_command_calls_an_outcome_the_same(pulse, word, tmp_path):
     block = EXAMPLES / "block.yaml"
     _, amplitude, period = pulse.split(":")
+    smaller = run("spectrum", block, "--pulse", pulse, "--sizes", "5:6:2").stdout
     texts = {
         "respond": run("respond", block, "--pulse", pulse).stdout,
         "animate": run("animate", block, "--pulse", pulse, "--out", tmp_path / "a.html").stdout,
         "report": run("report", block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
-        "spectrum": re.findall(r" s: (it .*?\w)\.", run("spectrum", block, "--pulse", pulse, "--sizes", "5:6:2").stdout)[0],
+        "spectrum": re.findall(r" s: (it .*?\w)\.", smaller)[0],
         "pulse": run("pulse", block, "--ag", amplitude, "--period", period[:-1]).stdout,
     }
     for command, text in texts.items():

@@ -19,6 +19,7 @@ from rocking_cli.studies.shaken import Reals, Shaken
 from rocking_cli.table_csv import write_table_csv
 
 ROWS = 9  # of a table: the curves themselves are in --out and --json
+FROM_KINEMATICS = " (from kinematics, not measured)"
 FALLS = Region.AFTER_IMPACT, Region.WITHOUT_IMPACT
 
 
@@ -127,7 +128,8 @@ def _print_map(found: OverturningMap, *, dimensionless: bool) -> None:
     shown = _some(across.size)
     rows = [[f"{across[k]:.3g}", *(_cell(curve[k]) for curve in (least, direct, safe))] for k in shown]
     heads = [what, "overturns\nfrom", "without\nimpact from", "yet not\nat"]
-    terminal.result(f"{_heading(found)}: {amplitude}")
+    source = "" if found.structure.eta_given else FROM_KINEMATICS
+    terminal.result(f"{_heading(found)}{source}: {amplitude}")
     terminal.table("", heads, rows, numbers=range(1, 4))
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     terminal.result(f"Of the map: {shares}.")

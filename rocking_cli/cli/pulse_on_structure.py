@@ -14,8 +14,8 @@ from rocking_cli.cli import structures, terminal
 from rocking_cli.cli.pulse import YES_NO, closed_json, how_far_off, impacts, off_exact
 from rocking_cli.cli.responses import pulse_json, restitution_json, restitution_used
 from rocking_cli.cli.work import say_if_compiling
-from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
 from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
 from rocking_cli.dynamics.exact import ExactResponse, exact_response
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import build_models

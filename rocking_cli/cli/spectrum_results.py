@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking_cli.cli import terminal
 from rocking_cli.cli.motions import Scaled
-from rocking_cli.cli.overturning_results import numbers
+from rocking_cli.cli.overturning_results import FROM_KINEMATICS, numbers
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.files import write_whole
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
@@ -174,7 +174,7 @@ def _print_table(results: Results, each: Spectrum) -> None:
     side = "" if structure.symmetric else f" ({structure.direction.label})"
     terminal.result(
         f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
-        f"{structure.eta:.4g}, under {results.shaking}"
+        f"{structure.eta:.4g}{'' if structure.eta_given else FROM_KINEMATICS}, under {results.shaking}"
     )
     if not results.one:
         terminal.result("Median and fractiles of the peak phi/phi_cr; overturning counts as larger than any.")

@@ -1,9 +1,9 @@
 """How far the equivalent block is to be trusted with either kappa: one rule and one vocabulary for every command.
 
-What is known decides how much is compared. Without an amplitude there is the uplift acceleration, which kappa2 keeps and
-kappa1 does not; at an amplitude, the free period and the overturning time too; under a ground motion, the motions. Each
-comparison is a relative error, and the largest gives the grade. A kappa whose uplift alone is out by more than `LARGE`
-is to be disregarded whatever else agrees: where it does, that is chance.
+What is known decides how much is compared. Without an amplitude there is the uplift acceleration, which kappa2 keeps
+and kappa1 does not; at an amplitude, the free period and the overturning time too; under a ground motion, the motions.
+Each comparison is a relative error, and the largest gives the grade. A kappa whose uplift alone is out by more than
+`LARGE` is to be disregarded whatever else agrees: where it does, that is chance.
 """
 
 from __future__ import annotations

@@ -211,7 +211,7 @@ def _later(delay: float) -> str:
 
 def _without_the_structure(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:
     """Of equivalent blocks alone: what is unfit, and what the others do."""
-    first, *others = histories
+    _, *others = histories
     said = [f"By {called[name]} it {_ends(histories[name])}." for name in others]
     said += [
         f"Disregard {called[name]}: its uplift acceleration is {uplift_in_words(run.uplift_error)}."

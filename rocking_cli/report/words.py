@@ -80,9 +80,8 @@ def in_a_sentence(content: Content) -> str:
     moved = [each for each in content.shakings if _worst_ratio(each) > 0]
     if not moved:
         under = _listed([each.given.motion.name for each in content.shakings])
-        return (
-            f"{name} {names.NO_UPLIFT}: {under} {'are' if len(content.shakings) > 1 else 'is'} too weak to lift it.{close}"
-        )
+        are = "are" if len(content.shakings) > 1 else "is"
+        return f"{name} {names.NO_UPLIFT}: {under} {are} too weak to lift it.{close}"
     worst = max(moved, key=_worst_ratio)
     which = worst.given.motion.name
     share = f"{_share(_worst_ratio(worst))} of the rotation from which it would fall"
@@ -122,9 +121,7 @@ def doubts(content: Content) -> list[str]:
 
 def _verdict(content: Content, shaking: Shaking) -> Verdict:
     best = shaking.histories["nonlinear"]
-    headline = (
-        names.OVERTURNS if _overturns(shaking) else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
-    )
+    headline = names.OVERTURNS if _overturns(shaking) else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
     return Verdict(
         shaking.given.motion.name,
         f"{headline}{' (close)' if _close(shaking) else ''}",

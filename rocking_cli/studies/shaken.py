@@ -36,12 +36,15 @@ class Shaken:
         Its equivalent blocks.
     direction : Direction
         The direction that the weakest pulse lifts: its p, lambda and eta measure the pulses.
+    eta_given : bool
+        Whether the restitution was given; otherwise it is that of the kinematics.
     """
 
     name: str
     model: Model
     equivalence: Equivalence
     direction: Direction
+    eta_given: bool = True
 
     @property
     def block(self) -> EquivalentBlock:
@@ -143,7 +146,8 @@ def shaken(
     except MechanismError as error:
         raise MechanismError(f"{mechanism.name}: {error}") from error
     name = mechanism.name or mechanism.mechanism
-    return Shaken(name, built, equivalence, weakest(equivalence, shape, polarities))
+    given = mechanism.restitution is not None
+    return Shaken(name, built, equivalence, weakest(equivalence, shape, polarities), given)
 
 
 def uplift(block: EquivalentBlock, model: ModelName) -> float:

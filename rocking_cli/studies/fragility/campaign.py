@@ -11,6 +11,7 @@ from typing import Any
 
 from rocking_cli import __version__
 from rocking_cli.core import equivalent_block
+from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.registry import Registry
 from rocking_cli.studies.fragility.engines import Engine
@@ -169,8 +170,9 @@ def _trial(study: Study, sample: Sample) -> Trial:
     start = Trial(structure.name or structure.mechanism, sample.number, sample.drawn)
     try:
         equivalence = equivalent_block(sample.mechanism)
-        if study.definition.eta is None and min(equivalence.positive.eta, equivalence.negative.eta) <= 0:
-            raise InputError("its kinematics give no restitution: it is too stocky to start rocking the other way")
+        least = min(equivalence.positive.eta, equivalence.negative.eta)
+        if study.definition.eta is None and least <= 0:
+            raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
     except RockingError as error:
         return replace(start, reason=str(error))
     p, lambda_ = weaker(equivalence, study.definition.model)

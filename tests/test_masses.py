@@ -1,0 +1,103 @@
+"""Kilograms that are none: of a structure without masses, moments and inertias are per unit mass, and it is said."""
+
+from __future__ import annotations
+
+import csv
+import json
+from io import StringIO
+
+import pytest
+
+from mechanisms.wall import Wall
+from rocking_cli import Registry, load_structure
+from rocking_cli.core import Direction
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+HEAVY = "mechanism: asymmetric_frame\ncolumn_width: 1\nleft_height: 6\nright_height: 7.5\nspacing: 8\nbeam_depth: 1\n"
+MASSES = {
+    "density": "density: 2400\ndepth: 1\n",
+    "masses": "left_mass: 14400\nbeam_mass: 0\nright_mass: 18000\n",  # a beam of 0 kg is given, too
+}
+WITHOUT = ["block", "wall", "arch", "cone", "point_mass", "rigid_body", "symmetric_frame"]
+
+
+def flat(text):
+    return " ".join(text.split())
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_without_masses_it_is_per_unit_mass(name, tmp_path):
+    file = EXAMPLES / f"{name}.yaml"
+    structure = load_structure(file)
+    assert not structure.has_mass
+    assert sum(body.mass for body in structure.bodies()) == pytest.approx(1)
+    data, said = run_json("equiv", file), flat(run("equiv", file).stdout)
+    assert data["per_unit_mass"] is True
+    assert "kg" not in said and "linearised inertia, per unit mass" in said
+    (row, _) = csv.DictReader(StringIO(run("equiv", file, "--csv").stdout))
+    assert row["per unit mass"] == "yes" and float(row["I_eq [kg m2]"]) == data["directions"]["positive"]["I_eq"]
+    run("report", file, "-o", tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "kg m" not in page and page.count("Per unit mass of the whole structure") == 3
+
+
+@pytest.mark.parametrize("masses", MASSES)
+def test_with_masses_it_is_in_kilograms(masses, tmp_path):
+    file = tmp_path / "frame.yaml"
+    file.write_text(HEAVY + MASSES[masses], encoding="utf-8")
+    assert load_structure(file).has_mass
+    data, said = run_json("equiv", file), flat(run("equiv", file).stdout)
+    assert data["per_unit_mass"] is False and "kg m2" in said and "per unit mass" not in said
+    run("report", file, "-o", tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "kg m²" in page and "Per unit mass" not in page
+
+
+def test_a_mechanism_may_say_so_itself():
+    class Weighed(Wall):
+        @property
+        def has_mass(self):
+            return True
+
+    assert Weighed(thickness=0.3, height=3.0).has_mass and not Wall(thickness=0.3, height=3.0).has_mass
+
+
+# --- what a mechanism warns of
+
+
+def test_the_caution_of_the_wall_is_shown_where_it_is_looked_up_and_used(tmp_path):
+    wall, file = Registry()["wall"], EXAMPLES / "wall.yaml"
+    assert "Not on the safe side without a load on top" in wall.caution
+    assert json.loads(run("mechanisms", "wall", "--json").stdout)["caution"] == wall.caution
+    assert wall.caution in flat(run("mechanisms", "wall").stdout)
+    assert wall.caution in flat(run("equiv", file).stdout) and run_json("equiv", file)["caution"] == wall.caution
+    out = tmp_path / "r.html"
+    run("report", file, "-o", out)
+    assert wall.caution in flat(out.read_text(encoding="utf-8"))
+    assert wall.caution in json.loads(run("report", file, "--json").stdout)["doubts"]
+
+
+def test_without_one_nothing_is_shown():
+    assert json.loads(run("mechanisms", "block", "--json").stdout)["caution"] is None
+    assert "caution" not in run("mechanisms", "block").stdout.lower()
+    assert "caution" not in run("equiv", EXAMPLES / "block.yaml").stdout.lower()
+
+
+def test_the_caution_is_right():
+    """A hinge higher up the same wall, by statics: both blocks about their pivots under their own weight alone."""
+    thickness, height = 0.3, 3.0
+
+    def multiplier(share):
+        # The lower block turns by 1 about the foot, the upper one by -share/(1 - share) so that its top stays in line.
+        lower, upper = share * height, (1 - share) * height
+        swing = lower * lower / 2 + upper * lower / 2  # mass per metre times x' of the centroids
+        back = share / (1 - share)
+        rise = lower * thickness / 2 + upper * (thickness + back * thickness / 2)
+        return rise / swing
+
+    wall = Wall(thickness=thickness, height=height)
+
+    assert multiplier(0.5) == pytest.approx(wall.uplift(Direction.POSITIVE), rel=1e-12)
+    assert all(multiplier(share) == pytest.approx(2 * thickness / (share * height)) for share in (0.3, 0.6, 0.9))
+    assert multiplier(0.8) < multiplier(0.6) < multiplier(0.5)
