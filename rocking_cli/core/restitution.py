@@ -14,7 +14,7 @@ def kinematic_restitution(bodies: Sequence[Body], before: Sequence[RigidMotion],
 
     The velocity before the impact is projected on the mechanism that follows, in the mass inner product:
     eta = -<t_before, t_after> / <t_after, t_after> with t the velocity fields at rest. For a block this is
-    Housner's 1 - (3/2) sin^2(alpha). It is an idealisation: an upper value for stocky shapes, and it can be
+    Housner's 1 - (3/2) sin^2(alpha). It is an idealisation, measured values lie on either side of it, and it can be
     zero or negative, which means that the new mechanism cannot start as assumed.
 
     Parameters
