@@ -181,7 +181,7 @@ def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
     """A sentence on how much of the response to a record is that to its pulse, by the best model."""
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     whole, alone = histories[model], to_pulse[model]
-    if whole.overturned or alone.overturned:
+    if whole.overturned or alone.overturned or (whole.peak_ratio and not alone.peak_ratio):
         return f"By the {model} model it {whole.words} under the record; under its pulse alone it {alone.words}."
     if not whole.peak_ratio:
         return f"By the {model} model it {whole.words} under the record."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf, isclose
+from math import isclose
 
 import numpy as np
 
@@ -41,10 +41,10 @@ class Agreement:
     peak_error : float or None
         Of its largest phi/phi_cr, relative; None unless both rock.
     peak_delay : float or None
-        How much later it has its peak, or overturns [s]; None unless both do the one or the other.
+        How much later it has its peak, or overturns [s]; None as `difference`, and unless both overturn.
     difference : float or None
-        The rms of the difference of phi/phi_cr over that of the nonlinear motion, until both are at rest; None unless
-        both rock.
+        The rms of the difference of phi/phi_cr over that of the nonlinear motion, until both are at rest or the samples
+        end; None unless both rock, and are seen in their samples.
     """
 
     grade: Grade
@@ -89,9 +89,11 @@ def _compare(run: History, best: History) -> Agreement:
     else:
         assert run.peak_ratio is not None
         peak = run.peak_ratio / best.peak_ratio - 1
-        delay, apart = _peak_time(run) - _peak_time(best), _difference(run, best)
-        late = Grade.ESTIMATE if abs(delay) * best.p > ANOTHER else Grade.AGREES
-        found = max(grade(peak), grade(apart, FOLLOWS, STRAYS), late)
+        found = grade(peak)
+        if run.ratio.any() and best.ratio.any():  # else one has come and gone between two samples
+            delay, apart = _peak_time(run) - _peak_time(best), _difference(run, best)
+            late = Grade.ESTIMATE if abs(delay) * best.p > ANOTHER else Grade.AGREES
+            found = max(found, grade(apart, FOLLOWS, STRAYS), late)
     if grade(run.uplift_error) is Grade.DISREGARD:
         found = Grade.DISREGARD
     return Agreement(found, run.uplift_error, same, peak, delay, apart)
@@ -109,9 +111,8 @@ def _peak_time(run: History) -> float:
 def _difference(run: History, best: History) -> float:
     shared = min(run.ratio.size, best.ratio.size)  # a longer one has gone on while the other is at rest
     beyond = float(np.sum(run.ratio[shared:] ** 2) + np.sum(best.ratio[shared:] ** 2))
-    apart = float(np.sum((run.ratio[:shared] - best.ratio[:shared]) ** 2)) + beyond
-    own = float(np.sum(best.ratio**2))
-    return float(np.sqrt(apart / own)) if own > 0 else inf  # too short a motion to be seen in the samples
+    apart = float(np.sum((run.ratio[:shared] - best.ratio[:shared]) ** 2))
+    return float(np.sqrt((apart + beyond) / np.sum(best.ratio**2)))
 
 
 def disagree(histories: Mapping[ModelName, History]) -> bool:
@@ -197,12 +198,14 @@ def _beside(found: Agreement, run: History, best: History) -> str:
     if best.overturned:
         way = " too" if run.fell_to is best.fell_to else " the other way"
         return f"it {names.OVERTURNS}{way}, {_later(found.peak_delay or 0.0)}"
-    if found.peak_error is None or found.difference is None or found.peak_delay is None:
+    if found.peak_error is None:
         return f"it {names.NO_UPLIFT} either"
-    size = f"{percent(abs(found.peak_error))} {'higher' if found.peak_error > 0 else 'lower'}"
+    size = percent(abs(found.peak_error))
+    size = "the same" if size == percent(0) else f"{size} {'higher' if found.peak_error > 0 else 'lower'}"
+    if found.difference is None or found.peak_delay is None:
+        return f"its peak is {size}"
     late = f" and {_later(found.peak_delay)}" if abs(found.peak_delay) * best.p > ANOTHER else ""
-    apart = f"its motion {percent(found.difference)} off (rms)" if found.difference < inf else "its motion another"
-    return f"its peak is {size}{late}, {apart}"
+    return f"its peak is {size}{late}, its motion {percent(found.difference)} off (rms)"
 
 
 def _later(delay: float) -> str:
