@@ -82,6 +82,14 @@ class MechanismError(RockingError):
     exit_code = 3
 
 
+class PluginError(MechanismError):
+    """An error of a plugin's own, raised from whatever its code raised; it says whose it is and where."""
+
+
+class PluginWarning(UserWarning):
+    """A plugin that cannot be used and is left out, while all others go on."""
+
+
 class SolverError(RockingError):
     """A solver that could not reach an answer it can stand behind."""
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from difflib import get_close_matches
 from importlib.metadata import EntryPoint, entry_points
 
-from rocking_cli.errors import MechanismError
+from rocking_cli.errors import MechanismError, PluginWarning
+from rocking_cli.plugin_errors import blame
 
 
 def find(group: str) -> dict[str, list[EntryPoint]]:
@@ -39,11 +41,21 @@ def only(kind: str, name: str, points: list[EntryPoint]) -> EntryPoint:
 
 def load(point: EntryPoint) -> object:
     """What an entry point names."""
-    try:
+    with blame(f"{origin(point)} cannot be loaded", point.value.partition(":")[0]):
         loaded: object = point.load()
-    except Exception as error:  # a plugin may fail in any way; the user needs to know whose it is
-        raise MechanismError(f"{origin(point)} cannot be loaded: {type(error).__name__}: {error}") from error
     return loaded
+
+
+_LEFT_OUT: set[str] = set()
+
+
+def leave_out(error: MechanismError) -> None:
+    """Warn, once in this process, that a plugin is left out while all others go on."""
+    if str(error) not in _LEFT_OUT:
+        _LEFT_OUT.add(str(error))
+        warning = PluginWarning(f"{error}; it is left out")
+        warning.__cause__ = error
+        warnings.warn(warning, stacklevel=2)
 
 
 def did_you_mean(word: str, known: list[str]) -> str | None:

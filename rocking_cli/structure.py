@@ -46,7 +46,7 @@ def parse_structure(text: str, file: str, default_name: str, registry: Registry 
     fields = {key: value for key, value in document.data.items() if key != "mechanism"}
     if cls is not None:
         try:
-            mechanism = cls.model_validate({"name": default_name, **fields})
+            mechanism = cls.from_fields({"name": default_name, **fields})
         except ValidationError as error:
             lister = f"`rocking mechanisms {cls.mechanism}` lists the fields"
             found = error.errors(include_url=False)

@@ -161,7 +161,7 @@ class TestPicture:
             def sketch(self):
                 raise KeyError("lost")
 
-        with pytest.raises(MechanismError, match="the mechanism bare failed to be drawn: KeyError: 'lost'"):
+        with pytest.raises(MechanismError, match="the mechanism bare failed in sketch: KeyError: 'lost'"):
             picture(Odd())
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import os
 import sys
+import warnings
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
@@ -12,12 +14,36 @@ import click
 
 from rocking_cli import __version__
 from rocking_cli.cli import terminal
-from rocking_cli.errors import RockingError
+from rocking_cli.errors import PluginWarning, RockingError
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "respond", "animate", "pulse", "overturning", "spectrum", "equivalent",
     "fragility", "results", "report", "figure", "mechanisms", "new",
 )  # fmt: skip
+
+
+class _Context(click.Context):
+    """The context of a command: while its function runs, only the results go to standard output."""
+
+    def invoke(self, callback: Any, /, *args: Any, **named: Any) -> Any:
+        """Run the function of a command."""
+        with terminal.results_only(), warnings.catch_warnings():
+            warnings.simplefilter("always", PluginWarning)
+            warnings.showwarning = _show(warnings.showwarning)
+            return super().invoke(callback, *args, **named)
+
+
+def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
+    """Show warnings about plugins as all others of this program."""
+
+    def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+        if not issubclass(category, PluginWarning):
+            otherwise(message, category, *where, **more)
+            return
+        terminal.warning(str(message))
+        terminal.plugin_traceback(message.__cause__ if isinstance(message, Warning) else None)
+
+    return show
 
 
 class LazyGroup(click.Group):
@@ -32,6 +58,7 @@ class LazyGroup(click.Group):
         if cmd_name not in COMMANDS:
             return None
         command: click.Command = import_module(f"rocking_cli.cli.{cmd_name}").command
+        command.context_class = _Context
         return command
 
     def resolve_command(
@@ -55,6 +82,7 @@ class LazyGroup(click.Group):
             return super().invoke(ctx)
         except RockingError as error:
             terminal.error(str(error))
+            terminal.plugin_traceback(error)
             ctx.exit(error.exit_code)
         except MemoryError:
             terminal.error("there is not enough memory for this on this machine")
@@ -89,4 +117,6 @@ def main() -> None:
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
     3 mechanism or plugin, 4 solver, 5 done except for records or runs that are reported.
+
+    ROCKING_DEBUG=1 in the environment shows the traceback of an error that a plugin itself makes.
     """

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from time import monotonic
-from typing import Any, Protocol
+from typing import Any, Protocol, TextIO
 
 import click
 
@@ -15,14 +17,32 @@ PATIENCE = 1.0  # s of work before it is shown
 NARROW = 76  # columns below which a table's explanations are left out: they would break into syllables
 
 
+_results: TextIO | None = None
+
+
+@contextmanager
+def results_only() -> Iterator[None]:
+    """Keep standard output to what this module prints: whatever else is printed goes to standard error.
+
+    Plugins print, on import or at work, and so may what they import, in any thread.
+    """
+    global _results
+    before, _results = _results, _results or sys.stdout
+    try:
+        with redirect_stdout(sys.stderr):
+            yield
+    finally:
+        _results = before
+
+
 def result(text: str = "") -> None:
     """A line of the result."""
-    click.echo(text)
+    click.echo(text, file=_results)
 
 
 def print_json(data: Mapping[str, Any]) -> None:
     """One JSON object on one line of standard output; NaN is a bug, not a value."""
-    click.echo(json.dumps(data, allow_nan=False))
+    click.echo(json.dumps(data, allow_nan=False), file=_results)
 
 
 def note(text: str) -> None:
@@ -40,11 +60,19 @@ def error(text: str) -> None:
     click.echo(click.style("error: ", fg="red", bold=True) + text, err=True)
 
 
+def plugin_traceback(error: BaseException | None) -> None:
+    """The traceback of what a plugin itself raised, for who develops it: if ROCKING_DEBUG is set to 1."""
+    from rocking_cli.plugin_errors import own_traceback
+
+    if os.environ.get("ROCKING_DEBUG") == "1" and (told := own_traceback(error)):
+        note(told)
+
+
 def width() -> int:
     """Columns of the terminal."""
     from rich.console import Console
 
-    return Console().width
+    return Console(file=_results).width
 
 
 class Advance(Protocol):
@@ -140,7 +168,7 @@ def table(
     from rich.table import Table
     from rich.text import Text
 
-    console = Console()
+    console = Console(file=_results)
     if explained and console.width < NARROW:
         columns, rows = columns[:-1], [row[:-1] for row in rows]
     drawn = Table(

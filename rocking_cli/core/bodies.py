@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -24,6 +25,11 @@ class Body:
         Rest position of its centroid, x + iy [m].
     outline : sequence of complex
         Its corners in that position [m], for pictures only; empty if its shape is not known.
+
+    Raises
+    ------
+    ValueError
+        If mass or inertia is negative, infinite or not a number, or the centroid is not finite.
     """
 
     name: str
@@ -31,6 +37,13 @@ class Body:
     inertia: float
     centroid: complex
     outline: Sequence[complex] = ()
+
+    def __post_init__(self) -> None:
+        for what, value, unit in (("mass", self.mass, "kg"), ("inertia", self.inertia, "kg m2")):
+            if not 0 <= value < inf:
+                raise ValueError(f"the {what} of body {self.name!r} is {value:g} {unit}: it must be finite, and at least 0")
+        if not abs(self.centroid) < inf:
+            raise ValueError(f"the centroid of body {self.name!r} is at {self.centroid:g} m: it must be finite")
 
 
 def box(name: str, mass: float, width: float, height: float, centroid: complex) -> Body:
@@ -50,7 +63,8 @@ def polygon(name: str, mass: float, vertices: Sequence[complex]) -> Body:
     area = twice_area.sum() / 2
     centroid = (twice_area * (z + w)).sum() / (6 * area)
     polar = (twice_area * (abs(z) ** 2 + abs(w) ** 2 + (z.conj() * w).real)).sum() / (12 * area)
-    return Body(name, mass, float(mass * (polar - abs(centroid) ** 2)), complex(origin + centroid), tuple(vertices))
+    inertia = max(float(mass * (polar - abs(centroid) ** 2)), 0.0)  # rounding must not take it below
+    return Body(name, mass, inertia, complex(origin + centroid), tuple(vertices))
 
 
 def annular_sector(name: str, density: float, inner: float, outer: float, start: float, end: float) -> Body:
@@ -76,4 +90,5 @@ def annular_sector(name: str, density: float, inner: float, outer: float, start:
     mass = density * (outer**2 - inner**2) * half
     reach = 2 / 3 * (outer**3 - inner**3) / (outer**2 - inner**2) * np.sinc(half / np.pi)
     centroid = complex(reach * np.exp(1j * (start + end) / 2))
-    return Body(name, mass, mass * ((outer**2 + inner**2) / 2 - float(reach) ** 2), centroid)
+    inertia = max(mass * ((outer**2 + inner**2) / 2 - float(reach) ** 2), 0.0)  # rounding must not take it below
+    return Body(name, mass, inertia, centroid)

@@ -15,6 +15,9 @@ from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.errors import MechanismError
 
 
+JUMP = 1e-5  # of the size of a coefficient: what its derivative may miss of its change from one rotation to the next
+
+
 @dataclass(frozen=True)
 class Coefficients:
     """Coefficients over an array of rotations, each an ndarray of shape (n,).
@@ -84,3 +87,45 @@ def coefficients(
         total.dB[:] += direction * m * ddz.real
         total.V[:] += m * (z.imag - body.centroid.imag)
     return total
+
+
+def check_continuous(mechanism: str, direction: Direction, at: Coefficients) -> None:
+    """Refuse a mechanism whose bodies jump from one place, or from one velocity, to another.
+
+    Parameters
+    ----------
+    mechanism : str
+        Its name.
+    direction : Direction
+        The direction of rocking.
+    at : Coefficients
+        Over increasing rotations, near enough to each other that slopes change evenly between them.
+
+    Raises
+    ------
+    MechanismError
+        If V, G, B or I changes between two rotations by what its derivative there does not explain.
+    """
+    moment = float(np.median(np.abs(at.G) + np.abs(at.B)))  # its size: m R, and V has the same unit
+    pairs = {"V": (at.V, at.G, moment), "G": (at.G, at.dG, moment), "B": (at.B, at.dB, moment)}
+    pairs["I"] = (at.I, 2 * at.J, float(np.median(at.I)))
+    found = {name: jump(at.phi, *pair) for name, pair in pairs.items()}
+    first = min((phi, name) for name, phi in found.items())
+    if first[0] < np.inf:
+        raise MechanismError(
+            f"the mechanism {mechanism} jumps at phi = {first[0]:.4g} rad in the {direction.label} direction: "
+            f"its {first[1]} changes there as its derivative does not. Its bodies must move without jumps"
+        )
+
+
+def jump(phi: Reals, value: Reals, slope: Reals, size: float) -> float:
+    """The first of the rotations `phi` [rad] after which a value does not follow its slope; infinity without any.
+
+    Where a value has no jump and its slope changes evenly over a step, its change is between those that the slopes at
+    both ends would make of it.
+    """
+    step = np.diff(phi)
+    missed = np.abs(np.diff(value) - step / 2 * (slope[:-1] + slope[1:])) - step * np.abs(np.diff(slope))
+    allowed = JUMP * (size + np.abs(value[:-1]) + np.abs(value[1:]))
+    places = np.flatnonzero(~(missed <= allowed))  # what is not a number is a jump too
+    return float(phi[places[0]]) if places.size else np.inf

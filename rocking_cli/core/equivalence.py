@@ -7,10 +7,13 @@ from math import isclose, sqrt
 
 import numpy as np
 
+from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
-from rocking_cli.errors import MechanismError, RockingError
+from rocking_cli.errors import MechanismError, PluginError, RockingError
+from rocking_cli.plugin_errors import plugin_error
 
+STEPS = 128  # to the critical rotation, between which a mechanism is held to move without jumps
 AGREEMENT = 1e-9  # relative difference below which the two directions count as the same
 
 
@@ -101,20 +104,34 @@ def equivalent_block(mechanism: Mechanism) -> Equivalence:
                 _one_direction(mechanism, Direction.POSITIVE), _one_direction(mechanism, Direction.NEGATIVE)
             )
     except ArithmeticError as error:
-        raise MechanismError(
-            f"its equivalent block is beyond the range of numbers ({error}): check the sizes and their units"
-        ) from error
+        raise _beyond_range(error) from error
+    except PluginError as error:
+        if _too_large(error.__cause__):
+            raise _beyond_range(error.__cause__) from error
+        raise
     except RockingError:
         raise
-    except Exception as error:  # a plugin may fail in any way; the user needs to know that it did
-        raise MechanismError(
-            f"the mechanism {mechanism.mechanism} failed on these sizes: {type(error).__name__}: {error}"
-        ) from error
+    except Exception as error:  # what it gives is of no use
+        what = f"the mechanism {mechanism.mechanism} does not give what it must"
+        raise plugin_error(what, type(mechanism).__module__, error) from error
+
+
+def _beyond_range(error: BaseException | None) -> MechanismError:
+    return MechanismError(
+        f"its equivalent block is beyond the range of numbers ({error}): check the sizes and their units"
+    )
+
+
+def _too_large(error: BaseException | None) -> bool:
+    """Whether an error is of sizes that are too large, and of no mistake in the plugin."""
+    return isinstance(error, OverflowError) or (isinstance(error, FloatingPointError) and "overflow" in str(error))
 
 
 def _one_direction(mechanism: Mechanism, direction: Direction) -> EquivalentBlock:
     lam = mechanism.uplift(direction)  # Eq. 10
     phi_cr = mechanism.critical_rotation(direction)  # Eq. 9
+    on_the_way = mechanism.coefficients(np.linspace(0.0, phi_cr, STEPS + 1), direction)
+    check_continuous(mechanism.mechanism, direction, on_the_way)
     critical = mechanism.coefficients(np.array([phi_cr]), direction)
     I_eq, G_eq, B_eq = float(critical.I[0]), -float(critical.dG[0]), float(critical.B[0])  # Eq. 13
     kappa1 = B_eq / G_eq  # Eq. 15

@@ -9,7 +9,7 @@ from functools import partial
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from rocking_cli.core import equilibrium
@@ -18,8 +18,14 @@ from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Sketch
+from rocking_cli.plugin_errors import blame, guard
 
 Restitution = Annotated[float, Field(gt=0, le=1)]
+ANSWERS = (
+    "bodies", "motion", "limit", "sketch", "coefficients", "kinetic_inertia", "potential_energy", "uplift",
+    "critical_rotation", "restitution_from_kinematics", "eta",
+)  # fmt: skip
+"""The methods of `Mechanism` in which a plugin says or overrides what its mechanics is."""
 
 
 def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
@@ -121,9 +127,28 @@ class Mechanism(BaseModel, ABC):
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""
-        return type(self).model_validate(
-            {**{key: getattr(self, key) for key in self.model_fields_set}, **(update or {})}
-        )
+        kept = {key: getattr(self, key) for key in self.model_fields_set}
+        return type(self).from_fields({**kept, **(update or {})})
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any]) -> Self:
+        """The mechanism with these fields.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            If they are not fields of this mechanism, or do not fit together.
+        PluginError
+            If a validator of the plugin fails in any other way.
+        """
+        with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
+            return cls.model_validate(dict(fields))
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **named: Any) -> None:
+        """What a subclass says of its own mechanics is guarded: whatever fails there is an error of the plugin."""
+        super().__pydantic_init_subclass__(**named)
+        guard(cls, ANSWERS, _failed)
 
     @abstractmethod
     def bodies(self) -> Sequence[Body]:
@@ -172,3 +197,7 @@ class Mechanism(BaseModel, ABC):
             given = self.restitution
             return given.positive_to_negative if direction > 0 else given.negative_to_positive
         return self.restitution if self.restitution is not None else self.restitution_from_kinematics(direction)
+
+
+def _failed(cls: type, method: str) -> str:
+    return f"the mechanism {getattr(cls, 'mechanism', cls.__name__)} failed in {method}"

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.coefficients import check_continuous
 
 Reals = NDArray[np.float64]
 TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, of thick short arches to 3e-11
@@ -94,6 +95,7 @@ def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple
     phi = end * x * (2 - x)
     dphi = 2 * end * (1 - x)
     at = mechanism.coefficients(phi, direction)
+    check_continuous(mechanism.mechanism, direction, at)
     root = np.sqrt(at.I)
     dq, ddq = root * dphi, at.J / root * dphi**2 - 2 * end * root
     # Euler and Maclaurin's rule with the first correction: right to 1e-12.

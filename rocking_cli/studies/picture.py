@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Outline, RigidMotion, Sketch, disc
-from rocking_cli.errors import MechanismError, RockingError
+from rocking_cli.errors import RockingError
+from rocking_cli.plugin_errors import plugin_error
 
 Reals = NDArray[np.float64]
 Points = NDArray[np.complex128]
@@ -207,10 +208,9 @@ def picture(mechanism: Mechanism) -> Picture:
         return _picture(mechanism)
     except RockingError:
         raise
-    except Exception as error:  # a plugin may fail in any way; the user needs to know that it did
-        raise MechanismError(
-            f"the mechanism {mechanism.mechanism} failed to be drawn: {type(error).__name__}: {error}"
-        ) from error
+    except Exception as error:  # what it gives is of no use
+        what = f"the mechanism {mechanism.mechanism} failed to be drawn"
+        raise plugin_error(what, type(mechanism).__module__, error) from error
 
 
 def box_around(outlines: Sequence[Points]) -> tuple[complex, complex]:

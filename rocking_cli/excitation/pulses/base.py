@@ -5,13 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 from math import isfinite
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.plugin_errors import guard
 
 Reals = NDArray[np.float64]
 SAMPLES = 400  # to a period of the sampled motion: chords of a sine are then off by 3e-5 of its amplitude
@@ -74,6 +75,11 @@ class Pulse(ABC):
     """What follows the name in a specification."""
     source: ClassVar[str] = ""
     """Where it comes from."""
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """What a shape says of itself is guarded: whatever fails there is an error of the plugin."""
+        super().__init_subclass__(**named)
+        guard(cls, ("__post_init__", "shape", "velocity_shape", "segments"), _failed)
 
     def __post_init__(self) -> None:
         for what in ("amplitude", "period"):
@@ -161,3 +167,7 @@ def _amplitude(value: float) -> str:
     texts = (f"{value / STANDARD_GRAVITY:.{digits}g}" for digits in range(1, DIGITS + 1))
     in_g = [f"{text}g" for text in texts if float(text) * STANDARD_GRAVITY == value]
     return min([*in_g[:1], f"{_shortest(value)}m/s2"], key=len)
+
+
+def _failed(cls: type, method: str) -> str:
+    return f"the pulse {getattr(cls, 'name', cls.__name__)} failed in {method}"

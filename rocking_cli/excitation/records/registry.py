@@ -7,11 +7,13 @@ bytes of a file in place of its text.
 
 from __future__ import annotations
 
+from importlib.metadata import EntryPoint
 from typing import Any, Protocol, cast
 
 from rocking_cli import plugins
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError, PluginError, Problem, RockingError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.plugin_errors import blame
 
 GROUP = "rocking.records"
 FALLBACK = "text"
@@ -63,21 +65,76 @@ class Reader(Protocol):
 def load_readers(group: str = GROUP) -> dict[str, Reader]:
     """All readers of an entry-point group by name, in alphabetic order.
 
-    Raises
-    ------
-    MechanismError
-        If one cannot be loaded or is no reader, or two packages claim a name.
+    One that cannot be loaded, is no reader, or whose name two packages claim is left out with a warning: in its place
+    is one that claims no file, and says why where a file is of no format.
+
+    Warns
+    -----
+    PluginWarning
+        Of each that is left out, once in a process.
     """
-    readers = {}
+    readers: dict[str, Reader] = {}
     for name, points in sorted(plugins.find(group).items()):
-        point = plugins.only("record reader", name, points)
-        reader = plugins.load(point)
-        missing = [word for word in ("sniff", "read") if not callable(getattr(reader, word, None))]
-        missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(reader, word, None), str)]
-        if missing:
-            raise MechanismError(f"{plugins.origin(point)} is not a record reader: it has no {', '.join(missing)}")
-        readers[name] = cast("Reader", reader)
+        try:
+            readers[name] = _load(plugins.only("record reader", name, points))
+        except MechanismError as error:
+            plugins.leave_out(error)
+            readers[name] = _Broken(error)
     return readers
+
+
+def _load(point: EntryPoint) -> Reader:
+    reader = plugins.load(point)
+    missing = [word for word in ("sniff", "read") if not callable(getattr(reader, word, None))]
+    missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(reader, word, None), str)]
+    if missing:
+        raise MechanismError(f"{plugins.origin(point)} is not a record reader: it has no {', '.join(missing)}")
+    return _Guarded(cast("Reader", reader), point)
+
+
+class _Broken:
+    """In place of a reader that cannot be used."""
+
+    TITLE = "cannot be used"
+    BINARY = True  # it is listed where the file is no text too
+
+    def __init__(self, error: MechanismError) -> None:
+        self.SIGN = str(error)
+
+    def sniff(self, content: object, /) -> bool:
+        return False
+
+    def read(self, content: object, file: str, /, **options: object) -> GroundMotion:
+        raise MechanismError(self.SIGN)
+
+
+class _Guarded:
+    """A reader whose own errors are blamed on it."""
+
+    def __init__(self, reader: Reader, point: EntryPoint) -> None:
+        self.TITLE, self.SIGN, self.BINARY = reader.TITLE, reader.SIGN, takes_bytes(reader)
+        self._reader, self._point = reader, point
+        self._module = point.value.partition(":")[0]
+
+    def sniff(self, content: Any, /) -> bool:
+        """What the reader says; one that fails claims nothing."""
+        what = f"{plugins.origin(self._point)} failed to say whether a file is of its format"
+        try:
+            with blame(what, self._module):
+                return bool(self._reader.sniff(content))
+        except RockingError as error:  # it may not raise these either
+            broken = error if isinstance(error, PluginError) else PluginError(f"{what}: {error}")
+            plugins.leave_out(broken)
+            self.TITLE, self.SIGN = _Broken.TITLE, str(broken)
+            return False
+
+    def read(self, content: Any, file: str, /, **options: Any) -> GroundMotion:
+        """What the reader reads; anything but a motion is an error of the reader."""
+        with blame(f"{plugins.origin(self._point)} failed to read {file}", self._module):
+            motion = self._reader.read(content, file, **options)
+            if not isinstance(motion, GroundMotion):
+                raise TypeError(f"read gave a {type(motion).__name__}, not a GroundMotion")
+        return motion
 
 
 def takes_bytes(reader: Reader) -> bool:

@@ -1,0 +1,91 @@
+"""What plugin code raises, as an error that says whose it is and where; nothing a plugin does ends the program."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from functools import wraps
+from inspect import isfunction
+from typing import Any
+
+from rocking_cli.errors import PluginError, RockingError
+
+
+@contextmanager
+def blame(what: str, module: str, *, but: type[Exception] = RockingError) -> Iterator[None]:
+    """Turn any error of plugin code into a `PluginError`.
+
+    Parameters
+    ----------
+    what : str
+        Who failed at what, the beginning of the message: "the mechanism odd failed in motion".
+    module : str
+        A module of the plugin: the message ends with the last place in its package.
+    but : type, optional
+        Errors that pass as they are, beside those of this package.
+
+    Raises
+    ------
+    PluginError
+        From the error. A want of memory passes as well.
+    """
+    try:
+        yield
+    except (RockingError, MemoryError, but):
+        raise
+    except (Exception, SystemExit) as error:  # a plugin may fail in any way, and may not end the program
+        raise plugin_error(what, module, error) from error
+
+
+def plugin_error(what: str, module: str, error: BaseException) -> PluginError:
+    """The error that says what a plugin raised; to be raised from it. Parameters are those of `blame`."""
+    said = str(error)
+    return PluginError(f"{what}: {type(error).__name__}{f': {said}' if said else ''}{_place(module, error)}")
+
+
+def guard(cls: type, methods: Iterable[str], what: Callable[[type, str], str]) -> None:
+    """Have `blame` around those of some methods that a class itself defines.
+
+    Parameters
+    ----------
+    cls : type
+        The class, changed in place.
+    methods : iterable of str
+        Names of methods.
+    what : callable
+        Says of the class of an object and the name of a method who failed at what.
+    """
+    for name in methods:
+        method = vars(cls).get(name)
+        if isfunction(method):
+            setattr(cls, name, _guarded(method, cls.__module__, what))
+
+
+def own_traceback(error: BaseException | None) -> str | None:
+    """The traceback of what a plugin itself raised, if that is at the bottom of an error."""
+    while error is not None:
+        if isinstance(error, PluginError) and error.__cause__ is not None:
+            return "".join(traceback.format_exception(error.__cause__)).rstrip("\n")
+        error = error.__cause__
+    return None
+
+
+def _guarded(method: Callable[..., Any], module: str, what: Callable[[type, str], str]) -> Callable[..., Any]:
+    @wraps(method)
+    def guarded(self: Any, *args: Any, **named: Any) -> Any:
+        with blame(what(type(self), method.__name__), module):
+            return method(self, *args, **named)
+
+    return guarded
+
+
+def _place(module: str, error: BaseException) -> str:
+    """Where in the plugin's own package it happened; empty if it did not get there."""
+    package = module.partition(".")[0]
+    places = [
+        f" ({frame.f_code.co_filename}:{line})"
+        for frame, line in traceback.walk_tb(error.__traceback__)
+        if str(frame.f_globals.get("__name__")).partition(".")[0] == package
+    ]
+    return places[-1] if places else ""
