@@ -48,11 +48,12 @@ from rocking_cli.studies.picture import picture
 Reals = NDArray[np.float64]
 Points = NDArray[np.complex128]
 
-STEP = 1e-5  # of phi in difference quotients, whose error is then about 1e-10 of the third derivative;
-SHARE = 1e-3  # of the rotations looked at: the step is at most that
+STEP = 1e-4  # of phi in difference quotients, whose error is of its fourth power; at most
+SHARE = 1e-3  # of the rotations looked at
 BEYOND = 1.2  # of the critical rotation: up to where the motion must be smooth,
 REACH = 0.8  # of the kinematic limit, near which derivatives grow without bound
 FURTHEST = 0.999  # of the kinematic limit: up to where there must be no jump
+SHIFTS = (-2, -1, 1, 2)  # steps from a rotation at which they take values
 CELLS = 4096  # between rest and there, in each of which a jump would be seen
 ALIKE = 1e-9  # of its size: how near a value must come to what the bodies say
 DRAWN = 2e-3  # how near, over the size of a body, its outlines with their straight sides must come to its inertia
@@ -162,7 +163,7 @@ def gives_a_motion_for_each_body(structure: Mechanism) -> None:
     """The motion over n rotations has n places for each body, and each is the same if asked for by itself."""
     bodies = structure.bodies()
     for direction in Direction:
-        phi = np.linspace(0.0, 1.0, 7) * _top(structure, direction)
+        phi = np.linspace(0.0, 0.5, 7) * structure.limit(direction)
         together = structure.motion(phi, direction)
         _demand(len(together) == len(bodies), f"{len(together)} motions for {len(bodies)} bodies")
         for body, motion in zip(bodies, together, strict=True):
@@ -217,20 +218,20 @@ def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
         top = _top(structure, direction)
         step = min(STEP, SHARE * top)
         phi = np.linspace(0.02, 1.0, 9) * top
-        moved = [structure.motion(phi + shift, direction) for shift in (-step, 0.0, step)]
-        for body, before, here, after in zip(structure.bodies(), *moved, strict=True):
-            (z0, dz0, _), (_, dz, ddz), (z1, dz1, _) = (motion.carry(body.centroid) for motion in (before, here, after))
+        here = structure.motion(phi, direction)
+        around = [structure.motion(phi + shift * step, direction) for shift in SHIFTS]
+        for body, motion, *moved in zip(structure.bodies(), here, *around, strict=True):
+            _, dz, ddz = motion.carry(body.centroid)
             speed = _size(structure) + np.abs(dz).max()
-            for what, change, derivative, size in (
-                ("dq", z1 - z0, dz, speed),
-                ("ddq", dz1 - dz0, ddz, speed + np.abs(ddz).max()),
-                ("dpsi", after.psi - before.psi, here.dpsi, 1 + np.abs(here.dpsi).max()),
-                ("ddpsi", after.dpsi - before.dpsi, here.ddpsi, 1 + np.abs(here.ddpsi).max()),
+            for what, values, derivative, size in (
+                ("dq", [each.carry(body.centroid)[0] for each in moved], dz, speed),
+                ("ddq", [each.carry(body.centroid)[1] for each in moved], ddz, speed + np.abs(ddz).max()),
+                ("dpsi", [each.psi for each in moved], motion.dpsi, 1 + np.abs(motion.dpsi).max()),
+                ("ddpsi", [each.dpsi for each in moved], motion.ddpsi, 1 + np.abs(motion.ddpsi).max()),
             ):
-                _near(
-                    f"{what} of {body.name}, {direction.label} direction,",
-                    phi, derivative, change / (2 * step), 1e-6 * size, "the difference quotient",
-                )  # fmt: skip
+                found = _quotient(values, step)
+                what = f"{what} of {body.name}, {direction.label} direction,"
+                _near(what, phi, derivative, found, 1e-6 * size, "the difference quotient")
 
 
 def energies_agree_with_coefficients(structure: Mechanism) -> None:
@@ -239,13 +240,14 @@ def energies_agree_with_coefficients(structure: Mechanism) -> None:
         phi_cr = _phi_cr(structure, direction)
         step = min(STEP, SHARE * phi_cr)
         phi = np.linspace(0.05, 0.95, 7) * phi_cr
-        below, here, above = (structure.coefficients(phi + shift, direction) for shift in (-step, 0.0, step))
-        for name, change, value, size in (
-            ("G", above.V - below.V, here.G, np.abs(here.G).max()),
-            ("J", (above.I - below.I) / 2, here.J, here.I.max()),
+        here = structure.coefficients(phi, direction)
+        around = [structure.coefficients(phi + shift * step, direction) for shift in SHIFTS]
+        for name, values, value, size in (
+            ("G", [each.V for each in around], here.G, np.abs(here.G).max()),
+            ("J", [each.I / 2 for each in around], here.J, here.I.max()),
         ):
-            what = f"{name} in the {direction.label} direction"
-            _near(what, phi, value, change / (2 * step), 1e-6 * size, "the difference quotient")
+            found, what = _quotient(values, step), f"{name} in the {direction.label} direction"
+            _near(what, phi, value, found, 1e-6 * size, "the difference quotient")
 
 
 def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
@@ -500,6 +502,12 @@ def _near(what: str, phi: Reals, said: ArrayLike, found: ArrayLike, allowed: flo
     if wrong.size:
         k = wrong[np.argmax(np.nan_to_num(np.abs(said - found)[wrong], nan=np.inf))]
         raise AssertionError(f"{what} is {said[k]:.6g} at phi = {phi[k]:.4g} rad, and {by} {found[k]:.6g}")
+
+
+def _quotient(values: Sequence[ArrayLike], step: float) -> NDArray[np.complex128]:
+    """The derivative from values at `SHIFTS` steps."""
+    before2, before, after, after2 = (np.asarray(each) for each in values)
+    return np.asarray((8 * (after - before) - (after2 - before2)) / (12 * step))
 
 
 def _of_bodies(structure: Mechanism, phi: Reals, direction: Direction) -> Coefficients:

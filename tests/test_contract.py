@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+from math import pi
+
+import numpy as np
 import pytest
+from pydantic import Field
 
 from rocking_cli.cli.new import template
+from rocking_cli.core import Body, Direction, Hinge, Mechanism, RigidMotion, Sketch, box, length, rectangle, rotation
 from rocking_cli.registry import Registry
 from rocking_cli.structure import load_structure, parse_structure
-from rocking_cli.testing import MechanismContract
+from rocking_cli.testing import CHECKS, MechanismContract, contract
 from tests.conftest import EXAMPLES
 
 BUILT_IN = {"arch", "asymmetric_frame", "block", "cone", "point_mass", "rigid_body", "symmetric_frame", "wall"}
@@ -35,3 +42,310 @@ def test_the_built_in_mechanisms_come_in_through_the_registry():
 
 def test_there_is_an_example_of_every_built_in_mechanism():
     assert {load_structure(path).mechanism for path in EXAMPLES.glob("*.yaml")} == BUILT_IN
+
+
+class Plain(Mechanism):
+    """A right block that says only what it must; every wrong one below differs from it in one thing."""
+
+    mechanism, title, source = "plain", "a block", "a test"
+    width: float = length("width", example=0.7)
+    height: float = length("height", example=2.8)
+
+    def bodies(self):
+        return [box("block", 1.0, self.width, self.height, 0.5j * self.height)]
+
+    def motion(self, phi, direction):
+        return [rotation(phi, complex(direction * self.width / 2), -direction)]
+
+    def limit(self, direction):
+        return pi / 2
+
+
+class Doubled(Plain):
+    """`coefficients` overridden, with some of them multiplied."""
+
+    def scaled(self, phi, direction, factor, *names):
+        at = super().coefficients(phi, direction)
+        return replace(at, **{name: factor * getattr(at, name) for name in names})
+
+
+class DoubledB(Doubled):
+    def coefficients(self, phi, direction):
+        return self.scaled(phi, direction, 2, "B", "dB")
+
+
+class HeavierG(Doubled):
+    def coefficients(self, phi, direction):
+        return self.scaled(phi, direction, 1.1, "G", "V", "dG")
+
+
+class HeavierI(Doubled):
+    def coefficients(self, phi, direction):
+        return self.scaled(phi, direction, 1.1, "I", "J")
+
+
+class SteeperB(Doubled):
+    def coefficients(self, phi, direction):
+        return self.scaled(phi, direction, 1.001, "dB")
+
+
+class NotNumbers(Doubled):
+    def coefficients(self, phi, direction):
+        return self.scaled(phi, direction, np.nan, "V")
+
+
+class TwiceTheEnergy(Plain):
+    def potential_energy(self, phi, direction):
+        return 2 * super().potential_energy(phi, direction)
+
+
+class WithoutGravity(Plain):
+    def potential_energy(self, phi, direction):
+        return self.coefficients(phi, direction).V
+
+
+class HalfTheInertia(Plain):
+    def kinetic_inertia(self, phi, direction):
+        return super().kinetic_inertia(phi, direction) / 2
+
+
+class Bouncing(Plain):
+    def restitution_from_kinematics(self, direction):
+        return 0.99
+
+
+class Stubborn(Plain):
+    def eta(self, direction):
+        return self.restitution_from_kinematics(direction)
+
+
+class EarlyUplift(Plain):
+    def uplift(self, direction):
+        return 0.9 * super().uplift(direction)
+
+
+class LateBalance(Plain):
+    def critical_rotation(self, direction):
+        return 1.001 * super().critical_rotation(direction)
+
+
+class ShortLimit(Plain):
+    def limit(self, direction):
+        return 0.2
+
+
+class Forgetful(Plain):
+    def model_copy(self, *, update=None, deep=False):
+        return Plain(width=self.width, height=self.height)
+
+
+class FourTimesTheInertia(Plain):
+    def bodies(self):
+        (body,) = super().bodies()
+        return [replace(body, inertia=4 * body.inertia)]
+
+
+class Uniform(Plain):
+    def sketch(self):
+        return Sketch(outlines={"block": [rectangle(0.5j * self.height, self.width, self.height)]}, uniform=True)
+
+
+class HalfTheUniformInertia(Uniform):
+    def bodies(self):
+        (body,) = super().bodies()
+        return [replace(body, inertia=body.inertia / 2, outline=())]
+
+
+class FourTimesTheUniformInertia(Uniform):
+    def bodies(self):
+        (body,) = super().bodies()
+        return [replace(body, inertia=4 * body.inertia, outline=())]
+
+
+class UniformOfNothing(Plain):
+    def bodies(self):
+        return [Body("block", 1.0, 0.5, 0.5j * self.height)]
+
+    def sketch(self):
+        return Sketch(uniform=True)
+
+
+class OutsideItself(Plain):
+    def bodies(self):
+        (body,) = super().bodies()
+        return [replace(body, centroid=body.centroid + 0.36)]
+
+
+class JumpingPivot(Plain):
+    def motion(self, phi, direction):
+        inner = np.where(phi < 0.1, 0.5, 0.4) * direction * self.width + 0j
+        return [replace(rotation(phi, 0j, -direction), rest=inner, q=inner)]
+
+
+class JumpingSpeed(Plain):
+    def motion(self, phi, direction):
+        turned = np.where(phi < 0.1, phi, 1.1 * phi - 0.01)
+        (motion,) = super().motion(turned, direction)
+        return [replace(motion, dpsi=motion.dpsi * np.where(phi < 0.1, 1, 1.1))]
+
+
+class InnerPivot(Plain):
+    def motion(self, phi, direction):
+        return [rotation(phi, complex(0.4 * direction * self.width), -direction)]
+
+
+class HighPivot(Plain):
+    def motion(self, phi, direction):
+        return [rotation(phi, complex(0.5 * direction * self.width, 0.1), -direction)]
+
+
+class OuterPivot(Plain):
+    def motion(self, phi, direction):
+        return [rotation(phi, complex(0.52 * direction * self.width), -direction)]
+
+
+class HingeElsewhere(Uniform):
+    def sketch(self):
+        hinges = {side: [Hinge("O", complex(0.4 * side * self.width), ("block",))] for side in Direction}
+        return replace(super().sketch(), hinges=hinges)
+
+
+class WrongSlope(Plain):
+    def motion(self, phi, direction):
+        (motion,) = super().motion(phi, direction)
+        return [replace(motion, dpsi=1.0001 * motion.dpsi)]
+
+
+class OneForAll(Plain):
+    def motion(self, phi, direction):
+        return super().motion(np.full_like(phi, phi[-1]), direction)
+
+
+class Scalars(Plain):
+    def motion(self, phi, direction):
+        (motion,) = super().motion(phi, direction)
+        return [replace(motion, dpsi=-float(direction))]
+
+
+class StartsElsewhere(Plain):
+    def motion(self, phi, direction):
+        return super().motion(phi + 1e-3, direction)
+
+
+class TwoOfOneName(Plain):
+    def bodies(self):
+        return [*super().bodies(), Body("block", 0.1, 0.0, 1j * self.height)]
+
+    def motion(self, phi, direction):
+        return [*super().motion(phi, direction)] * 2
+
+
+class Massless(Plain):
+    def bodies(self):
+        return [replace(body, mass=0.0) for body in super().bodies()]
+
+
+class Negative(Plain):
+    def bodies(self):
+        return [*super().bodies(), Body("cap", -0.1, 0.0, 1j * self.height)]
+
+
+class Silent(Plain):
+    load: float = Field(1.0)
+
+
+class NoExample(Plain):
+    load: float = length("a field that no file can be without")
+
+
+class BadExample(Plain):
+    load: float = length("a field with an example that it refuses", example=-1.0)
+
+
+class Divides(Plain):
+    def bodies(self):
+        return [box("block", 1 / 0, self.width, self.height, 0j)]
+
+
+class Leaves(Plain):
+    def limit(self, direction):
+        raise SystemExit(3)
+
+
+class GivesNothing(Plain):
+    def motion(self, phi, direction):
+        return None
+
+
+WRONG = [
+    (DoubledB, "coefficients_are_those_of_the_bodies", r"B of coefficients, positive direction, is 2\.886.*, and of its bodies 1\.443"),
+    (DoubledB, "closed_forms_agree_with_the_solvers", "uplift in the positive direction is 0.125, and by its bodies"),
+    (HeavierG, "coefficients_are_those_of_the_bodies", r"(V|G|dG) of coefficients, .* of its bodies"),
+    (HeavierI, "coefficients_are_those_of_the_bodies", "I of coefficients"),
+    (SteeperB, "coefficients_are_those_of_the_bodies", "dB of coefficients"),
+    (NotNumbers, "coefficients_are_those_of_the_bodies", "V of coefficients, positive direction, is nan"),
+    (TwiceTheEnergy, "coefficients_are_those_of_the_bodies", "potential_energy"),
+    (WithoutGravity, "coefficients_are_those_of_the_bodies", "potential_energy"),
+    (HalfTheInertia, "coefficients_are_those_of_the_bodies", "kinetic_inertia"),
+    (Bouncing, "restitution_is_that_of_the_bodies", "restitution_from_kinematics .* is 0.99, and by its bodies 0.91"),
+    (Stubborn, "restitution_is_that_of_the_bodies", "eta .*, with one of the user, is 0.9.*, and by its bodies 0.625"),
+    (EarlyUplift, "closed_forms_agree_with_the_solvers", "uplift in the positive direction is 0.225, and by its bodies"),
+    (LateBalance, "closed_forms_agree_with_the_solvers", "critical_rotation in the positive direction is 0.245"),
+    (LateBalance, "stands_and_can_overturn", "is not where its bodies balance"),
+    (ShortLimit, "stands_and_can_overturn", "no unstable equilibrium|not between rest and the kinematic limit"),
+    (Forgetful, "a_copy_is_the_same_structure", "a copy is a Plain"),
+    (FourTimesTheInertia, "outlines_are_those_of_the_bodies", "more than all of its mass at the furthest corner"),
+    (FourTimesTheUniformInertia, "outlines_are_those_of_the_bodies", "the inertia of block is .* of its outlines"),
+    (HalfTheUniformInertia, "outlines_are_those_of_the_bodies", "the inertia of block is .* of its outlines"),
+    (UniformOfNothing, "outlines_are_those_of_the_bodies", "gives no outline of block"),
+    (OutsideItself, "outlines_are_those_of_the_bodies", "the centroid of block is 0.01 m outside of its outline"),
+    (JumpingPivot, "moves_without_jumps", "block jumps at phi = 0.0999?[0-9]* rad in the positive direction|0.1 rad"),
+    (JumpingSpeed, "moves_without_jumps", "block jumps at phi = 0.0999?[0-9]* rad in the positive direction|0.1 rad"),
+    (InnerPivot, "stands_on_the_edge_of_its_base", "block goes .* through the ground .* edge of its base"),
+    (HighPivot, "stands_on_the_edge_of_its_base", "block reaches 0.1 m below the pivot of the positive direction"),
+    (OuterPivot, "stands_on_the_edge_of_its_base", "all of the base leaves the ground"),
+    (HingeElsewhere, "hinges_hold_together", "hinge O of the positive direction parts by"),
+    (WrongSlope, "derivatives_are_those_of_the_motion", "dq of block|dpsi of block"),
+    (OneForAll, "gives_a_motion_for_each_body", "if asked for alone and"),
+    (Scalars, "gives_a_motion_for_each_body", r"dpsi of block has the shape \(\) for 7 rotations"),
+    (StartsElsewhere, "moves_from_rest", "block rests at .* turned by -0.001 rad"),
+    (TwoOfOneName, "bodies_have_mass", "two bodies have one name: block, block"),
+    (Massless, "bodies_have_mass", "no body has a mass"),
+    (Negative, "bodies_have_mass", "failed in bodies: ValueError: the mass of body 'cap' is -0.1 kg"),
+    (Silent, "fields_say_what_they_are", "no description: load"),
+    (NoExample, "fields_say_what_they_are", "no example, which `rocking new` prints: load"),
+    (BadExample, "fields_say_what_they_are", "the examples of its fields make no structure"),
+    (Divides, "bodies_have_mass", r"failed in bodies: ZeroDivisionError: .* \(.*test_contract\.py:\d+\)"),
+    (Leaves, "stands_and_can_overturn", r"failed in limit: SystemExit: 3 \(.*test_contract\.py:\d+\)"),
+    (GivesNothing, "moves_from_rest", "TypeError"),
+]
+
+
+def made(cls):
+    return cls(width=0.7, height=2.8, **({"load": 1.0} if "load" in cls.model_fields else {}))
+
+
+@pytest.mark.parametrize("cls", [Plain, Uniform])
+def test_a_right_mechanism_passes_every_check(cls):
+    assert [verdict for verdict in contract(made(cls)) if not verdict.passed] == []
+
+
+@pytest.mark.parametrize(("cls", "check", "words"), WRONG, ids=[f"{cls.__name__}-{check}" for cls, check, _ in WRONG])
+def test_a_wrong_mechanism_fails_the_check_that_is_for_it(cls, check, words):
+    found = {verdict.check: verdict for verdict in contract(made(cls))}
+    assert not found[check].passed
+    assert re.search(words, found[check].why), found[check].why
+
+
+def test_there_is_a_wrong_mechanism_for_every_check_that_a_class_can_fail():
+    # Without a name there is no plugin; a block that is not there fails others first; energy is of restitution.
+    elsewhere = {"is_declared", "energies_agree_with_coefficients", "has_an_equivalent_block", "an_impact_gains_no_energy"}
+    assert {check for _, check, _ in WRONG} | elsewhere == {check.__name__ for check in CHECKS}
+
+
+def test_the_class_and_the_function_make_the_same_checks():
+    tests = {name for name in dir(MechanismContract) if name.startswith("test_")}
+    assert tests == {f"test_{check.__name__}" for check in CHECKS}
+    with pytest.raises(AssertionError, match="potential_energy"):
+        MechanismContract().test_coefficients_are_those_of_the_bodies(made(TwiceTheEnergy))
+    MechanismContract().test_coefficients_are_those_of_the_bodies(made(Plain))
