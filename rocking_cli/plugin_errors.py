@@ -66,7 +66,10 @@ def own_traceback(error: BaseException | None) -> str | None:
     """The traceback of what a plugin itself raised, if that is at the bottom of an error."""
     while error is not None:
         if isinstance(error, PluginError) and error.__cause__ is not None:
-            return "".join(traceback.format_exception(error.__cause__)).rstrip("\n")
+            told = traceback.TracebackException.from_exception(error.__cause__)
+            own = [frame for frame in told.stack if not _on_the_way(frame.filename)]
+            told.stack = traceback.StackSummary.from_list(own or list(told.stack))
+            return "".join(told.format()).rstrip("\n")
         error = error.__cause__
     return None
 
@@ -78,6 +81,11 @@ def _guarded(method: Callable[..., Any], module: str, what: Callable[[type, str]
             return method(self, *args, **named)
 
     return guarded
+
+
+def _on_the_way(file: str) -> bool:
+    """Whether a frame is of how a plugin is called or imported, which says nothing of it."""
+    return file == __file__ or "importlib" in file
 
 
 def _place(module: str, error: BaseException) -> str:

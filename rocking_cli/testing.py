@@ -335,7 +335,7 @@ def has_an_equivalent_block(structure: Mechanism) -> None:
 
 
 def an_impact_gains_no_energy(structure: Mechanism) -> None:
-    """With the restitution of the kinematics."""
+    """An impact with the restitution of the kinematics gains no energy."""
     rest = np.zeros(1)
     for direction in Direction:
         eta = structure.restitution_from_kinematics(direction)

@@ -21,21 +21,35 @@ BOUNDS = (
 )
 
 
-@click.command(short_help="List the installed mechanisms, or the fields of one.")
+@click.command(short_help="List the installed mechanisms, show the fields of one, or check it.")
 @click.argument("name", required=False)
+@click.argument("file", required=False, type=click.Path())
+@click.option("--check", "checked", is_flag=True, help="Hold NAME to the contract: of its examples, or of FILE.")
 @options.as_json
-def command(name: str | None, as_json: bool) -> None:
+def command(name: str | None, file: str | None, checked: bool, as_json: bool) -> None:
     """List the mechanisms that are installed and the package each comes from; with NAME, its fields.
+
+    `--check` holds what a mechanism says to its bodies and their motion, prints what passes and what fails with the
+    traceback of an error of its own, and ends with 3 if anything fails. FILE is a structure to check it on.
 
     \b
     Example:
       rocking mechanisms
       rocking mechanisms arch
+      rocking mechanisms --check arch
     """
     from rocking_cli.registry import Registry
 
+    if checked and name is None:
+        raise click.UsageError("--check needs the NAME of a mechanism.")
+    if file is not None and not checked:
+        raise click.UsageError("FILE goes with --check.")
     registry = Registry()
-    if name is not None:
+    if name is not None and checked:
+        from rocking_cli.cli.mechanism_check import check
+
+        check(name, file, registry, as_json)
+    elif name is not None:
         _one(registry[name], registry.package_of(name), as_json)
     else:
         _all(registry, as_json)
@@ -50,6 +64,7 @@ def _all(registry: Any, as_json: bool) -> None:
             title = registry[name].title
         except MechanismError as error:  # one broken plugin must not hide the others
             terminal.warning(str(error))
+            terminal.plugin_traceback(error)
             title = None
         rows.append({"name": name, "title": title, "package": registry.package_of(name)})
     if as_json:

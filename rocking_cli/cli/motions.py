@@ -137,6 +137,7 @@ def gather(
             each = Scaled(motion, factor(motion, measured, *asked))
         except InputError as error:
             terminal.error(str(error))
+            terminal.plugin_traceback(error)
             continue
         if isinstance(source, Path):
             if any(motion.name == other.motion.name for other in found):

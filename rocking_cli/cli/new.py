@@ -19,10 +19,18 @@ def command(name: str, as_json: bool) -> None:
     Example:
       rocking new arch > arch.yaml
     """
+    from rocking_cli.errors import RockingError
     from rocking_cli.registry import Registry
+    from rocking_cli.structure import parse_structure
 
-    cls = Registry()[name]
-    text = template(cls)
+    registry = Registry()
+    text = template(registry[name])
+    try:
+        parse_structure(text, f"rocking new {name}", name, registry)
+    except RockingError as error:
+        terminal.warning(f"the examples of the mechanism {name} make no structure, and this file does not work as it is")
+        terminal.note(str(error))
+        terminal.plugin_traceback(error)
     if as_json:
         terminal.print_json({"mechanism": name, "yaml": text})
     else:
@@ -31,6 +39,8 @@ def command(name: str, as_json: bool) -> None:
 
 def template(cls: Any) -> str:
     """A commented YAML file for a mechanism: its examples, with fields that may be left out commented out.
+
+    A field that the file needs and of which there is no example stands there without a value, and the file says so.
 
     Parameters
     ----------
@@ -44,6 +54,7 @@ def template(cls: Any) -> str:
     from rocking_cli.cli.mechanisms import fields
 
     lines = [f"# {cls.title}", f"# {cls.source}", f"mechanism: {cls.mechanism}"]
+    missing = []
     for row in fields(cls):
         unit = f" [{row['unit']}]" if row["unit"] else ""
         symbol = f", {row['symbol']}" if row["symbol"] else ""
@@ -54,8 +65,14 @@ def template(cls: Any) -> str:
             example = f"my {cls.mechanism.replace('_', ' ')}"
         elif row["field"] == "restitution":
             example = "0.9"
+        elif used and row["example"] is None and row["default"] is None:
+            missing.append(row["field"])
+            example = ""
         entry = f"{'' if used else '# '}{row['field']}: {example}"
-        lines.append(f"{entry:<32}  # {row['description']}{symbol}{unit}{limits}")
+        fill_in = "fill in: " if row["field"] in missing else ""
+        lines.append(f"{entry:<32}  # {fill_in}{row['description']}{symbol}{unit}{limits}")
+    if missing:
+        lines.insert(2, f"# Fill in {', '.join(missing)}: the mechanism gives no example.")
     return "\n".join(lines) + "\n"
 
 

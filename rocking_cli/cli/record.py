@@ -105,6 +105,7 @@ def command(
                 _draw(plot, scaled, one)
         except InputError as error:
             terminal.error(str(error))
+            terminal.plugin_traceback(error)
             continue
         shown.append(one)
         if as_json:

@@ -92,6 +92,12 @@ def _load(point: EntryPoint) -> Reader:
     return _Guarded(cast("Reader", reader), point)
 
 
+class ReaderError(InputError, PluginError):
+    """A file that its reader fails on, by an error of the reader's own: of many files, the others can be read."""
+
+    exit_code = PluginError.exit_code
+
+
 class _Broken:
     """In place of a reader that cannot be used."""
 
@@ -130,10 +136,13 @@ class _Guarded:
 
     def read(self, content: Any, file: str, /, **options: Any) -> GroundMotion:
         """What the reader reads; anything but a motion is an error of the reader."""
-        with blame(f"{plugins.origin(self._point)} failed to read {file}", self._module):
-            motion = self._reader.read(content, file, **options)
-            if not isinstance(motion, GroundMotion):
-                raise TypeError(f"read gave a {type(motion).__name__}, not a GroundMotion")
+        try:
+            with blame(f"{plugins.origin(self._point)} failed to read it", self._module):
+                motion = self._reader.read(content, file, **options)
+                if not isinstance(motion, GroundMotion):
+                    raise TypeError(f"read gave a {type(motion).__name__}, not a GroundMotion")
+        except PluginError as error:
+            raise ReaderError(Problem(str(error), file=file)) from error.__cause__
         return motion
 
 
