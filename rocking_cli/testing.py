@@ -169,7 +169,9 @@ def gives_a_motion_for_each_body(structure: Mechanism) -> None:
         for body, motion in zip(bodies, together, strict=True):
             for field in fields(RigidMotion)[1:]:
                 shape = np.shape(getattr(motion, field.name))
-                _demand(shape == phi.shape, f"{field.name} of {body.name} has the shape {shape} for {phi.size} rotations")
+                _demand(
+                    shape == phi.shape, f"{field.name} of {body.name} has the shape {shape} for {phi.size} rotations"
+                )
         for k, value in enumerate(phi):
             alone = structure.motion(np.array([value]), direction)
             for body, one, all_ in zip(bodies, alone, together, strict=True):
@@ -273,7 +275,11 @@ def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
 def stands_and_can_overturn(structure: Mechanism) -> None:
     """It resists at rest, balances before its kinematic limit, and falls beyond."""
     for direction in Direction:
-        lam, phi_cr, limit = structure.uplift(direction), structure.critical_rotation(direction), structure.limit(direction)
+        lam, phi_cr, limit = (
+            structure.uplift(direction),
+            structure.critical_rotation(direction),
+            structure.limit(direction),
+        )
         here = f"in the {direction.label} direction"
         _demand(lam > 0, f"it does not stand {here}: lambda = {lam:.4g}")
         _demand(
@@ -322,7 +328,9 @@ def a_copy_is_the_same_structure(structure: Mechanism) -> None:
     _demand(type(copy) is type(structure), f"a copy is a {type(copy).__name__}")
     _demand(changed == ["gravity"] and copy.gravity == gravity, f"a copy with another gravity changes {changed}")
     for direction in Direction:
-        _agree(f"uplift of a copy in the {direction.label} direction", copy.uplift(direction), structure.uplift(direction))
+        _agree(
+            f"uplift of a copy in the {direction.label} direction", copy.uplift(direction), structure.uplift(direction)
+        )
 
 
 def has_an_equivalent_block(structure: Mechanism) -> None:
@@ -423,8 +431,8 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
                         lowest = above[:, 0].min(initial=0.0)
                         _demand(
                             lowest >= -FLUSH * size,
-                            f"{part.name} reaches {-lowest:.4g} m below the pivot of the {direction.label} direction: it "
-                            "must turn about the edge of its base, or the sketch say where the ground is",
+                            f"{part.name} reaches {-lowest:.4g} m below the pivot of the {direction.label} direction: "
+                            "it must turn about the edge of its base, or the sketch say where the ground is",
                         )
                     above = above[above[:, 0] >= -FLUSH * size]
                     deep = above.min(initial=0.0)
@@ -517,7 +525,9 @@ def _of_bodies(structure: Mechanism, phi: Reals, direction: Direction) -> Coeffi
 
 def _phi_cr(structure: Mechanism, direction: Direction) -> float:
     """The critical rotation by bodies and motions alone [rad]."""
-    return equilibrium.critical_rotation(partial(_of_bodies, structure, direction=direction), structure.limit(direction))
+    return equilibrium.critical_rotation(
+        partial(_of_bodies, structure, direction=direction), structure.limit(direction)
+    )
 
 
 def _top(structure: Mechanism, direction: Direction) -> float:

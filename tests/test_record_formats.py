@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError, PluginWarning, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records import layout, read_record
 from rocking_cli.excitation.records.registry import FALLBACK, GROUP, load_readers, reader_for, takes_bytes
@@ -556,8 +556,15 @@ def test_a_file_of_no_format_lists_what_was_tried(write):
 def test_a_broken_reader_is_named(monkeypatch):
     point = SimpleNamespace(name="odd", value="elsewhere:odd", dist=None, load=lambda: SimpleNamespace(sniff=len))
     monkeypatch.setattr("rocking_cli.plugins.entry_points", lambda group: [point] if group == GROUP else [])
-    with pytest.raises(MechanismError, match=r"elsewhere:odd.* is not a record reader: it has no read, TITLE, SIGN"):
-        load_readers()
+    monkeypatch.setattr("rocking_cli.plugins._LEFT_OUT", set())
+    why = r"elsewhere:odd.* is not a record reader: it has no read, TITLE, SIGN"
+    with pytest.warns(PluginWarning, match=f"{why}; it is left out"):
+        readers = load_readers()
+    assert list(load_readers()) == ["odd"]  # without another warning, which would be an error here
+    with pytest.raises(InputError, match=rf"odd \(cannot be used: .*{why}"):
+        reader_for("", "x", readers)
+    with pytest.raises(MechanismError, match=why):
+        readers["odd"].read("", "x", dt=None, units=None, channel=None)
 
 
 # --- the command ----------------------------------------------------------------------------------------------------

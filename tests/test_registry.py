@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
@@ -14,7 +15,11 @@ from mechanisms.block import Block
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.registry import GROUP, Registry, conformance, load
+from rocking_cli.testing import CHECKS
 from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+BUILT_IN = [name for name in Registry() if Registry().package_of(name).startswith("rocking-cli ")]
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +67,248 @@ def test_the_installed_plugin_keeps_the_contract(installed_plugin):
     assert "passed" in run.stdout
 
 
+ODD = """
+import sys
+from math import pi
+from rocking_cli.core import Body, Mechanism, box, length, rotation
+
+print("printed on import")
+
+class Odd(Mechanism):
+    mechanism, title, source = "odd", "an odd block", "a test"
+    width: float = length("width of the base", example=1.0)
+
+    def bodies(self):
+        return [box("block", 1.0, self.width, 4 * self.width, 2j * self.width)]
+
+    def motion(self, phi, direction):
+        print("printed at work")
+        return [rotation(phi, complex(direction * self.width / 2), -direction)]
+
+    def limit(self, direction):
+        return pi / 2
+
+class Divides(Odd):
+    mechanism = "divides"
+
+    def bodies(self):
+        return [box("block", 1 / 0, 1, 1, 0j)]
+
+class Leaves(Odd):
+    mechanism = "leaves"
+
+    def bodies(self):
+        sys.exit(0)
+
+class Negative(Odd):
+    mechanism = "negative"
+
+    def bodies(self):
+        return [Body("cap", -0.5, 0.0, 1j)]
+
+class NoExample(Odd):
+    mechanism = "no_example"
+    load: float = length("a load that no file can be without")
+
+class Doubled(Odd):
+    mechanism = "doubled"
+
+    def potential_energy(self, phi, direction):
+        return 2 * super().potential_energy(phi, direction)
+"""
+READER = """
+TITLE, SIGN = "an odd format", "ODD on its first line"
+print("printed on import of a reader")
+
+def sniff(content):
+    print("printed by sniff")
+    return content.startswith("ODD")
+
+def read(content, file, **options):
+    return {}["lost"]
+"""
+MODULES = {
+    "odd.py": ODD,
+    "odd_leaves.py": "import sys\nsys.exit(0)\n",
+    "odd_breaks.py": "broken = 1 / 0\n",
+    "odd_reader.py": READER,
+    "odd_sniffer.py": READER.replace('return content.startswith("ODD")', "return 1 / 0"),
+    "odd-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: odd\nVersion: 1.0\n",
+    "odd-1.0.dist-info/entry_points.txt": """
+[rocking.mechanisms]
+odd = odd:Odd
+divides = odd:Divides
+leaves = odd:Leaves
+negative = odd:Negative
+no_example = odd:NoExample
+doubled = odd:Doubled
+leaver = odd_leaves:Leaver
+breaker = odd_breaks:Breaker
+
+[rocking.records]
+breaking_format = odd_breaks
+leaving_format = odd_leaves
+odd_format = odd_reader
+sniffing_format = odd_sniffer
+
+[rocking.pulses]
+leaving_pulse = odd_leaves:Leaver
+""",
+}
+
+
+@pytest.fixture(scope="module")
+def odd_plugin(tmp_path_factory):
+    """A package whose plugins go wrong in every way, beside this environment."""
+    site = tmp_path_factory.mktemp("odd")
+    for name, text in MODULES.items():
+        (site / name).parent.mkdir(exist_ok=True)
+        (site / name).write_text(text, encoding="utf-8")
+    return {**os.environ, "PYTHONPATH": str(site), "PYTHONWARNINGS": "default"}
+
+
+class TestPluginsThatGoWrong:
+    def test_what_they_print_does_not_spoil_the_results(self, odd_plugin, tmp_path):
+        file = tmp_path / "odd.yaml"
+        new = rocking(odd_plugin, "new", "odd")
+        assert new.stdout.startswith("# an odd block") and "printed on import" in new.stderr
+        file.write_text(new.stdout, encoding="utf-8")
+        run = rocking(odd_plugin, "equiv", str(file), "--json")
+        assert json.loads(run.stdout)["mechanism"] == "odd"
+        assert "printed on import" in run.stderr and "printed at work" in run.stderr
+
+    def test_broken_readers_leave_every_other_format_readable(self, odd_plugin):
+        run = rocking(odd_plugin, "record", str(EXAMPLES / "accel.csv"), str(EXAMPLES / "accel.csv"), "--json")
+        assert run.returncode == 0
+        assert [json.loads(line)["npts"] for line in run.stdout.splitlines()] == [1201, 1201]
+        for name, why in {
+            "breaking_format": r"cannot be loaded: ZeroDivisionError: .* \(.*odd_breaks\.py:1\)",
+            "leaving_format": r"cannot be loaded: SystemExit: 0 \(.*odd_leaves\.py:2\)",
+            "sniffing_format": r"failed to say whether .*: ZeroDivisionError: .* \(.*odd_sniffer\.py:\d+\)",
+        }.items():
+            told = re.findall(rf"warning: plugin {name} of odd 1\.0 \(.*\) {why}; it is left out", run.stderr)
+            assert len(told) == 1, run.stderr
+        assert "Traceback" not in run.stderr and "odd_format" not in run.stderr
+
+    def test_a_file_that_nobody_claims_mentions_them_again(self, odd_plugin, tmp_path):
+        (tmp_path / "none.txt").write_text("nothing of the kind\n", encoding="utf-8")
+        run = rocking(odd_plugin, "record", str(tmp_path / "none.txt"))
+        assert run.returncode == 2
+        tried = run.stderr.split("tried, and what each looks for")[1]
+        for name in ("breaking_format", "leaving_format", "sniffing_format"):
+            assert f"{name} (cannot be used: plugin {name} of odd 1.0" in tried
+
+    def test_a_reader_that_fails_on_its_file_costs_only_that_file(self, odd_plugin, tmp_path):
+        (tmp_path / "odd.txt").write_text("ODD\n", encoding="utf-8")
+        run = rocking(odd_plugin, "record", str(tmp_path / "odd.txt"), str(EXAMPLES / "accel.csv"), "--json")
+        assert run.returncode == 5 and json.loads(run.stdout)["npts"] == 1201
+        assert re.search(
+            r"odd\.txt: plugin odd_format of odd 1\.0 .* KeyError: 'lost' \(.*odd_reader\.py:\d+\)", run.stderr
+        )
+        alone = rocking({**odd_plugin, "ROCKING_DEBUG": "1"}, "respond", "--record", str(tmp_path / "odd.txt"))
+        assert alone.returncode == 3 and "Traceback" in alone.stderr and 'return {}["lost"]' in alone.stderr
+
+    @pytest.mark.parametrize(
+        ("name", "said"),
+        [
+            ("divides", r"the mechanism divides failed in bodies: ZeroDivisionError: .* \(.*odd\.py:\d+\)"),
+            ("leaves", r"the mechanism leaves failed in bodies: SystemExit: 0 \(.*odd\.py:\d+\)"),
+            ("negative", r"the mechanism negative failed in bodies: ValueError: the mass of body 'cap' is -0\.5 kg"),
+        ],
+    )
+    def test_an_error_of_a_mechanism_is_its_own(self, odd_plugin, name, said, tmp_path):
+        file = tmp_path / "odd.yaml"
+        file.write_text(f"mechanism: {name}\nwidth: 1.0\n", encoding="utf-8")
+        run = rocking(odd_plugin, "equiv", str(file), "--json")
+        assert (run.returncode, run.stdout) == (3, "")
+        assert re.search(said, run.stderr)
+        assert "check the sizes" not in run.stderr and "Traceback" not in run.stderr
+        debug = rocking({**odd_plugin, "ROCKING_DEBUG": "1"}, "equiv", str(file)).stderr
+        assert "Traceback" in debug and "odd.py" in debug and "plugin_errors.py" not in debug
+
+    def test_a_pulse_that_leaves_does_not_end_the_program(self, odd_plugin):
+        run = rocking(odd_plugin, "respond", "--pulse", "leaving_pulse:0.4g:1s")
+        assert run.returncode == 3
+        assert re.search(r"plugin leaving_pulse of odd 1\.0 .* cannot be loaded: SystemExit", run.stderr)
+
+    def test_new_says_what_to_fill_in_where_there_is_no_example(self, odd_plugin):
+        run = rocking(odd_plugin, "new", "no_example")
+        assert "# Fill in load: the mechanism gives no example.\n" in run.stdout
+        assert re.search(r"\nload: +# fill in: a load that no file can be without \[m\]", run.stdout)
+        assert "this file does not work as it is" in run.stderr
+        assert "Fill in" not in rocking(odd_plugin, "new", "odd").stdout
+
+    @pytest.mark.parametrize(
+        ("name", "failing", "said"),
+        [
+            ("odd", set(), ""),
+            ("doubled", {"coefficients_are_those_of_the_bodies"}, "potential_energy"),
+            ("no_example", {"makes_a_structure"}, "load: must be a number in m, got nothing"),
+            ("leaver", {"loads"}, "SystemExit: 0"),
+            ("breaker", {"loads"}, "ZeroDivisionError"),
+        ],
+    )
+    def test_check_says_what_passes_and_what_fails(self, odd_plugin, name, failing, said):
+        run = rocking(odd_plugin, "mechanisms", "--check", name, "--json")
+        found = json.loads(run.stdout)
+        assert {each["check"] for each in found["checks"] if not each["passed"]} == failing
+        assert (run.returncode, found["passed"]) == ((3, False) if failing else (0, True))
+        assert (found["mechanism"], found["package"], found["file"]) == (name, "odd 1.0", None)
+        assert said in " ".join(each["why"] or "" for each in found["checks"])
+
+    def test_check_shows_the_traceback_of_what_cannot_be_loaded_or_fails(self, odd_plugin):
+        run = rocking(odd_plugin, "mechanisms", "--check", "breaker")
+        assert run.returncode == 3
+        assert re.search(r"FAILS .*\nTraceback(.*\n)+ .*odd_breaks\.py.*(.*\n)+ZeroDivisionError", run.stdout)
+        told = rocking(odd_plugin, "mechanisms", "--check", "divides").stdout
+        assert told.count("Traceback") == 1 and "1 / 0" in told and "The same error." in told
+        checks = [line for line in told.splitlines() if line.startswith(("passes ", "FAILS "))]
+        assert len(checks) == len(CHECKS) + 2
+
+
+def test_check_takes_a_file(tmp_path):
+    file = tmp_path / "wall.yaml"
+    file.write_text("mechanism: wall\nthickness: 0.3\nheight: 3\n", encoding="utf-8")
+    found = run_json("mechanisms", "--check", "wall", file)
+    assert found["passed"] and found["file"] == str(file) and len(found["checks"]) == len(CHECKS) + 1
+    assert (
+        "is a structure of the mechanism wall, not of block"
+        in run("mechanisms", "--check", "block", file, code=2).stderr
+    )
+    assert "did you mean wall?" in run("mechanisms", "--check", "wal", code=2).stderr
+    assert "needs the NAME" in run("mechanisms", "--check", code=2).stderr
+    assert "FILE goes with --check" in run("mechanisms", "wall", file, code=2).stderr
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_check_passes_every_built_in_mechanism(name):
+    assert run_json("mechanisms", "--check", name)["passed"]
+
+
+def test_check_passes_the_installed_plugin(installed_plugin):
+    run = rocking(installed_plugin, "mechanisms", "--check", "capped_block")
+    assert run.returncode == 0 and "FAILS" not in run.stdout
+    assert run.stdout.count("passes  ") == len(CHECKS) + 2
+    assert "passes all" in run.stderr
+
+
+def test_printing_from_other_threads_is_kept_out_of_the_results():
+    # What a plugin's thread prints while a command runs, and while two commands run one in the other.
+    code = (
+        "import threading\n"
+        "from rocking_cli.cli import terminal\n"
+        "with terminal.results_only():\n"
+        "    thread = threading.Thread(target=print, args=('noise',)); thread.start(); thread.join()\n"
+        "    with terminal.results_only():\n"
+        "        print('noise'); terminal.result('inner')\n"
+        "    print('noise'); terminal.print_json({'a': 1}); terminal.table('t', ['x'], [['y']])\n"
+        "print('after')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.split() == ["noise"] * 3
+    assert done.stdout.startswith('inner\n{"a": 1}\nt') and done.stdout.endswith("after\n")
+
+
 def entry(value, name="odd"):
     return EntryPoint(name=name, value=value, group=GROUP)
 
@@ -96,7 +343,9 @@ def test_a_plugin_that_fails_or_miscounts_is_called_by_its_name():
 
     with pytest.raises(MechanismError, match="1 motions for 2 bodies"):
         equivalent_block(Odd())
-    with pytest.raises(MechanismError, match="the mechanism odd failed on these sizes: KeyError: 'lost'"):
+    with pytest.raises(
+        MechanismError, match=r"the mechanism odd failed in motion: KeyError: 'lost' \(.*test_registry\.py:\d+\)"
+    ):
         equivalent_block(Odd(fail=True))
 
 

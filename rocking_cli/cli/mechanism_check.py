@@ -41,7 +41,13 @@ def check(name: str, file: str | None, registry: Registry, as_json: bool) -> Non
     failed = [each for each in verdicts if not each.passed]
     if as_json:
         checks = [
-            {"check": each.check, "meaning": each.meaning, "passed": each.passed, "why": each.why, "traceback": each.trace}
+            {
+                "check": each.check,
+                "meaning": each.meaning,
+                "passed": each.passed,
+                "why": each.why,
+                "traceback": each.trace,
+            }
             for each in verdicts
         ]
         found = {"mechanism": name, "package": registry.package_of(name), "file": file}

@@ -28,7 +28,9 @@ def command(name: str, as_json: bool) -> None:
     try:
         parse_structure(text, f"rocking new {name}", name, registry)
     except RockingError as error:
-        terminal.warning(f"the examples of the mechanism {name} make no structure, and this file does not work as it is")
+        terminal.warning(
+            f"the examples of the mechanism {name} make no structure, and this file does not work as it is"
+        )
         terminal.note(str(error))
         terminal.plugin_traceback(error)
     if as_json:

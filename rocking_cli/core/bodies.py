@@ -41,7 +41,9 @@ class Body:
     def __post_init__(self) -> None:
         for what, value, unit in (("mass", self.mass, "kg"), ("inertia", self.inertia, "kg m2")):
             if not 0 <= value < inf:
-                raise ValueError(f"the {what} of body {self.name!r} is {value:g} {unit}: it must be finite, and at least 0")
+                raise ValueError(
+                    f"the {what} of body {self.name!r} is {value:g} {unit}: it must be finite, and at least 0"
+                )
         if not abs(self.centroid) < inf:
             raise ValueError(f"the centroid of body {self.name!r} is at {self.centroid:g} m: it must be finite")
 

@@ -14,7 +14,6 @@ from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.errors import MechanismError
 
-
 JUMP = 1e-5  # of the size of a coefficient: what its derivative may miss of its change from one rotation to the next
 
 
