@@ -404,9 +404,9 @@ def hinges_hold_together(structure: Mechanism) -> None:
 
 
 def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
-    """No body goes through the ground as it begins to rock, and the edge of the base stays on it.
+    """No body goes through the ground as it begins to rock, and the edge of what stood on it stays there.
 
-    Bodies whose outlines are not known are passed over.
+    Bodies that move as one stand as one. Bodies whose outlines are not known are passed over.
     """
     drawn = picture(structure)
     known = [part for part in drawn.parts if not part.assumed]
@@ -418,7 +418,8 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
     for direction in Direction:
         phi = np.linspace(0.0, A_LITTLE, 9) * _phi_cr(structure, direction)
         motions = structure.motion(phi, direction)
-        touching: list[Reals] = []
+        as_one = _moving_as_one(motions, size)
+        touching: dict[tuple[int, complex], list[Reals]] = {}  # what moves as one, and which copy of it
         for part in known:
             at_rest = np.concatenate(part.outlines)
             moved = np.array([motions[part.body].carry(corner - part.shift)[0] + part.shift for corner in at_rest])
@@ -441,15 +442,18 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
                         f"{part.name} goes {-deep:.4g} m through the ground within {phi[-1]:.4g} rad of the "
                         f"{direction.label} direction: it must turn about the edge of its base",
                     )
-                    touching += list(above[above[:, 0] <= FLUSH * size])
-        # A base of unknown shape may be wider than what is known; a point is none.
-        wider = any(part.assumed and bodies[part.body].inertia > 0 for part in drawn.parts)
-        if touching and not wider:
-            lift = np.min(touching, axis=0).max()
+                    feet = list(above[above[:, 0] <= FLUSH * size])
+                    touching.setdefault((as_one[part.body], part.shift), []).extend(feet)
+        for (one, _), feet in touching.items():
+            # A base of unknown shape may be wider than what is known; a point is none.
+            wider = any(
+                part.assumed and as_one[part.body] == one and bodies[part.body].inertia > 0 for part in drawn.parts
+            )
+            lift = np.min(feet, axis=0).max() if feet and not wider else 0.0
             _demand(
                 lift <= FLUSH * size,
-                f"all of the base leaves the ground, by {lift:.4g} m within {phi[-1]:.4g} rad of the "
-                f"{direction.label} direction: it must turn about the edge of its base",
+                f"all of the base of {bodies[one].name} leaves the ground, by {lift:.4g} m within {phi[-1]:.4g} rad of "
+                f"the {direction.label} direction: it must turn about the edge of its base",
             )
 
 
@@ -542,6 +546,15 @@ def _size(structure: Mechanism) -> float:
         for direction in Direction
         for body, motion in zip(structure.bodies(), structure.motion(np.zeros(1), direction), strict=True)
     )
+
+
+def _moving_as_one(motions: Sequence[RigidMotion], size: float) -> list[int]:
+    """For each body the first that moves with it as if they were one."""
+    places = [np.concatenate([motion.carry(0j)[0], motion.carry(complex(size))[0]]) for motion in motions]
+    return [
+        next(j for j, other in enumerate(places) if np.abs(place - other).max() <= ALIKE * (size + np.abs(place).max()))
+        for place in places
+    ]
 
 
 def _paired(one: RigidMotion, other: RigidMotion, point: complex) -> dict[str, tuple[Points, Points]]:
