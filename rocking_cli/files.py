@@ -13,7 +13,9 @@ from typing import BinaryIO
 from rocking_cli.errors import InputError, Problem
 
 
-def read_bytes(path: str | Path, what: str, most: int) -> bytes:
+def read_bytes(
+    path: str | Path, what: str, most: int, *, if_pipe: str = "write what it gives to a file first"
+) -> bytes:
     """Content of a file, after a look at what it is and how large.
 
     Parameters
@@ -24,6 +26,8 @@ def read_bytes(path: str | Path, what: str, most: int) -> bytes:
         What it should be, for messages: "structure file".
     most : int
         How large it may be [bytes].
+    if_pipe : str, optional
+        What to do about a device or a pipe, for the message.
 
     Raises
     ------
@@ -39,8 +43,7 @@ def read_bytes(path: str | Path, what: str, most: int) -> bytes:
             if stat.S_ISDIR(kind):
                 raise IsADirectoryError
             if not stat.S_ISREG(kind):
-                hint = "write what it gives to a file first"
-                raise InputError(Problem(f"this is a device or a pipe, not a {what}", shown, hint=hint))
+                raise InputError(Problem(f"this is a device or a pipe, not a {what}", shown, hint=if_pipe))
             content = file.read(most + 1)
     except FileNotFoundError:
         raise InputError(Problem("no such file", shown, hint="check the path")) from None

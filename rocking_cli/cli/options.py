@@ -11,7 +11,7 @@ import click
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 # The names of units stand here again so that `--help` needs no numpy; a test holds them together.
-UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal")
+UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
 
 as_json: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
 
@@ -33,6 +33,21 @@ class Finite(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
         if not abs(number) < float("inf") or (self.positive and number <= 0):
             self.fail(f"{value} is not a {'positive' if self.positive else 'finite'} number.", param, ctx)
         return number
+
+
+class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
+    """A unit of acceleration, in any spelling that the header of a record may have: `m/s^2` is `m/s2`."""
+
+    def __init__(self) -> None:
+        super().__init__(UNITS)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Turn a spelling into the name, or fail naming the option and the choices."""
+        if value in UNITS:
+            return value
+        from rocking_cli.excitation.records.units import canonical
+
+        return super().convert(canonical(str(value)) or value, param, ctx)
 
 
 def restitution(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
@@ -87,7 +102,7 @@ shaking: Decorator = _in_order(
 """One ground motion: `record` or `pulse`."""
 
 reading: Decorator = _in_order(
-    click.option("--units", type=click.Choice(UNITS), help="Unit of the record, where the file does not say."),
+    click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),
     click.option("--dt", type=Finite(positive=True), metavar="SECONDS", help="Sample interval of a one-column record."),
     click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name."),
 )

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.decoding import decoded
+from rocking_cli.excitation.records.opening import open_record
 from rocking_cli.excitation.records.registry import load_readers, reader_for, takes_bytes
-from rocking_cli.files import read_bytes
 
 __all__ = ["read_record"]
-
-LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB
-
-# Bytes no text file holds. Ctrl-Z (0x1a) is allowed: DOS programs end text files with it.
-_BINARY = bytes(set(range(0x20)) - set(b"\t\n\v\f\r\x1a"))
-
 
 def read_record(
     path: str | Path, *, dt: float | None = None, units: str | None = None, channel: str | None = None
@@ -27,14 +23,16 @@ def read_record(
     ----------
     path : str or Path
         A file in the format of a data centre, of any reader of the entry points `rocking.records`, or delimited
-        text with one column (acceleration) or two (time, acceleration).
+        text: a column of accelerations, or several, with or without the time. It may be compressed (gzip), or a file
+        in a zip archive. `-` is standard input, which can be read once.
     dt : float, optional
         Interval between samples [s]. Needed for one column; otherwise it must agree with the file.
     units : str, optional
-        Unit of the accelerations in the file: g, m/s2, cm/s2, mm/s2 or gal. Needed where the file does not name
-        its unit; otherwise it must agree with the file.
+        Unit of the accelerations in the file: g, m/s2, cm/s2, mm/s2, gal, mg (a thousandth of g) or %g. Needed where
+        the file does not name its unit; otherwise it must agree with the file.
     channel : str, optional
-        Which channel of a file with several: its place, counted from 1, or its name in the file.
+        Which channel of a file with several: its place, counted from 1, or its name in the file. Of an archive with
+        several files the place or name of one, and a channel in it behind a colon: `north.V2:2`.
 
     Returns
     -------
@@ -48,24 +46,15 @@ def read_record(
     """
     if dt is not None and not (math.isfinite(dt) and dt > 0):
         raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="--dt"))
-    file = str(path)
-    data = read_bytes(file, "record file", LARGEST)
-    text = _decoded(data, file)
+    data, file, name, member, channel = open_record(path, channel)
+    text = decoded(data, file)
     reader = reader_for(text, file, load_readers(), data)
     content = data if takes_bytes(reader) else text
     del data, text  # one of them is enough: a long record is large
-    return reader.read(content, file, dt=dt, units=units, channel=channel)
-
-
-def _decoded(data: bytes, file: str) -> str | None:
-    """Text of a file, with plain newlines; None if it holds bytes that no text does."""
-    if len(data.translate(None, _BINARY)) != len(data):
-        return None
-    try:
-        content = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        content = data.decode("latin-1")  # older processing programs write accents and m/s² that way
-    content = content.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a")
-    if not content or content.isspace():
-        raise InputError(Problem("the file is empty", file=file))
-    return content
+    motion = reader.read(content, file, dt=dt, units=units, channel=channel)
+    if Path(file).name == name:
+        return motion
+    # A file of an archive is named after the archive, and is one of its channels if there are several.
+    inside = motion.name.removeprefix(Path(file).name).removeprefix(" channel ")
+    said = ":".join(part for part in (member, inside) if part)
+    return replace(motion, name=f"{name} channel {said}" if said else name)

@@ -1,10 +1,11 @@
-"""Delimited text: one column (acceleration) or two (time, acceleration), with or without a header."""
+"""Delimited text: a column of accelerations, or a table with times and accelerations, with or without a header."""
 
 from __future__ import annotations
 
 import math
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -13,7 +14,9 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.columns import Choice, Label, choose, labels
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.times import UnevenTimeError, even_interval
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
 
 TITLE = "delimited text"
@@ -22,7 +25,8 @@ SIGN = "a line that begins with a number"
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _OTHER_TIME = re.compile(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
-_TIME_LABEL = re.compile(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
+_FIRST_CELL = re.compile(r'"([^"]*)"|[^\s,;]*')
+_QUOTED = re.compile(r'"([^"]*)"')
 _HEAD = 100_000  # characters looked at to recognise a format: a large file is not searched to its end
 _HUGE = 1e30  # no time or acceleration in any unit; far below where sums and conversions overflow
 _DT_TOLERANCE = 1e-3  # a given interval may be the rounded form of the file's, or the other way round
@@ -38,18 +42,34 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
-    only_channel(file, channel)
     lines = Lines(text)
     start = _first_row(lines)
     if start is None:
         raise InputError(Problem("no numbers found", file=file))
+    head = lines[:start]
+    if '"' in lines[start]:
+        text = _unquoted(file, start + 1, lines[start], text)
+        lines = Lines(text)
     delimiter = _delimiter(lines[start])
+    commas = delimiter in (";", "\t") and _has_decimal_commas(lines, start)
     cells = _clean(lines[start]).split(delimiter)
-    numbers_in(file, start + 1, lines[start], cells)  # a title such as "6 km south of" is no row of four columns
+    # A title such as "6 km south of" is no row of four columns.
+    numbers_in(file, start + 1, lines[start], [cell.replace(",", ".") for cell in cells] if commas else cells)
     columns = len(cells)
-    if columns > 2:
-        raise InputError(_too_many_columns(file, start + 1, lines[start], columns))
-    header = _header(file, lines[:start], delimiter, columns)
+    header = _header(file, head, delimiter, columns)
+    names, label_lines = labels(header, delimiter, columns)
+    _refuse_other_times(file, names, label_lines)
+
+    choice = Choice(columns - 1, 0 if columns == 2 else None, "")
+    table = None
+    if columns > 2 or (columns == 2 and channel is not None and label_lines):
+        table = _table(file, lines, start, delimiter, names, commas=commas)
+        _refuse_a_single_sample(file, start, table)
+        choice = choose(file, table, names, channel, _increases_evenly)
+        header = [each for each in header if each[0] not in label_lines]
+        header += [(number, str(names[choice.column])) for number in label_lines[:1]]
+    elif channel is not None and channel.strip().lower() != names[-1].name.lower():
+        only_channel(file, channel)
 
     problems: list[Problem] = []
     unit = ""
@@ -57,21 +77,24 @@ def read(
         unit = resolve_unit(file, header, units)
     except InputError as error:
         problems.extend(error.problems)
-    if columns == 1 and dt is None:
+    if choice.time is None and dt is None:
+        what = "one column of accelerations" if columns == 1 else "no column is called time or is one"
         hint = "give it with --dt, in seconds, or add a time column before the accelerations"
-        problems.append(Problem("one column of accelerations, and no sample interval", file=file, hint=hint))
+        problems.append(Problem(f"{what}, and no sample interval", file=file, hint=hint))
     if problems:
         raise InputError(*problems)
 
-    table = _table(file, lines, start, delimiter, columns)
-    if table.shape[1] < 2:
-        raise InputError(Problem("a record needs at least two samples, this has one", file=file, line=start + 1))
-    if columns == 2:
-        own = _interval(file, lines, start, table[0])
+    if table is None:
+        table = _table(file, lines, start, delimiter, names, commas=commas)
+        _refuse_a_single_sample(file, start, table)
+    if choice.time is not None:
+        column = _called(names, choice.time) if columns > 2 else ""
+        own = _interval(file, lines, start, table[choice.time], column)
         check_interval(file, None, own, dt)
         dt = own
-    assert dt is not None  # one column without it was refused above
-    return GroundMotion(Path(file).name, dt, table[-1] * UNITS[unit], unit, "text")
+    assert dt is not None  # none at all was refused above
+    name = Path(file).name + (f" channel {choice.channel}" if choice.channel else "")
+    return GroundMotion(name, dt, table[choice.column] * UNITS[unit], unit, "text")
 
 
 def usable(values: NDArray[np.float64]) -> bool:
@@ -143,9 +166,36 @@ def _clean(line: str) -> str:
 def _first_row(lines: Iterable[str]) -> int | None:
     """Index of the first line of data: the first that begins with a number and is not a comment."""
     for index, line in enumerate(lines):
-        if _value(re.split(r"[\s,;]", _clean(line), maxsplit=1)[0]) is not None:
+        match = _FIRST_CELL.match(_clean(line))
+        if match and _value(match[0] if match[1] is None else match[1].strip().replace(",", ".")) is not None:
             return index
     return None
+
+
+def _unquoted(file: str, line_number: int, row: str, text: str) -> str:
+    """The text with blanks for its quotation marks, after a look at its first row."""
+    if any("," in cell for cell in _QUOTED.findall(row)) and not re.search(r"[;\t]", _QUOTED.sub("", row)):
+        message = "the commas within quotation marks may be decimal ones, or part thousands"
+        hint = "write decimals with a point, or separate the columns with semicolons"
+        raise InputError(Problem(message, file, line_number, excerpt=row.strip()[:100], hint=hint))
+    return text.replace('"', " ")
+
+
+def _has_decimal_commas(lines: Lines, start: int) -> bool:
+    """Whether the numbers of the first rows, which are separated by something else, have commas in them."""
+    _, page = next(lines.pages(start))
+    return any("," in _clean(line) for line in page)
+
+
+def _with_points(file: str, first: int, page: Sequence[str]) -> list[str]:
+    """The rows of a page from line index `first` on, with points for their decimal commas."""
+    rows = [_clean(line) for line in page]
+    for number, row in enumerate(rows, start=first + 1):
+        if "." in row:
+            message = "a point, in a table with decimal commas"
+            hint = "write all decimals with a point, and no mark between thousands"
+            raise InputError(Problem(message, file, number, excerpt=row[:100], hint=hint))
+    return [row.replace(",", ".") for row in rows]
 
 
 def _delimiter(row: str) -> str | None:
@@ -162,33 +212,45 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
             comments.append((number, line.lstrip("#% \t")))
         elif line:
             header.append((number, line))
-    if header and columns == 2:
+    if header and columns > 1:
         # A spoilt first time, such as O.00 for 0.00, must not pass for a header and lose its sample.
         number, line = header[-1]
-        cells = _clean(line).split(delimiter)
-        if len(cells) == 2 and _value(cells[1].strip()) is not None:
-            raise InputError(_not_a_number(file, number, line, cells[0].strip(), known=False))
-        if len(cells) == 2 and _TIME_LABEL.match(cells[1].strip()) and not _TIME_LABEL.match(cells[0].strip()):
+        cells = [cell.strip() for cell in _clean(line).split(delimiter)]
+        if len(cells) == columns and all(_value(cell) is not None for cell in cells[1:]):
+            raise InputError(_not_a_number(file, number, line, cells[0], known=False))
+        if columns == 2 == len(cells) and Label(cells[1]).is_time and not Label(cells[0]).is_time:
             raise InputError(
                 Problem("the time is in the second column", file, number, excerpt=line, hint="put the time first")
             )
     found = comments + header
-    if found and columns == 2 and (match := _OTHER_TIME.search(found[-1][1])):
-        message = f"the time column is in '{match[1]}'"
-        raise InputError(Problem(message, file=file, line=found[-1][0], hint="give the times in seconds"))
+    if found and columns == 2:
+        _refuse_other_times(file, [Label(found[-1][1])], [found[-1][0]])
     return found
 
 
-def _table(file: str, lines: Lines, start: int, delimiter: str | None, columns: int) -> NDArray[np.float64]:
+def _refuse_other_times(file: str, names: Sequence[Label], lines: Sequence[int]) -> None:
+    """Refuse columns of times that are not in seconds, from the labels on these lines."""
+    for label in names:
+        if match := _OTHER_TIME.search(str(label)):
+            message = f"the time column is in '{match[1]}'"
+            raise InputError(Problem(message, file=file, line=lines[0], hint="give the times in seconds"))
+
+
+def _table(
+    file: str, lines: Lines, start: int, delimiter: str | None, names: Sequence[Label], *, commas: bool
+) -> NDArray[np.float64]:
     """All columns as the rows of an array; by numpy's own, fast parser, by the careful one on a page it gives up."""
+    columns = len(names)
     table = np.empty((columns, len(lines) - start))  # rather too wide: blank lines and comments hold nothing
     filled = 0
     for first, page in lines.pages(start):
+        if commas:
+            page = _with_points(file, first, page)
         part = _quick_table(page, delimiter, columns)
         if part is None:  # perhaps only because of comments or empty cells
             part = _quick_table([row for line in page if (row := _clean(line))], delimiter, columns)
         if part is None:
-            part = _careful_table(file, first, page, delimiter, columns)
+            part = _careful_table(file, first, page, delimiter, names)
         table[:, filled : filled + len(part)] = part.T
         filled += len(part)
     return table[:, :filled]
@@ -206,10 +268,11 @@ def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> N
 
 
 def _careful_table(
-    file: str, first: int, lines: Sequence[str], delimiter: str | None, columns: int
+    file: str, first: int, lines: Sequence[str], delimiter: str | None, names: Sequence[Label]
 ) -> NDArray[np.float64]:
     """Parse the lines from index `first` on one by one: to say which is wrong, or take what numpy does not, 1D-3."""
     values: list[float] = []
+    columns = len(names)
     for number, line in enumerate(lines, start=first + 1):
         row = _clean(line)
         if not row:
@@ -219,47 +282,43 @@ def _careful_table(
             numbers_in(file, number, line, cells)  # a word or an empty cell is the better thing to point at
             message = f"this row has {len(cells)} column{'s' * (len(cells) > 1)}, the rows before it have {columns}"
             raise InputError(Problem(message, file=file, line=number, excerpt=line.strip()[:100]))
-        values.extend(numbers_in(file, number, line, cells))
+        for place, cell in enumerate(cells):
+            try:
+                values.extend(numbers_in(file, number, line, [cell]))
+            except InputError as error:
+                field = _called(names, place) if columns > 1 else None
+                raise InputError(replace(error.problems[0], field=field)) from None
     return np.array(values).reshape(-1, columns)
 
 
-def _interval(file: str, lines: Lines, start: int, time: NDArray[np.float64]) -> float:
-    """Interval of evenly spaced times [s]; an error at the first time that is out of step."""
-    steps = np.diff(time)
-    if (steps <= 0).any():
-        row = int(np.argmax(steps <= 0)) + 1
-        what = "is repeated" if steps[row - 1] == 0 else f"comes after {time[row - 1]:g} s"
-        hint = "the first column must be the time, increasing; printed times need enough decimals to tell rows apart"
-        raise InputError(_at_row(file, lines, start, row, f"time does not increase: {time[row]:g} s {what}", hint))
-
-    dt = float((time[-1] - time[0]) / (len(time) - 1))
-    if dt < 1e-9:
-        hint = "the first column must be the time, in seconds"
-        raise InputError(Problem(f"the times give a sample interval of {dt:g} s", file=file, hint=hint))
-    usual = float(np.median(steps))
-    even = time[0] + dt * np.arange(len(time))
-    # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
-    tolerance = max(0.01 * dt, 1.001 * _rounding(time, dt))
-    # The steps find a missing sample where it is; the distances find steps that grow bit by bit.
-    odd_step = np.abs(steps - usual) > tolerance
-    out_of_step = np.abs(time - even) > tolerance
-    if odd_step.any():
-        row = int(np.argmax(odd_step)) + 1
-        message = f"time is uneven: a step of {steps[row - 1]:.6g} s here, of {usual:.6g} s elsewhere"
-    elif out_of_step.any():
-        row = int(np.argmax(out_of_step))
-        message = f"time is uneven: {time[row]:.9g} s here, a constant interval would give {even[row]:.9g} s"
-    else:
-        return dt
-    hint = "resample at a constant interval; if only the printed times are rough, keep the accelerations and give --dt"
-    raise InputError(_at_row(file, lines, start, row, message, hint))
+def _refuse_a_single_sample(file: str, start: int, table: NDArray[np.float64]) -> None:
+    if table.shape[1] < 2:
+        raise InputError(Problem("a record needs at least two samples, this has one", file=file, line=start + 1))
 
 
-def _rounding(time: NDArray[np.float64], dt: float) -> float:
-    """Find the resolution times are printed with [s], if it is below a tenth of `dt` but not negligible; else 0."""
-    decimals = math.floor(-math.log10(dt / 10) + 1e-9) + 1
-    resolution = 10.0**-decimals
-    return resolution if (np.abs(time - np.round(time, decimals)) < 1e-6 * resolution).all() else 0.0
+def _called(names: Sequence[Label], place: int) -> str:
+    """What to call a column."""
+    return f"column {place + 1}" + (f" ({names[place]})" if names[place].name else "")
+
+
+def _increases_evenly(column: NDArray[np.float64]) -> bool:
+    """Whether a column is one of times."""
+    try:
+        even_interval(column)
+    except UnevenTimeError:
+        return False
+    return True
+
+
+def _interval(file: str, lines: Lines, start: int, time: NDArray[np.float64], column: str) -> float:
+    """Interval of the times in a column [s], which has a name if there are several."""
+    try:
+        return even_interval(time)
+    except UnevenTimeError as error:
+        if error.row is None:
+            raise InputError(Problem(error.message, file=file, field=column or None, hint=error.hint)) from None
+        found = _at_row(file, lines, start, error.row, error.message, error.hint)
+        raise InputError(replace(found, field=column or None)) from None
 
 
 def _at_row(file: str, lines: Lines, start: int, row: int, message: str, hint: str) -> Problem:
@@ -282,11 +341,4 @@ def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: 
         hint = "correct it, or begin the line with # if it is a header or a comment"
         if re.search(r"\d,\d", line) and "." not in line:
             hint = "write decimals with a point, not a comma"
-    return Problem(message, file=file, line=line_number, excerpt=line.strip()[:100], hint=hint)
-
-
-def _too_many_columns(file: str, line_number: int, line: str, columns: int) -> Problem:
-    """Describe a table that is wider than time and acceleration."""
-    message = f"{columns} columns: only one (acceleration) or two (time, acceleration) can be read for now"
-    hint = "keep the time and one acceleration, or give the file as the data centre made it"
     return Problem(message, file=file, line=line_number, excerpt=line.strip()[:100], hint=hint)

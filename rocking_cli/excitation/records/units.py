@@ -9,7 +9,15 @@ from collections.abc import Sequence
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 
-UNITS: dict[str, float] = {"g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01}
+UNITS: dict[str, float] = {
+    "g": STANDARD_GRAVITY,
+    "m/s2": 1.0,
+    "cm/s2": 0.01,
+    "mm/s2": 0.001,
+    "gal": 0.01,
+    "mg": STANDARD_GRAVITY / 1000,
+    "%g": STANDARD_GRAVITY / 100,
+}
 """Size of each unit that can be read [m/s2], under its canonical name."""
 
 CHOICES = ", ".join(UNITS)
@@ -18,11 +26,12 @@ _S = r"s(?:ec)?"
 _PER_S2 = rf"(?: ?/ ?{_S} ?(?:\^|\*\*)? ?2| ?/ ?{_S} ?/ ?{_S}|[ .·*]?{_S} ?(?:\^|\*\*)? ?-2|[ p]?s2)"
 # A unit ends where its word ends, and is not the first part of something else: g/10, cm/s of cm/s2, g = 9.81.
 _END = r"(?! ?[/^*=]|\w)"
-_SPELLED = rf"(?:(?:mm|cm|m){_PER_S2}|gal){_END}"  # says by itself that it is an acceleration; a bare "g" does not
+_OF_G = r"milli-? ?g|mg|(?:%|percent|pct) ?g"
+_SPELLED = rf"(?:(?:mm|cm|m){_PER_S2}|gal|{_OF_G}){_END}"  # says what it is by itself; a bare "g" does not
 _UNIT = rf"(?:{_SPELLED}|g{_END})"
 _SPEED = rf"(?:mm|cm|m|km|in|ft)(?: ?/ ?(?:{_S}|h)| s-1){_END}"
 _LENGTH = rf"(?:mm|cm|m|km|inch(?:es)?|ft|feet){_END}"
-_FOREIGN = rf"(?:(?:km|in|ft){_PER_S2}|mg|milli-?g|% ?g|counts?){_END}"
+_FOREIGN = rf"(?:(?:km|in|ft){_PER_S2}|counts?){_END}"
 
 _ACCELERATION = r"\bacc(?:l|n|el|eln|els|eleration|elerations)?(?![a-z])\.?"
 _MOTION = re.compile(r"\b(?:vel|velocity|velocities|disp|displ|displacements?)\b")
@@ -45,6 +54,13 @@ _NAMED = [
 # A line about one value, such as the peak, which may well be in another unit than the record.
 _ABOUT_A_VALUE = re.compile(r"\b(?:pg[avd]|peak|max\w*|min|minimum|rms|arias|scaled?|factor|gravity)\b")
 _NOT_USABLE = re.compile(rf"(?:{_UNITS_OF}|{_ACCELERATION}{_GAP})[\[(]?({_SPEED}|{_FOREIGN})|{_UNITS_OF}({_LENGTH})")
+# What stands where a unit should: after the word, or in brackets in the label of a column that is not the time.
+_SAID = re.compile(
+    r"\bunits? *(?:[:=]|of |are |is |in )[ :=]*[\[(]?(?!(?:acc\w*|the|time)\b)([^\s,;\])]{1,20})", re.IGNORECASE
+)
+_SAID_LABEL = re.compile(
+    r"[\[(] *(?!(?:m?s|secs?|seconds?|-*) *[\])])([^\])\s]{1,20}) *[\])](?! ?[/^*])", re.IGNORECASE
+)
 _NOT_USABLE_LABEL = re.compile(rf"[\[(]\s*({_SPEED}|{_LENGTH}|{_FOREIGN})\s*[\])]")
 
 
@@ -53,7 +69,16 @@ def canonical(spelling: str) -> str | None:
     word = _normal(spelling)
     if not re.fullmatch(_UNIT, word):
         return None
-    return word if word in ("g", "gal") else word[: word.index("s")].rstrip(" ./·*p") + "/s2"
+    if word in ("g", "gal"):
+        return word
+    if re.fullmatch(_OF_G, word):
+        return "mg" if word.startswith("m") else "%g"
+    return word[: word.index("s")].rstrip(" ./·*p") + "/s2"
+
+
+def is_unit(word: str) -> bool:
+    """Whether a word of a header is the unit of a time, a length, a speed or an acceleration, and nothing else."""
+    return re.fullmatch(rf"m?s|secs?|seconds?|{_UNIT}|{_SPEED}|{_LENGTH}|{_FOREIGN}", _normal(word)) is not None
 
 
 def header_units(line: str) -> set[str]:
@@ -99,8 +124,7 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
     if given:
         return next((unit for unit in stated if _same(given, unit)), given)
     if not stated:
-        hint = f"say which it is with --units: {CHOICES}"
-        raise InputError(Problem("the file does not say what unit its accelerations are in", file=file, hint=hint))
+        raise InputError(_not_said(file, header))
     if not all(_same(unit, other) for unit in stated for other in stated):
         message = f"the header names more than one unit: {', '.join(stated)}"
         hint = f"say which one holds for the accelerations with --units: {CHOICES}"
@@ -108,20 +132,46 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
     return next(iter(stated))
 
 
+def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
+    """Describe a header without a unit, or with one that is none of `UNITS`."""
+    hint = f"say which it is with --units: {CHOICES}"
+    for index, (number, line) in enumerate(header):
+        if _ABOUT_A_VALUE.search(_normal(line)):
+            continue
+        match = _SAID.search(line) or (_SAID_LABEL.search(line) if index == len(header) - 1 else None)
+        if match and canonical(match[1]) is None:
+            message = f"the header says '{match[1]}', which is no unit of acceleration known here"
+            return Problem(message, file=file, line=number, hint=hint)
+    return Problem("the file does not say what unit its accelerations are in", file=file, hint=hint)
+
+
 def _refuse_other_quantities(file: str, header: Sequence[tuple[int, str]]) -> None:
     """Refuse a header that speaks of a velocity or displacement, or of a unit that cannot be read."""
     about_acceleration = any(header_units(line) or re.search(_ACCELERATION, _normal(line)) for _, line in header)
     for index, (number, line) in enumerate(header):
         label = index == len(header) - 1
-        what = _other_quantity(line, label=label)
+        what = other_quantity(line, label=label)
         # Only the labels are about the columns for sure: elsewhere "peak velocity" is just information.
         if what and (label or not about_acceleration):
             hint = f"give the ground acceleration, in one of: {CHOICES}"
             raise InputError(Problem(what, file=file, line=number, excerpt=line.strip()[:100], hint=hint))
 
 
-def _other_quantity(line: str, *, label: bool) -> str | None:
-    """Say what a line of a header takes the values for, if not for accelerations in a usable unit."""
+def other_quantity(line: str, *, label: bool = True) -> str | None:
+    """Say what a line of a header takes the values for, if not for accelerations in a usable unit; None if it does.
+
+    Parameters
+    ----------
+    line : str
+        The line, or the label of one column.
+    label : bool, optional
+        Whether it is about columns for sure, so that a unit in brackets is that of the values.
+
+    Returns
+    -------
+    str or None
+        What is wrong with it, as a sentence.
+    """
     if header_units(line):
         return None
     line = _normal(line)

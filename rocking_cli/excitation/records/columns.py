@@ -1,0 +1,221 @@
+"""The columns of a table: their names, which of them are times, which accelerations, and which one is asked for."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.records.units import header_units, is_unit, other_quantity
+
+LISTED = 30  # columns in a message
+
+_TIME = re.compile(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
+_BARE_T = re.compile(r"t", re.IGNORECASE)  # the time, or the transverse component
+_WORDS = re.compile(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, and what is in brackets behind it
+_GAPS = re.compile(r"\s{2,}|\t")
+
+
+@dataclass(frozen=True)
+class Label:
+    """What the header says of a column.
+
+    Parameters
+    ----------
+    name : str
+        Its name, perhaps with a unit in it; empty if it has none.
+    unit : str, optional
+        Its unit, if a line of its own gives it.
+    """
+
+    name: str
+    unit: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    @property
+    def is_time(self) -> bool:
+        """Whether it is the name of a time."""
+        return _TIME.match(self.name) is not None
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The column of accelerations that is meant.
+
+    Parameters
+    ----------
+    column : int
+        Its index in the table.
+    time : int or None
+        Index of the column with its times; None if there is none.
+    channel : str
+        Its name, or its place among the accelerations; empty if it is the only one.
+    """
+
+    column: int
+    time: int | None
+    channel: str
+
+
+def labels(lines: Sequence[tuple[int, str]], delimiter: str | None, columns: int) -> tuple[list[Label], list[int]]:
+    """Names of the columns of a table, from the header above it.
+
+    Parameters
+    ----------
+    lines : sequence of (int, str)
+        Line number and text of every line of the header.
+    delimiter : str or None
+        What separates the columns below; None stands for blanks.
+    columns : int
+        How many there are.
+
+    Returns
+    -------
+    list of Label
+        One for each column; empty ones if no line has as many words as there are columns.
+    list of int
+        Numbers of the lines they are from.
+    """
+    rows = [(number, cells) for number, line in lines if (cells := _cells(line, delimiter, columns))]
+    if not rows:
+        return [Label("")] * columns, []
+    number, names = rows[-1]
+    if len(rows) > 1 and all(not cell or cell == "-" or is_unit(cell.strip("[]() ")) for cell in names):
+        (above, names), units = rows[-2], [cell.strip("[]()- ") for cell in names]
+        return [Label(name, unit) for name, unit in zip(names, units, strict=True)], [above, number]
+    return [Label(name) for name in names], [number]
+
+
+def choose(
+    file: str,
+    table: NDArray[np.float64],
+    names: Sequence[Label],
+    asked: str | None,
+    increases: Callable[[NDArray[np.float64]], bool],
+) -> Choice:
+    """Find the column that is asked for, or the only one with accelerations.
+
+    Parameters
+    ----------
+    file : str
+        The file, for the messages.
+    table : ndarray, shape (columns, rows)
+        The numbers.
+    names : sequence of Label
+        One for each column.
+    asked : str, optional
+        Place among the columns of accelerations, counted from 1, or name.
+    increases : callable
+        Whether a column increases evenly, as times do.
+
+    Raises
+    ------
+    InputError
+        If there are several and none is asked for, or no such one; it lists them.
+    """
+    times = _times(table, names, increases)
+    values = [k for k in range(len(table)) if k not in times and not other_quantity(str(names[k]))]
+    if not values:
+        message = "none of the columns holds accelerations"
+        raise InputError(Problem(message, file, hint=f"there are:{_listed(table, names, times, values)}"))
+    place = 0 if asked is None and len(values) == 1 else _place(file, table, names, times, values, asked)
+    column = values[place]
+    time = max((k for k in times if k < column), default=min(times, default=None))
+    channel = "" if len(values) == 1 else names[column].name or str(place + 1)
+    return Choice(column, time, channel)
+
+
+def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
+    """The cells of a line of labels, in the first way that gives as many as there are columns; else none."""
+    for cells in _ways(line, delimiter):
+        found = [cell.strip().strip("\"'").strip() for cell in cells]
+        if len(found) == columns and any(re.search(r"[^\W\d_]", cell) for cell in found):
+            return found
+    return []
+
+
+def _ways(line: str, delimiter: str | None) -> Iterator[list[str]]:
+    """The ways to part a line of labels: as the numbers are, else as is usual."""
+    line = line.strip().rstrip(",; \t")
+    if delimiter is not None:
+        try:
+            yield next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+        except csv.Error:  # a cell is too long for a label
+            return
+    yield _GAPS.split(line)
+    yield _WORDS.findall(line)
+    yield line.split()
+    for mark in (";", "\t", ","):
+        yield line.split(mark)
+
+
+def _times(
+    table: NDArray[np.float64], names: Sequence[Label], increases: Callable[[NDArray[np.float64]], bool]
+) -> list[int]:
+    """Columns that are called time, or else the first if it increases evenly, and those that repeat it."""
+    found = [k for k, label in enumerate(names) if label.is_time]
+    found = [k for k in found if not _BARE_T.fullmatch(str(names[k])) or bool((np.diff(table[k]) > 0).all())]
+    if not found and increases(table[0]):
+        found = [k for k in range(len(table)) if np.array_equal(table[k], table[0])]
+    return found
+
+
+def _place(
+    file: str,
+    table: NDArray[np.float64],
+    names: Sequence[Label],
+    times: Sequence[int],
+    values: Sequence[int],
+    asked: str | None,
+) -> int:
+    """Index in `values` of the column that is asked for."""
+    listed = _listed(table, names, times, values)
+    if asked is None:
+        message = f"the table has {len(values)} columns that may be accelerations, and only one can shake a structure"
+        if not any(label.name for label in names) and not times:
+            listed += "\n  values that run on from line to line are no table: give the file as the data centre made it"
+        raise InputError(Problem(message, file, hint=f"choose one with --channel, by place or name:{listed}"))
+    word = _plain(asked)
+    if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
+        return int(word) - 1
+    for spellings in ([_plain(str(names[k])) for k in values], [_without_unit(names[k].name) for k in values]):
+        found = [place for place, name in enumerate(spellings) if name and name == word]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            message = f"{len(found)} columns are called '{asked}'"
+            raise InputError(Problem(message, file, field="--channel", hint=f"give the place of one:{listed}"))
+    message = f"there is no channel '{asked}'"
+    hint = f"there {'is' if len(values) == 1 else 'are'}:{listed}"
+    raise InputError(Problem(message, file, field="--channel", hint=hint))
+
+
+def _plain(name: str) -> str:
+    return " ".join(name.lower().split())
+
+
+def _without_unit(name: str) -> str:
+    """A name without what is in brackets behind it."""
+    return _plain(re.sub(r"\s*(?:\[[^\]]*\]|\([^)]*\))\s*$", "", name))
+
+
+def _listed(table: NDArray[np.float64], names: Sequence[Label], times: Sequence[int], values: Sequence[int]) -> str:
+    """A line for each column of accelerations, with place, name, unit and largest number, and what the others are."""
+    out = []
+    for place, k in enumerate(values, start=1):
+        units = header_units(str(names[k]))
+        unit = f"in {units.pop()}" if len(units) == 1 else "unit not said"
+        name = f"{names[k]}, " if names[k].name else ""
+        out.append(f"\n    {place}: {name}column {k + 1}, {unit}, peak {float(np.abs(table[k]).max()):.4g}")
+    for k, label in enumerate(names):
+        if k not in values:
+            what = "time" if k in times else "no acceleration"
+            out.append(f"\n    column {k + 1}{f', {label},' if label.name else ''} is {what}")
+    return "".join(out[:LISTED]) + (f"\n    and {len(out) - LISTED} more" if len(out) > LISTED else "")

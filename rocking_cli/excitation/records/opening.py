@@ -1,0 +1,231 @@
+"""From a path to the bytes of one record: a file, standard input, a gzip file, or a file in a zip archive."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import sys
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+from weakref import WeakKeyDictionary
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.files import read_bytes
+
+STANDARD_INPUT = "-"
+LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB
+EXPANDED = 500_000_000  # bytes of what was compressed: a thousand times smaller a file may be, and no record
+MEMBERS = 10_000  # files in an archive
+LISTED = 30  # of them in a message
+
+_GZIP = b"\x1f\x8b\x08"
+_ZIP = (b"PK\x03\x04", b"PK\x05\x06", b"PK\x07\x08")
+_TAR = slice(257, 262), b"ustar"
+_SPREADSHEET = "[Content_Types].xml"
+_UNPACK = "unpack it, and give the record in it"
+
+_taken: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
+"""What came from standard input, which gives it once."""
+
+
+class Opened(NamedTuple):
+    """The bytes of one record, and what to call it.
+
+    Parameters
+    ----------
+    data : bytes
+        Content, expanded if it was compressed.
+    file : str
+        Its name in messages: the path, with the name of the file in an archive behind it.
+    name : str
+        Name of the motion, but for its channel.
+    member : str
+        Which of several files of an archive it is; empty if there is no choice.
+    channel : str or None
+        What is left of the channel that was asked for, once a file of an archive is chosen.
+    """
+
+    data: bytes
+    file: str
+    name: str
+    member: str
+    channel: str | None
+
+
+def shown(path: str | Path) -> str:
+    """What to call a record file: its path, or standard input."""
+    return "standard input" if str(path) == STANDARD_INPUT else str(path)
+
+
+def original(path: str | Path) -> bytes:
+    """The bytes of a record file as they came, compressed or not; those of standard input if they were read before.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    if str(path) == STANDARD_INPUT and sys.stdin in _taken:
+        return _taken[sys.stdin]
+    return _bytes(path)
+
+
+def open_record(path: str | Path, channel: str | None = None) -> Opened:
+    """Read what is to be one record, from whatever it is packed in.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file, or `-` for standard input. A gzip file is expanded; of a zip archive one file is.
+    channel : str, optional
+        The channel that is asked for. Of an archive with several files it is the place, counted from 1, or the name
+        of one, with a colon and the channel in it where that has several too.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, is too large, damaged or packed twice, or if which file of an archive is unclear.
+    """
+    data, file = _bytes(path), shown(path)
+    name, member = Path(file).name, ""
+    if data.startswith(_GZIP):
+        data = _of_gzip(data, file)
+    elif data.startswith(_ZIP):
+        data, inside, several, channel = _of_zip(data, file, channel)
+        file, member = f"{file}/{inside}", inside if several else ""
+    else:
+        return Opened(data, file, name, member, channel)
+    if data.startswith((_GZIP, *_ZIP)) or data[_TAR[0]] == _TAR[1]:
+        raise InputError(Problem("there is another archive in it", file, hint=_UNPACK))
+    return Opened(data, file, name, member, channel)
+
+
+def _bytes(path: str | Path) -> bytes:
+    if str(path) == STANDARD_INPUT:
+        return _from_standard_input()
+    pipe = "write what it gives to a file first, or give - in its place and the record on standard input"
+    return read_bytes(path, "record file", LARGEST, if_pipe=pipe)
+
+
+def _from_standard_input() -> bytes:
+    """All that standard input gives, once."""
+    file = shown(STANDARD_INPUT)
+    stream = sys.stdin
+    if stream is None:
+        raise InputError(Problem("there is none", file, hint="give a file"))
+    if stream in _taken:
+        message = "it can be read once only, and another record has been read from it"
+        raise InputError(Problem(message, file, hint="give one of them as a file"))
+    try:
+        data = _at_most(getattr(stream, "buffer", stream), LARGEST)
+    except (OSError, ValueError) as error:  # ValueError: it is closed
+        raise InputError(Problem(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)) from None
+    if data is None:
+        raise InputError(Problem(f"this is no record file: it is larger than {LARGEST / 1e6:.4g} MB", file))
+    _taken[stream] = data
+    return data
+
+
+def _at_most(stream: BinaryIO | Any, most: int) -> bytes | None:
+    """All that a stream gives; None if it is more than `most` bytes. No more is asked for than there is."""
+    parts, size = [], 0
+    while part := stream.read(1 << 20):
+        parts.append(part)
+        size += len(part)
+        if size > most:
+            return None
+    return b"".join(parts)
+
+
+def _of_gzip(data: bytes, file: str) -> bytes:
+    try:
+        with gzip.GzipFile(fileobj=io.BytesIO(data)) as stream:
+            found = _at_most(stream, EXPANDED)
+    except Exception as error:  # of many kinds, without a base of their own
+        raise InputError(_damaged("gzip file", error, file)) from None
+    if found is None:
+        raise InputError(_too_large(file))
+    return found
+
+
+def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bool, str | None]:
+    """Content and name of the file that is asked for, or the only one; whether there are several; the channel in it."""
+    if data.count(b"PK\x01\x02") > MEMBERS:  # their list is read as a whole
+        raise InputError(Problem(f"an archive of more than {MEMBERS} files is no record", file, hint=_UNPACK))
+    try:
+        archive = zipfile.ZipFile(io.BytesIO(data))
+        members = [each for each in archive.infolist() if not _is_no_record(each)]
+    except Exception as error:  # of many kinds, without a base of their own
+        raise InputError(_damaged("zip archive", error, file)) from None
+    names = [_printable(each.filename) for each in members]
+    if _SPREADSHEET in names:
+        message = "this is a spreadsheet or a document of an office program, and no record"
+        raise InputError(Problem(message, file, hint="save the table in it as CSV, and give that"))
+    if not names:
+        raise InputError(Problem("the archive holds no file", file))
+    place, channel = _chosen(file, names, channel)
+    member, inside = members[place], f"{file}/{names[place]}"
+    if member.flag_bits & 1:
+        raise InputError(Problem("it needs a password", inside, hint=_UNPACK))
+    if member.file_size > EXPANDED:
+        raise InputError(_too_large(inside))
+    try:
+        with archive.open(member) as stream:
+            found = _at_most(stream, EXPANDED)
+    except Exception as error:  # of many kinds, without a base of their own
+        raise InputError(_damaged("zip archive", error, inside)) from None
+    if found is None:
+        raise InputError(_too_large(inside))
+    return found, names[place], len(names) > 1, channel
+
+
+def _is_no_record(member: zipfile.ZipInfo) -> bool:
+    """Whether a member is a folder, or what a file manager adds unasked."""
+    parts = member.filename.split("/")
+    return member.is_dir() or parts[0] == "__MACOSX" or parts[-1].startswith(".")
+
+
+def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, str | None]:
+    """Find which file of an archive is asked for, and the channel in it."""
+    if channel is not None:
+        for asked, rest in ((channel, None), channel.rpartition(":")[::2]):
+            if (place := _place(names, asked.strip(), alone=len(names) == 1)) is not None:
+                return place, rest
+    if len(names) == 1:
+        return 0, channel
+    listed = [f"\n    {place}: {name}" for place, name in enumerate(names, start=1)]
+    if len(names) > LISTED:
+        listed[LISTED:] = [f"\n    and {len(names) - LISTED} more"]
+    message = f"the archive holds {len(names)} files, and only one can be the record"
+    if channel is not None:
+        message = f"there is no file '{channel}' in the archive"
+    hint = f"choose one with --channel, and a channel in it behind a colon:{''.join(listed)}"
+    raise InputError(Problem(message, file, field=None if channel is None else "--channel", hint=hint))
+
+
+def _place(names: Sequence[str], asked: str, *, alone: bool) -> int | None:
+    """Index of a file by its name, with or without its folder, or by its place unless it is alone."""
+    for wanted in (names, [name.rsplit("/", 1)[-1] for name in names]):
+        found = [place for place, name in enumerate(wanted) if name.lower() == asked.lower()]
+        if len(found) == 1:
+            return found[0]
+    if not alone and asked.isascii() and asked.isdigit() and len(asked) < 9 and 1 <= int(asked) <= len(names):
+        return int(asked) - 1
+    return None
+
+
+def _damaged(what: str, error: Exception, file: str) -> Problem:
+    reason = " ".join(str(error).split()) or type(error).__name__
+    hint = "it may have been cut short: download it again, or unpack it with another program"
+    return Problem(f"the {what} cannot be unpacked: {_printable(reason)}", file, hint=hint)
+
+
+def _too_large(file: str) -> Problem:
+    return Problem(f"this is no record file: unpacked it is larger than {EXPANDED / 1e6:.4g} MB", file)
+
+
+def _printable(text: str) -> str:
+    """Put escapes in the place of what would do something to a terminal."""
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)

@@ -1,0 +1,92 @@
+"""Printed times: the constant interval they stand for, within what their rounding leaves open."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+_LEAST = 1e-9  # s
+_FEWEST, _MOST = 5, 12  # significant digits that programs print numbers with
+
+
+class UnevenTimeError(Exception):
+    """Times that have no constant interval.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong with them.
+    hint : str
+        What to do about it.
+    row : int or None
+        Index of the first one that is out of step.
+    """
+
+    def __init__(self, message: str, hint: str, row: int | None) -> None:
+        super().__init__(message)
+        self.message, self.hint, self.row = message, hint, row
+
+
+def even_interval(time: NDArray[np.float64]) -> float:
+    """Interval of evenly spaced times.
+
+    Parameters
+    ----------
+    time : ndarray, shape (npts,)
+        The times as printed [s], at least two.
+
+    Returns
+    -------
+    float
+        The interval [s].
+
+    Raises
+    ------
+    UnevenTimeError
+        At the first time that is out of step.
+    """
+    steps = np.diff(time)
+    if (steps <= 0).any():
+        row = int(np.argmax(steps <= 0)) + 1
+        what = "is repeated" if steps[row - 1] == 0 else f"comes after {time[row - 1]:g} s"
+        hint = "the first column must be the time, increasing; printed times need enough decimals to tell rows apart"
+        raise UnevenTimeError(f"time does not increase: {time[row]:g} s {what}", hint, row)
+
+    dt = float((time[-1] - time[0]) / (len(time) - 1))
+    if dt < _LEAST:
+        hint = "the first column must be the time, in seconds"
+        raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
+    usual = float(np.median(steps))
+    even = time[0] + dt * np.arange(len(time))
+    # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
+    tolerance = np.maximum(0.01 * dt, 1.001 * _rounding(time, dt))
+    # The steps find a missing sample where it is; the distances find steps that grow bit by bit.
+    odd_step = np.abs(steps - usual) > np.maximum(tolerance[1:], tolerance[:-1])
+    out_of_step = np.abs(time - even) > np.maximum(tolerance, tolerance[-1])
+    if odd_step.any():
+        row = int(np.argmax(odd_step)) + 1
+        message = f"time is uneven: a step of {steps[row - 1]:.6g} s here, of {usual:.6g} s elsewhere"
+    elif out_of_step.any():
+        row = int(np.argmax(out_of_step))
+        message = f"time is uneven: {time[row]:.9g} s here, a constant interval would give {even[row]:.9g} s"
+    else:
+        return dt
+    hint = "resample at a constant interval; if only the printed times are rough, keep the accelerations and give --dt"
+    raise UnevenTimeError(message, hint, row)
+
+
+def _rounding(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+    """Find the resolution each time is printed with [s], if it is coarse but tells samples apart; else 0."""
+    decimals = math.floor(-math.log10(dt / 10) + 1e-9) + 1
+    resolution = 10.0**-decimals
+    if (np.abs(time - np.round(time, decimals)) < 1e-6 * resolution).all():
+        return np.full(time.size, resolution)
+    # The same number of digits rather than of decimals, as %g prints: the first times are fine, the last ones coarse.
+    size = np.floor(np.log10(np.maximum(np.abs(time), dt / 1000)) + 1e-12)
+    for digits in range(_FEWEST, _MOST + 1):
+        each = 10.0 ** (size + 1 - digits)
+        if (np.abs(time - each * np.round(time / each)) < 1e-6 * each).all():
+            return each if each.max() <= dt / 2 else np.zeros(time.size)
+    return np.zeros(time.size)
