@@ -6,7 +6,9 @@ the exit code of its class. An overturned structure is a result, not an error.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 INCOMPLETE = 5
@@ -74,6 +76,34 @@ class InputError(RockingError):
     def __init__(self, *problems: Problem | str) -> None:
         self.problems = tuple(p if isinstance(p, Problem) else Problem(p) for p in problems)
         super().__init__("\n".join(str(p) for p in self.problems))
+
+
+def renamed(error: InputError, options: Mapping[str, str]) -> InputError:
+    """The same problems, with the names that options have where the user gave them.
+
+    Parameters
+    ----------
+    error : InputError
+        What a reader says, which knows an option by one name only.
+    options : mapping of str to str
+        That name, such as `--dt`, and the one it has here.
+
+    Returns
+    -------
+    InputError
+        A new one.
+    """
+    pattern = re.compile("|".join(rf"{re.escape(name)}(?![\w-])" for name in options))
+
+    def change(text: str | None) -> str | None:
+        return text and pattern.sub(lambda match: options[match[0]], text)
+
+    return InputError(
+        *(
+            replace(each, message=change(each.message) or "", field=change(each.field), hint=change(each.hint))
+            for each in error.problems
+        )
+    )
 
 
 class MechanismError(RockingError):

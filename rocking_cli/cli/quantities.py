@@ -10,7 +10,7 @@ import click
 from rocking_cli.cli.options import UNITS
 
 Kind = Literal["acceleration", "period", "number"]
-_FORM = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z][A-Za-z0-9/]*)?", re.ASCII)
+_FORM = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z%].*)?", re.ASCII)
 _EXAMPLES = {"acceleration": "0.6g", "period": "0.8", "number": "4"}
 _RANGES = {"acceleration": "0.1g:2g", "period": "0.2:4", "number": "0.5:10"}
 
@@ -34,12 +34,13 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # gene
             self.fail(f"{text!r} is no {self.kind}: give such as {example}.", param, ctx)
         number, unit = float(match[1]), (match[2] or "").lower()
         if self.kind == "acceleration":
-            if unit not in UNITS:
-                has = f"{match[2]!r} is no unit of acceleration" if unit else f"{text!r} has no unit"
-                self.fail(f"{has}: give one of {', '.join(UNITS)}, such as {example}.", param, ctx)
             from rocking_cli.excitation import base
             from rocking_cli.excitation.records import units
 
+            unit = units.canonical(unit) or ""
+            if not unit:
+                has = f"{match[2]!r} is no unit of acceleration" if match[2] else f"{text!r} has no unit"
+                self.fail(f"{has}: give one of {', '.join(UNITS)}, such as {example}.", param, ctx)
             number = number if unit == "g" else number * units.UNITS[unit] / base.STANDARD_GRAVITY
         elif unit not in (("", "s") if self.kind == "period" else ("",)):
             takes = "a period is in s" if self.kind == "period" else "this is a number without a unit"

@@ -87,6 +87,8 @@ def command(
         raise click.UsageError("--plot draws one record: give one FILE.")
     from rocking_cli.files import keep_apart
 
+    from rocking_cli.excitation.records.opening import name_of
+
     clean = _clean_paths(files, channel) if to else {}
     keep_apart([("--plot", plot), *((f"--to {to}", path) for path in clean.values())], [*files, structure])
     _spare_others(clean.values())
@@ -98,7 +100,7 @@ def command(
             from rocking_cli.excitation.records import read_record
 
             motion = read_record(file, dt=dt, units=units, channel=channel)
-            one, scaled = _examine(file, motion, (scale, target_pga, target_pgv), int(polarity), p, pulse)
+            one, scaled = _examine(name_of(file), motion, (scale, target_pga, target_pgv), int(polarity), p, pulse)
             if to:
                 _write(clean[file], scaled)
             if plot is not None:
@@ -119,10 +121,12 @@ def command(
 
 def _clean_paths(files: Sequence[str], channel: str | None) -> dict[str, Path]:
     """Where the clean file of each record goes: into this folder, named after the record and the channel asked for."""
+    from rocking_cli.excitation.records.opening import name_of
+
     suffix = "-" + re.sub(r"\W+", "-", channel.strip()) if channel is not None else ""
     paths: dict[str, Path] = {}
     for file in files:
-        path = Path(f"{Path(file).stem}{suffix}.csv")
+        path = Path(f"{Path(name_of(file)).stem}{suffix}.csv")
         if path in paths.values():
             raise InputError(Problem("two records would be written there", str(path), hint="write them one by one"))
         paths[file] = path

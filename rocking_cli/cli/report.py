@@ -119,10 +119,11 @@ def _record(
     reading: tuple[float | None, str | None, str | None],
     asked: tuple[float | None, float | None, float | None],
 ) -> Given:
+    from rocking_cli.excitation.records.opening import name_of, original
     from rocking_cli.report.content import File, Given
 
     motion = shaking.read("record", place, *reading)
-    return Given(motion, shaking.judge(motion, blocks, *asked), File(place, Path(place).read_bytes()))
+    return Given(motion, shaking.judge(motion, blocks, *asked), File(name_of(place), original(place)))
 
 
 def _pulse(text: str, blocks: Equivalence, asked: tuple[float | None, float | None, float | None]) -> Given:

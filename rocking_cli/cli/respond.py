@@ -189,8 +189,8 @@ def command(
         shape, as_read = shaking.make(pulse)
     if as_read is not None:
         if vertical is not None:
-            own = dt if vertical_dt is None else vertical_dt
-            as_read = replace(as_read, vertical=shaking.read("vertical", vertical, own, units, vertical_channel))
+            up = shaking.read_vertical(vertical, dt, vertical_dt, units, vertical_channel)
+            as_read = replace(as_read, vertical=up)
         factor = shaking.judge(as_read, equivalence, scale, target_pga, target_pgv)
     signs = (1, -1) if polarity == "both" else (int(polarity),)
     under = {sign: as_read.scaled(sign * factor) if as_read is not None else None for sign in signs}

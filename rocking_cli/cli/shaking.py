@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import motions, terminal
@@ -36,6 +37,26 @@ def read(what: str, file: str, dt: float | None, units: str | None, channel: str
         f"in {motion.unit}, PGA = {motion.pga:.4g} g"
     )
     return motion
+
+
+def read_vertical(
+    file: str, dt: float | None, own_dt: float | None, units: str | None, channel: str | None
+) -> GroundMotion:
+    """Read a vertical component as `read` does; `own_dt` is its interval, else that of the horizontal one."""
+    from rocking_cli.errors import InputError, Problem, renamed
+
+    options = {"--channel": "--vertical-channel"}
+    if own_dt is not None or dt is None:
+        options["--dt"] = "--vertical-dt"
+    try:
+        return read("vertical", file, dt if own_dt is None else own_dt, units, channel)
+    except InputError as error:
+        found: list[Problem] = []
+        for each in renamed(error, options).problems:
+            if each.hint and "--dt" in each.hint.split():  # it was meant for the other component
+                each = replace(each, hint="give the interval of the vertical component with --vertical-dt")
+            found.append(each)
+        raise InputError(*found) from None
 
 
 def make(specification: str) -> tuple[Pulse, GroundMotion]:

@@ -30,6 +30,9 @@ class GroundMotion:
         Where it came from: a record format, or `"array"`.
     vertical : GroundMotion, optional
         The vertical component that goes with it, positive upwards and from the same moment on, at its own interval.
+    points : ndarray of int, optional
+        Indexes of the samples that were recorded, where the others lie on straight lines between these; without it
+        all were.
 
     Raises
     ------
@@ -43,6 +46,7 @@ class GroundMotion:
     unit: str = "m/s2"
     format: str = "array"
     vertical: GroundMotion | None = None
+    points: NDArray[np.intp] | None = None
 
     def __post_init__(self) -> None:
         samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)

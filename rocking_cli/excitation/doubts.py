@@ -119,13 +119,15 @@ def _baseline(motion: GroundMotion, measured: Measures) -> list[Doubt]:
 
 
 def _clipping(motion: GroundMotion) -> list[Doubt]:
-    a = motion.acceleration
+    # Between two points of a film as high as each other there are any number of samples.
+    a = motion.acceleration if motion.points is None else motion.acceleration[motion.points]
     peak = float(np.abs(a).max())
+    what = "samples" if motion.points is None else "points"
     found = []
     for extreme in dict.fromkeys((float(a.max()), float(a.min()))):
         run = _longest_run(np.flatnonzero(a == extreme))
         if run >= CLIPPED and abs(extreme) > peak / 2:  # not the zeros that a one-sided pulse never goes below
-            text = f"{run} samples in a row stand at its extreme of {extreme / STANDARD_GRAVITY:.3g} g: clipped?"
+            text = f"{run} {what} in a row stand at its extreme of {extreme / STANDARD_GRAVITY:.3g} g: clipped?"
             found.append(Doubt("clipped", float(run), text))
     return found
 

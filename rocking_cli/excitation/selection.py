@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.records.opening import STANDARD_INPUT
 
 
 def select(place: str, folder: Path | None = None) -> list[Path]:
@@ -13,7 +14,8 @@ def select(place: str, folder: Path | None = None) -> list[Path]:
     Parameters
     ----------
     place : str
-        A file, or a pattern: `records/*.AT2`; `**` stands for any folders between.
+        A file, or a pattern: `records/*.AT2`; `**` stands for any folders between. Without a folder, `-` is standard
+        input.
     folder : Path, optional
         The folder that it is relative to; by default that of the process.
 
@@ -27,6 +29,8 @@ def select(place: str, folder: Path | None = None) -> list[Path]:
     InputError
         If there is no such file, it is a folder, or nothing matches.
     """
+    if folder is None and place == STANDARD_INPUT:
+        return [Path(STANDARD_INPUT)]
     base = folder if folder is not None else Path()
     path = base / place
     if path.is_dir():

@@ -18,12 +18,15 @@ TITLE = "COSMOS"
 SIGN = "a first line with (Format v01.20 with 13 text lines)"
 
 _FIRST = re.compile(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
-_NUMBERS = re.compile(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?, *Format *= *(\S+)", re.I)
+_NUMBERS = re.compile(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?[ ,]*Format *=? *(\S+)", re.I)
 _COMMENTS = re.compile(r"\s*(\d+) Comment line", re.I)
+# Networks differ in the commas and blanks of this line: units=cm/sec2(04),Format=(8F10.5), units=g.   (02)Format=(8f9.6).
 _DATA = re.compile(
-    r"\s*(\d+)\s+(\S.*?)\s*pts, approx\s+(\S+)\s+secs, *units *= *([^(,]+)(?:\(\d+\))?, *Format *= *(\S+)", re.I
+    r"\s*(\d+)\s+(\S.*?)\s*pts?\b[ ,]*approx\.?\s+([\d.]+)\s*secs?\b[ ,]*"
+    r"units? *[=:] *([^(,]*?)[ .]*(?:\( *\d+ *\))?[ ,]*Format *[=:]? *(\(.*?\))",
+    re.I,
 )
-_WIDTH = re.compile(r"\(\d*[A-Z](\d+)(?:\.\d+)?\)", re.I)
+_WIDTH = re.compile(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
 _AZIMUTH = re.compile(r"Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)
 _END = re.compile(r"End-of-data for Chan *(\S+)", re.I)
 # Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
@@ -103,6 +106,9 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
     if match is None:
         message = "the line that announces the values, such as 7000 acceleration pts, must be here"
         hint = "the number of comment lines may be wrong: download the file again"
+        if "pts" in line and "format" in line.lower():
+            message = "the line that announces the values is not understood"
+            hint = "it must be such as 7000 acceleration pts, approx 70 secs, units=cm/sec2(04),Format=(8F10.5)"
         raise InputError(Problem(message, file, min(line_number, len(lines)), excerpt=line.strip()[:100], hint=hint))
     count = int(number(file, line_number, line, match[1], "number of points", least=1))
     block = Block(line_number, count, _width(file, line_number, match[5]), line_number)

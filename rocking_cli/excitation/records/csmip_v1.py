@@ -108,8 +108,8 @@ def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str
     unit = old_unit(file, unit_line, spelling, units)
     count = int(number(file, count_line, lines[count_line - 1], count_text, "number of points", least=1))
     pairs, end = fixed_width(file, lines, Block(index, 2 * count, _PAIRS, count_line))
-    own, values = straight_lines(file, pairs, f"lines {index + 1} to {end}")
-    return Channel(name, own, in_si(values, unit), unit), end
+    own, values, points = straight_lines(file, pairs, f"lines {index + 1} to {end}")
+    return Channel(name, own, in_si(values, unit), unit, points=points), end
 
 
 def _find(file: str, head: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:

@@ -67,6 +67,8 @@ class Channel:
         Line number of the interval.
     flaw : Problem, optional
         Why it cannot be used: it is listed with that, and refused if it is chosen.
+    points : ndarray of int, optional
+        Indexes of the samples that were recorded, if not all of them.
     """
 
     name: str
@@ -75,6 +77,7 @@ class Channel:
     unit: str
     dt_line: int | None = None
     flaw: Problem | None = None
+    points: NDArray[np.intp] | None = None
 
 
 def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> tuple[NDArray[np.float64], int]:
@@ -159,7 +162,9 @@ def old_unit(file: str, line_number: int, spelling: str, units: str | None) -> s
     return TENTH_OF_G
 
 
-def straight_lines(file: str, pairs: NDArray[np.float64], where: str) -> tuple[float, NDArray[np.float64]]:
+def straight_lines(
+    file: str, pairs: NDArray[np.float64], where: str
+) -> tuple[float, NDArray[np.float64], NDArray[np.intp]]:
     """Put a digitised film, straight lines between points at uneven times, on an interval that meets all the times.
 
     Times are whole milliseconds, so there is one, and the lines stay the same: more samples than the file has points,
@@ -180,6 +185,8 @@ def straight_lines(file: str, pairs: NDArray[np.float64], where: str) -> tuple[f
         The largest such interval [s].
     values : ndarray, shape (npts,)
         Values at this interval.
+    points : ndarray of int, shape (points,)
+        Which of them are the points.
     """
     time, values = pairs.reshape(-1, 2).T
     ticks = np.rint(time / _GRID).astype(np.int64)
@@ -189,7 +196,8 @@ def straight_lines(file: str, pairs: NDArray[np.float64], where: str) -> tuple[f
         message = f"time does not increase: point {point + 1} is at {time[point]:g} s, after {time[point - 1]:g} s"
         raise InputError(Problem(message, file, hint=f"it is among {where}"))
     step = int(np.gcd.reduce(steps))
-    return step * _GRID, np.interp(np.arange(ticks[0], ticks[-1] + 1, step), ticks, values)
+    grid = np.arange(ticks[0], ticks[-1] + 1, step)
+    return step * _GRID, np.interp(grid, ticks, values), ((ticks - ticks[0]) // step).astype(np.intp)
 
 
 def number(file: str, line_number: int, line: str, token: str, what: str, *, least: float = 0.0) -> float:
@@ -234,7 +242,7 @@ def choose(
     name = Path(file).name
     if len(channels) > 1:
         name += f" channel {chosen.name or 1 + list(channels).index(chosen)}"
-    return GroundMotion(name, chosen.dt, chosen.acceleration, chosen.unit, form)
+    return GroundMotion(name, chosen.dt, chosen.acceleration, chosen.unit, form, points=chosen.points)
 
 
 def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:

@@ -54,7 +54,7 @@ class Opened(NamedTuple):
     channel: str | None
 
 
-def shown(path: str | Path) -> str:
+def name_of(path: str | Path) -> str:
     """What to call a record file: its path, or standard input."""
     return "standard input" if str(path) == STANDARD_INPUT else str(path)
 
@@ -88,7 +88,7 @@ def open_record(path: str | Path, channel: str | None = None) -> Opened:
     InputError
         If it cannot be read, is too large, damaged or packed twice, or if which file of an archive is unclear.
     """
-    data, file = _bytes(path), shown(path)
+    data, file = _bytes(path), name_of(path)
     name, member = Path(file).name, ""
     if data.startswith(_GZIP):
         data = _of_gzip(data, file)
@@ -111,7 +111,7 @@ def _bytes(path: str | Path) -> bytes:
 
 def _from_standard_input() -> bytes:
     """All that standard input gives, once."""
-    file = shown(STANDARD_INPUT)
+    file = name_of(STANDARD_INPUT)
     stream = sys.stdin
     if stream is None:
         raise InputError(Problem("there is none", file, hint="give a file"))

@@ -13,7 +13,9 @@ TITLE = "USGS SMC"
 SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"
 
 _FIRST = re.compile(r"(\d) +([A-Z].*)")
-_ACCELERATIONS = ("1", "2")  # uncorrected, corrected; then velocity, displacement and spectra
+_UNCORRECTED = "1"
+_ACCELERATIONS = (_UNCORRECTED, "2")  # the corrected; then velocity, displacement and spectra
+_FASTEST = 1e6  # samples per second; what has no number of them has 1.7e38, or zero
 _TEXT_LINES = 11
 _INTEGERS = Block(_TEXT_LINES, 48, 10, 1)
 _REALS, _REAL_WIDTH, _REAL_LINES = _TEXT_LINES + 6, 15, 10  # index of the first line, characters, lines
@@ -47,9 +49,11 @@ def read(
     if start + comments >= len(lines):
         raise InputError(Problem("the file ends before its values", file, len(lines)))
     number(file, count_line, lines[count_line - 1], str(count), "number of points", least=1)
-    rate = number(
-        file, rate_line, lines[_REALS], lines[_REALS][_REAL_WIDTH : 2 * _REAL_WIDTH], "number of samples per second"
-    )
+    rate_text = lines[_REALS][_REAL_WIDTH : 2 * _REAL_WIDTH]
+    if kind[1] == _UNCORRECTED and _no_rate(rate_text):
+        message = "an uncorrected film record, points at uneven times: the header has no number of samples per second"
+        raise InputError(Problem(message, file, rate_line, hint="give the corrected record of it (kind 2)"))
+    rate = number(file, rate_line, lines[_REALS], rate_text, "number of samples per second")
     if not all(line.startswith("|") for line in lines[start : start + comments]) or lines[start + comments].startswith(
         "|"
     ):
@@ -60,3 +64,11 @@ def read(
     component = re.search(r"component *= *(-?\w+)", "\n".join(lines[:_TEXT_LINES]))
     found = Channel(component[1] if component else "", 1 / rate, in_si(values, unit), unit, rate_line)
     return choose(file, TITLE, [found], channel, dt)
+
+
+def _no_rate(text: str) -> bool:
+    """Whether the header has what stands for no number, in the place of the rate."""
+    try:
+        return not 0 < float(text) < _FASTEST
+    except ValueError:
+        return False

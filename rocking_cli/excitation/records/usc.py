@@ -46,10 +46,10 @@ def read(
     for size, width in ((_INTEGERS, 5), (_REALS, 10)):
         _, start = fixed_width(file, lines, Block(start, size, width, 1), last=False)
     pairs, end = fixed_width(file, lines, Block(start, 2 * count, 7, count_line, margin=1))
-    step, values = straight_lines(file, pairs, f"lines {start + 1} to {end}")
+    step, values, points = straight_lines(file, pairs, f"lines {start + 1} to {end}")
     acceleration = in_si(values, unit)
     name = next((match[1] for line in lines[:15] if (match := _COMPONENT.match(line))), "")
-    return choose(file, TITLE, [Channel(name, step, acceleration, unit)], channel, dt)
+    return choose(file, TITLE, [Channel(name, step, acceleration, unit, points=points)], channel, dt)
 
 
 def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, str]:
