@@ -14,8 +14,11 @@ from click.testing import CliRunner
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, MechanismError, PluginWarning, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.doubts import doubts
+from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import layout, read_record
 from rocking_cli.excitation.records.registry import FALLBACK, GROUP, load_readers, reader_for, takes_bytes
+from rocking_cli.excitation.records.units import UNITS
 from tests.conftest import FORMATS, NEEDS_RECORDS, RECORDS, record
 
 G = STANDARD_GRAVITY
@@ -365,7 +368,7 @@ def test_simcenter_errors(write):
         (cosmos(kind="raw", unit="counts(50)"), "no acceleration, but raw"),
         (cosmos(kind="raw accel.", unit="counts(50)"), "no acceleration, but raw accel."),
         (geonet(unit="mm/s"), "a velocity or displacement"),
-        (knet(scale="2000(kine)/1000000"), "does not say what unit"),
+        (knet(scale="2000(kine)/1000000"), "the header says 'kine', which is no unit"),
         (csmip_v1(evenly="{count} POINTS OF VELOC DATA EQUALLY SPACED AT .005 SEC.  (UNITS: CM/SEC)"), "VELOC data"),
         (csmip_v1(evenly="{count} Accelerogram points at 200 pts/sec in units of cm/s. Format: (8f9.6)"), "a velocity"),
     ],
@@ -429,6 +432,24 @@ def test_smc_comments_must_be_as_many_as_it_says(write):
     assert problem(write(smc(rate=1.7e38))).line == 18
 
 
+@pytest.mark.parametrize("rate", [1.7e38, 0.0])
+def test_a_film_of_smc_is_called_one(rate, write):
+    found = problem(write(smc(first="1 UNCORRECTED ACCELEROGRAM", rate=rate)))
+    assert "uncorrected film record" in found.message
+    assert "kind 2" in found.hint
+    assert found.line == 18
+    assert read_record(write(smc(first="1 UNCORRECTED ACCELEROGRAM"))).npts == len(VALUES)
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_padding_with_nul_changes_nothing(name, tmp_path):
+    content = MADE[name][0]().encode()
+    plain, padded = tmp_path / "plain", tmp_path / "padded"
+    plain.write_bytes(content)
+    padded.write_bytes(content.replace(b"MADE", b"MADE\0\0\0\0", 1) + b"\0" * 100)
+    np.testing.assert_array_equal(read_record(padded).acceleration, read_record(plain).acceleration)
+
+
 def test_cosmos_interval_must_make_its_length(write):
     assert read_record(write(cosmos(dt_ms=-999.0, length=5))).dt == 0.5  # the raw one
     assert "sample interval is unclear" in problem(write(cosmos(length=60))).message
@@ -436,11 +457,49 @@ def test_cosmos_interval_must_make_its_length(write):
     assert "format such as" in problem(write(cosmos().replace("(10I8)", "none"))).message
 
 
+@pytest.mark.parametrize(
+    ("said", "unit"),
+    [
+        ("11 acceleration pts, approx  0 secs, units=g.     (02)Format=(8f10.5)", "g"),
+        ("11 acceleration pts, approx  0 secs, units=cm/sec2(04) Format=(8F10.5)", "cm/s2"),
+        ("11 acceleration pts, approx 0 secs, units = cm/s^2 (4), Format = ( 8F10.5 )", "cm/s2"),
+        ("11 acceleration pts, approx 0 secs, units=cm/s^2,Format=(8F10.5)", "cm/s2"),
+        ("11 acceleration pts approx 0 secs units=mg format=(8E10.5E2)", "mg"),
+    ],
+)
+def test_cosmos_says_the_same_in_several_ways(said, unit, write):
+    content = re.sub(r" *11 +acceleration pts.*", f"  {said}", cosmos())
+    motion = read_record(write(content))
+    np.testing.assert_allclose(motion.acceleration, VALUES * UNITS[unit], rtol=1e-15)
+    assert (motion.unit, motion.dt) == (unit, 0.01)
+
+
+def test_a_line_of_cosmos_that_is_not_understood_is_shown(write):
+    found = problem(write(cosmos().replace("units=", "measured in ")))
+    assert "is not understood" in found.message
+    assert "measured in" in found.excerpt
+    assert "download" not in found.hint
+
+
 def test_cosmos_with_velocities_below_the_accelerations(write):
     whole = cosmos()
     velocities = "  2 velocity pts, approx 0 secs, units=cm/sec(05),Format=(8F10.5)\n" + columns([9, 9], "10.5f", 8)
     path = write(whole.replace("/&", velocities + "/&"))
     np.testing.assert_allclose(read_record(path).acceleration, VALUES / 100)
+
+
+@pytest.mark.parametrize("make", [usc, csmip_v1])
+def test_samples_between_the_points_of_a_film_are_not_clipped(make, write):
+    """Two points as high as each other have any number of samples between them; three points may be clipped."""
+    times = np.array([0.0, 0.007, 0.020, 0.050, 0.051, 0.064, 0.080])
+    for peaks, points in ((1, None), (2, None), (3, 3)):
+        values = np.array([0.0, 1.0, *[2.0] * peaks, *[0.5] * (3 - peaks), -1.0, 0.0])[: len(times)]
+        motion = read_record(write(make(values=values, times=times)))
+        assert motion.points is not None
+        np.testing.assert_allclose(motion.acceleration[motion.points], values * G / 10, rtol=1e-12)
+        found = [doubt for doubt in doubts(motion.scaled(-2), measure(motion.scaled(-2))) if doubt.kind == "clipped"]
+        assert [doubt.value for doubt in found] == ([points] if points else [])
+        assert all("3 points in a row" in doubt.text for doubt in found)
 
 
 def test_usc_times_that_are_uneven_are_kept(write):

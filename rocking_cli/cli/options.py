@@ -96,14 +96,21 @@ def _in_order(*decorators: Decorator) -> Decorator:
 
 
 shaking: Decorator = _in_order(
-    click.option("--record", type=click.Path(), metavar="FILE", help="Ground motion: text, or a data centre's format."),
+    click.option(
+        "--record",
+        type=click.Path(),
+        metavar="FILE",
+        help="Ground motion: text, or a data centre's format; - is standard input.",
+    ),
     click.option("--pulse", metavar="PULSE", help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD."),
 )
 """One ground motion: `record` or `pulse`."""
 
 reading: Decorator = _in_order(
     click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),
-    click.option("--dt", type=Finite(positive=True), metavar="SECONDS", help="Sample interval of a one-column record."),
+    click.option(
+        "--dt", type=Finite(positive=True), metavar="SECONDS", help="Sample interval of a record without times."
+    ),
     click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name."),
 )
 """How to read a record: `units`, `dt` and `channel`."""

@@ -85,9 +85,8 @@ def command(
     motions.check_scaling(scale, target_pga, target_pgv)
     if plot is not None and len(files) > 1:
         raise click.UsageError("--plot draws one record: give one FILE.")
-    from rocking_cli.files import keep_apart
-
     from rocking_cli.excitation.records.opening import name_of
+    from rocking_cli.files import keep_apart
 
     clean = _clean_paths(files, channel) if to else {}
     keep_apart([("--plot", plot), *((f"--to {to}", path) for path in clean.values())], [*files, structure])

@@ -14,6 +14,7 @@ from rocking_cli.excitation.records.registry import load_readers, reader_for, ta
 
 __all__ = ["read_record"]
 
+
 def read_record(
     path: str | Path, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:

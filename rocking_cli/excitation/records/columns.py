@@ -14,6 +14,8 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.units import header_units, is_unit, other_quantity
 
 LISTED = 30  # columns in a message
+NEAR = 40  # lines above a table in which its labels are
+LONG = 10_000  # characters that no line of labels has
 
 _TIME = re.compile(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
 _BARE_T = re.compile(r"t", re.IGNORECASE)  # the time, or the transverse component
@@ -83,7 +85,7 @@ def labels(lines: Sequence[tuple[int, str]], delimiter: str | None, columns: int
     list of int
         Numbers of the lines they are from.
     """
-    rows = [(number, cells) for number, line in lines if (cells := _cells(line, delimiter, columns))]
+    rows = [(number, cells) for number, line in lines[-NEAR:] if (cells := _cells(line, delimiter, columns))]
     if not rows:
         return [Label("")] * columns, []
     number, names = rows[-1]
@@ -134,10 +136,14 @@ def choose(
 
 def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
     """The cells of a line of labels, in the first way that gives as many as there are columns; else none."""
+    if len(line) > LONG:
+        return []
     for cells in _ways(line, delimiter):
         found = [cell.strip().strip("\"'").strip() for cell in cells]
         if len(found) == columns and any(re.search(r"[^\W\d_]", cell) for cell in found):
-            return found
+            # "acceleration in g" is no name of three columns.
+            of_cells = any(map(header_units, found)) or all(is_unit(cell.strip("[]() ")) for cell in found)
+            return found if of_cells or not header_units(line) else []
     return []
 
 
@@ -160,11 +166,11 @@ def _times(
     table: NDArray[np.float64], names: Sequence[Label], increases: Callable[[NDArray[np.float64]], bool]
 ) -> list[int]:
     """Columns that are called time, or else the first if it increases evenly, and those that repeat it."""
-    found = [k for k, label in enumerate(names) if label.is_time]
-    found = [k for k in found if not _BARE_T.fullmatch(str(names[k])) or bool((np.diff(table[k]) > 0).all())]
+    called = [k for k, label in enumerate(names) if label.is_time]
+    found = [k for k in called if (np.diff(table[k]) > 0).all()]
     if not found and increases(table[0]):
         found = [k for k in range(len(table)) if np.array_equal(table[k], table[0])]
-    return found
+    return found or [k for k in called if not _BARE_T.fullmatch(str(names[k]))]
 
 
 def _place(

@@ -20,9 +20,9 @@ SIGN = "a first line with (Format v01.20 with 13 text lines)"
 _FIRST = re.compile(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
 _NUMBERS = re.compile(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?[ ,]*Format *=? *(\S+)", re.I)
 _COMMENTS = re.compile(r"\s*(\d+) Comment line", re.I)
-# Networks differ in the commas and blanks of this line: units=cm/sec2(04),Format=(8F10.5), units=g.   (02)Format=(8f9.6).
+# Networks differ in its commas and blanks: units=cm/sec2(04),Format=(8F10.5) and units=g.     (02)Format=(8f9.6).
 _DATA = re.compile(
-    r"\s*(\d+)\s+(\S.*?)\s*pts?\b[ ,]*approx\.?\s+([\d.]+)\s*secs?\b[ ,]*"
+    r"\s*(\d+)\s+(\S.*?)\s*pts?\b[ ,]*approx\.?\s+(\S+?)\s*secs?\b[ ,]*"
     r"units? *[=:] *([^(,]*?)[ .]*(?:\( *\d+ *\))?[ ,]*Format *[=:]? *(\(.*?\))",
     re.I,
 )
@@ -62,7 +62,7 @@ def read(
             continue
         headers = _headers(file, lines, index)
         index = headers.data
-        while index == headers.data or (index < len(lines) and _DATA.match(lines[index])):
+        while index == headers.data or (index < len(lines) and _announced(lines[index])):
             found, index = _history(file, lines, headers, index, units)
             if isinstance(found, Channel):
                 channels.append(found)
@@ -102,7 +102,7 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
     """Read the values announced at line index `index`, or say what they are if not accelerations; the index after."""
     line_number = index + 1
     line = lines[index] if index < len(lines) else ""
-    match = _DATA.match(line)
+    match = _announced(line)
     if match is None:
         message = "the line that announces the values, such as 7000 acceleration pts, must be here"
         hint = "the number of comment lines may be wrong: download the file again"
@@ -121,6 +121,11 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
     mark = _END.match(lines[end]) if end < len(lines) else None
     name = mark[1] if mark and not mark[1].isdecimal() else headers.name
     return Channel(name, own, in_si(values, unit), unit, headers.reals_line), end
+
+
+def _announced(line: str) -> re.Match[str] | None:
+    """What the line that announces values says; a long one is none."""
+    return _DATA.match(line) if len(line) < 1000 else None
 
 
 def _interval(file: str, headers: _Headers, count: int, length: float) -> float:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 _LEAST = 1e-9  # s
 _FEWEST, _MOST = 5, 12  # significant digits that programs print numbers with
+_FINE = 0.01  # share of times that must be finer than the coarsest one, or they have decimals and no digits in common
 
 
 class UnevenTimeError(Exception):
@@ -60,33 +61,52 @@ def even_interval(time: NDArray[np.float64]) -> float:
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
     usual = float(np.median(steps))
     even = time[0] + dt * np.arange(len(time))
-    # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
-    tolerance = np.maximum(0.01 * dt, 1.001 * _rounding(time, dt))
-    # The steps find a missing sample where it is; the distances find steps that grow bit by bit.
-    odd_step = np.abs(steps - usual) > np.maximum(tolerance[1:], tolerance[:-1])
-    out_of_step = np.abs(time - even) > np.maximum(tolerance, tolerance[-1])
+    step_off, time_off = np.abs(steps - usual), np.abs(time - even)
+
+    def odd(rounding: NDArray[np.float64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
+        # The steps find a missing sample where it is; the distances find steps that grow bit by bit.
+        tolerance = np.maximum(0.01 * dt, 1.001 * rounding)
+        return step_off > np.maximum(tolerance[1:], tolerance[:-1]), time_off > np.maximum(tolerance, tolerance[-1])
+
+    odd_step, out_of_step = odd(_of_decimals(time, dt))
+    if (odd_step.any() or out_of_step.any()) and (rounding := _of_digits(time, dt)).any():
+        odd_step, out_of_step = odd(rounding)
+    if not (odd_step.any() or out_of_step.any()):
+        return dt
     if odd_step.any():
         row = int(np.argmax(odd_step)) + 1
         message = f"time is uneven: a step of {steps[row - 1]:.6g} s here, of {usual:.6g} s elsewhere"
-    elif out_of_step.any():
+    else:
         row = int(np.argmax(out_of_step))
         message = f"time is uneven: {time[row]:.9g} s here, a constant interval would give {even[row]:.9g} s"
-    else:
-        return dt
     hint = "resample at a constant interval; if only the printed times are rough, keep the accelerations and give --dt"
     raise UnevenTimeError(message, hint, row)
 
 
-def _rounding(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-    """Find the resolution each time is printed with [s], if it is coarse but tells samples apart; else 0."""
+def _of_decimals(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+    """Find the resolution times are printed with [s], if it is below a tenth of `dt` but not negligible; else 0."""
     decimals = math.floor(-math.log10(dt / 10) + 1e-9) + 1
     resolution = 10.0**-decimals
-    if (np.abs(time - np.round(time, decimals)) < 1e-6 * resolution).all():
-        return np.full(time.size, resolution)
-    # The same number of digits rather than of decimals, as %g prints: the first times are fine, the last ones coarse.
+    rounded = (np.abs(time - np.round(time, decimals)) < 1e-6 * resolution).all()
+    return np.full(time.size, resolution if rounded else 0.0)
+
+
+def _of_digits(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+    """Find the resolution of each time [s], if all have as many digits, as %g prints: the first fine, the last coarse.
+
+    They may be coarser than decimals may be, but no more than half of `dt`: what `dt` is, the fine ones say.
+    """
     size = np.floor(np.log10(np.maximum(np.abs(time), dt / 1000)) + 1e-12)
     for digits in range(_FEWEST, _MOST + 1):
         each = 10.0 ** (size + 1 - digits)
-        if (np.abs(time - each * np.round(time / each)) < 1e-6 * each).all():
-            return each if each.max() <= dt / 2 else np.zeros(time.size)
+        if _multiples(time, each).all():
+            coarsest = each.max()
+            if coarsest <= dt / 2 and np.mean(~_multiples(time, coarsest)) > _FINE:
+                return np.asarray(each)
+            break
     return np.zeros(time.size)
+
+
+def _multiples(time: NDArray[np.float64], resolution: NDArray[np.float64] | float) -> NDArray[np.bool_]:
+    return np.abs(time - resolution * np.round(time / resolution)) < 1e-6 * np.asarray(resolution)

@@ -77,7 +77,9 @@ class RecordEntry(BaseModel):
 
     file: str | None = Field(None, description="a file, or a pattern of file names")
     pulse: str | None = Field(None, description="a pulse, such as sine:0.6g:0.8s")
-    units: Literal["g", "m/s2", "cm/s2", "mm/s2", "gal"] | None = Field(None, description="unit, where no file says")
+    units: Literal["g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g"] | None = Field(
+        None, description="unit, where no file says"
+    )
     dt: Positive | None = Field(None, description="sample interval, where no file says")
     channel: str | None = Field(None, description="which of several channels")
     vertical: str | None = Field(None, description="the file of the vertical component")
