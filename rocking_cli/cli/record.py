@@ -75,11 +75,15 @@ def command(
     several files give one object a line. A file that cannot be used is reported, the others are shown, and the exit
     code is 5.
 
+    FILE may be delimited text or a data centre's format, in a gzip file or zip archive too; - is standard input. Of
+    several columns, channels or files of an archive --channel chooses one; without it they are listed.
+
     \b
     Example:
       rocking record accel.csv --plot record.png
       rocking record north.AT2 east.AT2 --target-pga 0.4
       rocking record station.V2 --channel 2 --to csv
+      rocking record table.csv --channel "acc x" --units g
       rocking record accel.csv --pulse --plot pulse.png
     """
     motions.check_scaling(scale, target_pga, target_pgv)

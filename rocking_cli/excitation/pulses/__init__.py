@@ -64,8 +64,8 @@ def parse_pulse(text: str) -> Pulse:
     Parameters
     ----------
     text : str
-        Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2 or gal), period with its unit (s or ms; a frequency in Hz
-        will do), and what the shape takes besides, as numbers or with their unit: for `mavroeidis` the phase in deg
+        Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2, gal, mg or %g), period with its unit (s or ms; a frequency
+        in Hz will do), and what the shape takes besides, as numbers or with their unit: for `mavroeidis` the phase in deg
         and the number of cycles.
 
     Raises
