@@ -65,8 +65,8 @@ def parse_pulse(text: str) -> Pulse:
     ----------
     text : str
         Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2, gal, mg or %g), period with its unit (s or ms; a frequency
-        in Hz will do), and what the shape takes besides, as numbers or with their unit: for `mavroeidis` the phase in deg
-        and the number of cycles.
+        in Hz will do), and what the shape takes besides, as numbers or with their unit: for `mavroeidis` the phase in
+        deg and the number of cycles.
 
     Raises
     ------

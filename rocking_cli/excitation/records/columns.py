@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.units import header_units, is_unit, other_quantity
 
+MOST = 1000  # columns of a table
 LISTED = 30  # columns in a message
 NEAR = 40  # lines above a table in which its labels are
 LONG = 10_000  # characters that no line of labels has

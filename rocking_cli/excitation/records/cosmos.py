@@ -27,6 +27,7 @@ _DATA = re.compile(
     re.I,
 )
 _WIDTH = re.compile(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
+_LONG = 300  # characters; the format has 80
 _AZIMUTH = re.compile(r"Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)
 _END = re.compile(r"End-of-data for Chan *(\S+)", re.I)
 # Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
@@ -124,8 +125,8 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
 
 
 def _announced(line: str) -> re.Match[str] | None:
-    """What the line that announces values says; a long one is none."""
-    return _DATA.match(line) if len(line) < 1000 else None
+    """What the line that announces values says; a long one is none, and would be searched for long."""
+    return _DATA.match(" ".join(line.split())) if len(line) < _LONG else None
 
 
 def _interval(file: str, headers: _Headers, count: int, length: float) -> float:

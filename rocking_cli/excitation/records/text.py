@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.columns import Choice, Label, choose, labels
+from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, labels
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.times import UnevenTimeError, even_interval
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
@@ -56,6 +56,8 @@ def read(
     # A title such as "6 km south of" is no row of four columns.
     numbers_in(file, start + 1, lines[start], [cell.replace(",", ".") for cell in cells] if commas else cells)
     columns = len(cells)
+    if columns > MOST:
+        raise InputError(Problem(f"a table of {columns} columns is no record", file, start + 1))
     header = _header(file, head, delimiter, columns)
     names, label_lines = labels(header, delimiter, columns)
     _refuse_other_times(file, names, label_lines)
