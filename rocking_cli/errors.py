@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
+from rocking_cli.text import quoted_line, visible
+
 INCOMPLETE = 5
 """Exit code of a command that did its work except for what it reports: one bad record in a hundred."""
 
@@ -45,14 +47,13 @@ class Problem:
 
     def __str__(self) -> str:
         place = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
-        head = ": ".join(part for part in (place, self.field, self.message) if part)
+        # What is quoted of a file must not command the terminal, nor fill it.
+        head = ": ".join(visible(part) for part in (place, self.field, self.message) if part)
         lines = [head]
         if self.excerpt is not None:
-            lines.append(f"    {self.excerpt}")
-            if self.column is not None:
-                lines.append("    " + " " * (self.column - 1) + "^")
+            lines += [f"    {line}" for line in quoted_line(self.excerpt, self.column)]
         if self.hint:
-            lines.append(f"  {self.hint}")
+            lines.append(f"  {visible(self.hint)}")
         return "\n".join(lines)
 
 

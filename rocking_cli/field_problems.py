@@ -11,6 +11,7 @@ from pydantic_core import ErrorDetails
 
 from rocking_cli.errors import Problem
 from rocking_cli.plugins import did_you_mean
+from rocking_cli.text import cut
 from rocking_cli.yaml_file import Document, Place, spell
 
 
@@ -33,12 +34,13 @@ def problems(
         What lists them.
     """
     found: dict[Place, Problem] = {}
-    for error in errors:
-        place = _place(document.data, error)
+    placed = [(_place(document.data, error), error) for error in errors]
+    for place, error in placed:
+        within = any(len(other) > len(place) and other[: len(place)] == place for other, _ in placed)
         if error["type"] == "geometry":
             place = (*place, error["ctx"]["field"])
-        elif not _concerns(document.data, place, error):
-            continue
+        elif within and _wants_a_number(document.data, place, error):
+            continue  # of the branches of a union the user meant the mapping, and that has problems of its own
         message, hint = say(model, place, error, owner, lister)
         key = error["type"] == "extra_forbidden"
         found.setdefault(place, document.at(place, message, hint, key=key))
@@ -59,11 +61,11 @@ def _place(data: Any, error: ErrorDetails) -> Place:
     return tuple(path)
 
 
-def _concerns(data: Any, place: Place, error: ErrorDetails) -> bool:
-    """Whether an error speaks of the branch of a union that the user meant: of a mapping, not that it is no number."""
+def _wants_a_number(data: Any, place: Place, error: ErrorDetails) -> bool:
+    """Whether an error says of a mapping that it is no number."""
     for part in place:
         data = data.get(part) if isinstance(data, dict) else data[part]
-    return not (isinstance(data, dict) and error["type"] in ("float_type", "int_type"))
+    return isinstance(data, dict) and error["type"] in ("float_type", "int_type")
 
 
 BOUNDS = {
@@ -80,9 +82,9 @@ def _got(given: Any) -> str:
     if isinstance(given, bool):
         return f"got {str(given).lower()}"
     if isinstance(given, str):
-        return f"got the text {given!r}"
+        return f"got the text {cut(repr(given))}"
     if isinstance(given, int | float):
-        return f"got {given}"
+        return f"got {cut(str(given))}"
     return f"got a {'list' if isinstance(given, list) else 'mapping'}"
 
 
@@ -96,6 +98,8 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     got = _got(given)
     if kind == "geometry":
         return ctx["reason"], None
+    if kind == "unit":
+        return ctx["reason"], ctx["hint"]
     if kind == "missing":
         what = "is missing"
         if info is not None and info.description:
@@ -109,6 +113,8 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         return f"must be {words} {ctx[key]:g}{unit}, {got}", None
     if kind == "finite_number":
         return f"must be a finite number, {got}", None
+    if kind == "float_type" and isinstance(given, int) and not isinstance(given, bool):
+        return f"is beyond the range of numbers, {got}", None  # whole, but larger than any float
     if kind in ("float_type", "float_parsing"):
         comma = isinstance(given, str) and re.fullmatch(r"\s*[-+]?\d+,\d+\s*", given)
         return f"must be a number{f' in{unit}' if unit else ''}, {got}", "write a decimal point" if comma else None

@@ -9,12 +9,18 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from yaml.reader import ReaderError
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.files import read_bytes
+from rocking_cli.text import cut, visible
 
 LARGEST = 1_000_000  # bytes; a structure takes a few hundred, a study a few thousand
 DEEPEST = 20  # nesting
+MOST = 200_000  # values, with those that aliases repeat: a few lines of them stand for billions
+
+
+_LINE_END = re.compile("\r\n|[\r\n\x85\u2028\u2029]")  # as YAML counts lines
 
 
 class _Loader(yaml.SafeLoader):
@@ -39,6 +45,7 @@ SCALARS: dict[str, Callable[[str], Any]] = {
     "null": lambda text: None,
     "str": str,
 }
+KINDS = {"int": "a whole number", "float": "a number", "bool": "true or false"}
 Place = tuple[str | int, ...]
 """Where a value stands in a file: keys, and places in lists counted from 0."""
 
@@ -70,6 +77,7 @@ class Document:
     keys: dict[Place, yaml.Mark] = field(default_factory=dict)
     values: dict[Place, yaml.Mark] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
+    count: int = 0
 
     def problem(
         self, message: str, mark: yaml.Mark | None, name: str | None = None, hint: str | None = None
@@ -86,6 +94,11 @@ class Document:
         self.values.setdefault(path, node.start_mark)
         if len(path) > DEEPEST:
             raise InputError(self.problem(f"nested too deep to be a {self.what}", node.start_mark))
+        self.count += 1
+        if self.count > MOST:
+            hint = "aliases (*name) repeat all that they stand for: write out what is meant"
+            message, mark = f"more than {MOST} values are no {self.what}", self.values.get(path[:1], node.start_mark)
+            raise InputError(self.problem(message, mark, spell(path[:1]), hint))
         if isinstance(node, yaml.SequenceNode):
             return [self.plain(item, (*path, k)) for k, item in enumerate(node.value)]
         if isinstance(node, yaml.MappingNode):
@@ -94,9 +107,11 @@ class Document:
         try:
             return SCALARS[kind](text)
         except KeyError:
-            message = f"unknown tag {node.tag}"
+            message = f"unknown tag {cut(node.tag)}"
         except ValueError:  # !!int abc, or thousands of digits
-            message = f"not a {kind}"
+            message = f"{cut(text)!r} is not {KINDS[kind]}"
+            if text.lstrip("+-").isdecimal():
+                message = f"a number of {len(text.lstrip('+-'))} digits is beyond the range of numbers"
         raise InputError(self.problem(message, node.start_mark, hint="write plain text or numbers"))
 
     def _mapping(self, node: yaml.MappingNode, path: Place) -> dict[str, Any]:
@@ -104,6 +119,10 @@ class Document:
         for key, value in node.value:
             if not isinstance(key, yaml.ScalarNode):
                 self.problems.append(self.problem("a key must be a word", key.start_mark))
+                continue
+            if key.value == "<<" and key.style is None:
+                hint = "write the fields out"
+                self.problems.append(self.problem("merging with << is not read here", key.start_mark, "<<", hint))
                 continue
             here = (*path, key.value)
             if key.value in data:
@@ -168,12 +187,21 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
     InputError
         If it is not YAML, or not a mapping.
     """
-    document = Document(what, file, text.splitlines())
+    document = Document(what, file, _LINE_END.split(text))
     try:
         node = yaml.compose(text, Loader=_Loader)
     except yaml.MarkedYAMLError as error:
         said = " ".join(part for part in (error.context, error.problem) if part)
-        raise InputError(document.problem(f"not YAML: {said}", error.problem_mark or error.context_mark)) from None
+        began, noticed = error.context_mark, error.problem_mark
+        # What is not closed is noticed where the file ends: what matters is where it began.
+        mark = began if began is not None and (noticed is None or not text[noticed.index :].strip()) else noticed
+        if mark is noticed and began is not None and noticed is not None and began.line < noticed.line:
+            said += f" (it begins in line {began.line + 1})"
+        raise InputError(document.problem(f"not YAML: {said}", mark)) from None
+    except ReaderError as error:
+        line = len(_LINE_END.findall(text, 0, error.position)) + 1
+        message = f"not YAML: the character {visible(chr(error.character))} cannot stand in it"
+        raise InputError(Problem(message, file, line)) from None
     except RecursionError:
         raise InputError(Problem(f"nested too deep to be a {what}", file)) from None
     except yaml.YAMLError as error:

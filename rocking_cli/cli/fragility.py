@@ -59,6 +59,7 @@ def command(
     if scheduler is not None and jobs is not None:
         raise click.UsageError("--jobs is for this machine: a cluster has as many workers as it has.")
     from rocking_cli.cli import fragility_results as results
+    from rocking_cli.cli import structures
     from rocking_cli.cli.fragility_pictures import ready
     from rocking_cli.files import check_writable, keep_apart
     from rocking_cli.studies.fragility.store import Store
@@ -66,6 +67,10 @@ def command(
 
     try:
         study = load_study(file)
+        # What varies may be far from the file: the first sample stands for all.
+        first = {sample.structure: sample.mechanism for sample in study.samples if sample.number == 0}
+        for each in first.values():
+            structures.warn(each)
         place = Path(store) if store is not None else Path(file).with_suffix(".db")
         keep_apart([("--store" if store is not None else "the store beside the study", place)], [file])
         if check:

@@ -221,7 +221,7 @@ def command(
             from rocking_cli.cli.pulse_fits import fit_json
 
             found |= {"pulse": fit_json(fit), "pulse_responses": responses.histories_json(pulse_run, etas)}
-        terminal.print_json({**found, "notes": notes})
+        terminal.print_json({**found, "notes": [*structures.doubts(mechanism), *notes]})
         return
     if pulse_run is None:
         responses.print_tables(title, runs, etas)

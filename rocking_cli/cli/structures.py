@@ -7,8 +7,10 @@ from pathlib import Path
 
 from rocking_cli.cli import terminal
 from rocking_cli.core import Mechanism
+from rocking_cli.core.size import doubtful_size
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.structure import load_structure, parse_structure
+from rocking_cli.text import visible
 
 HERE = "rocking.yaml"
 DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
@@ -34,9 +36,22 @@ def load(files: Sequence[str]) -> list[Mechanism]:
     if problems:
         raise InputError(*problems)
     for mechanism in found:
-        if not mechanism.verified:
-            terminal.warning(f"nobody has verified the mechanism {mechanism.mechanism}: check its numbers yourself")
+        warn(mechanism)
     return found
+
+
+def warn(mechanism: Mechanism) -> None:
+    """Say what is doubtful about a structure, whatever is asked of it."""
+    if not mechanism.verified:
+        terminal.warning(f"nobody has verified the mechanism {mechanism.mechanism}: check its numbers yourself")
+    for doubt in doubts(mechanism):
+        terminal.warning(doubt)
+
+
+def doubts(mechanism: Mechanism) -> list[str]:
+    """What is doubtful about the sizes that were read."""
+    doubt = doubtful_size(mechanism)
+    return [f"{mechanism.name}: {doubt}"] if doubt is not None else []
 
 
 def _unnamed() -> Mechanism:
@@ -51,7 +66,9 @@ def told_apart(mechanisms: Sequence[Mechanism], files: Sequence[str]) -> list[Me
     """The structures, those that share a name called after their files too."""
     names = [each.name for each in mechanisms]
     return [
-        each.model_copy(update={"name": f"{each.name} ({Path(file).name})"}) if names.count(each.name) > 1 else each
+        each.model_copy(update={"name": f"{each.name} ({visible(Path(file).name)})"})
+        if names.count(each.name) > 1
+        else each
         for each, file in zip(mechanisms, files, strict=True)
     ]
 

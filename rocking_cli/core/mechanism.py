@@ -9,8 +9,8 @@ from functools import partial
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
-from pydantic_core import PydanticCustomError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from rocking_cli.core import equilibrium
 from rocking_cli.core.bodies import Body
@@ -19,8 +19,21 @@ from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Sketch
 from rocking_cli.plugin_errors import blame, guard
+from rocking_cli.text import cut, is_one_line
+from rocking_cli.units import UnitError, read, split
+
+
+def _shown_as_it_is(name: str) -> str:
+    if not name.strip():
+        raise ValueError("is empty")
+    if not is_one_line(name):
+        raise ValueError(f"must be printable characters in one line, got {cut(repr(name))}")
+    return name
+
 
 Restitution = Annotated[float, Field(gt=0, le=1)]
+Name = Annotated[str, AfterValidator(_shown_as_it_is)]
+"""What a user calls something: shown on terminals, in pictures and on pages."""
 ANSWERS = (
     "bodies", "motion", "limit", "sketch", "coefficients", "kinetic_inertia", "potential_energy", "uplift",
     "critical_rotation", "restitution_from_kinematics", "eta",
@@ -36,7 +49,8 @@ def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any
     description : str
         What the field is, a few words.
     unit : str
-        Its SI unit, or degrees where the field's name says so; empty for a pure number.
+        Its SI unit, or degrees where the field's name says so; empty for a pure number. A bare number is in this
+        unit, and a text such as `800 mm` may be in any of the same kind, see `rocking_cli.units`.
     symbol : str
         The paper's symbol.
     example : any
@@ -50,7 +64,10 @@ def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any
 
 
 def length(description: str, *, symbol: str = "", example: Any = None, **bounds: Any) -> Any:
-    """A `quantity` in metres: more than 0, and at most a million, which catches millimetres and overflow alike."""
+    """A `quantity` in metres: more than 0, and at most a million, so that nothing overflows.
+
+    Metres that were meant as millimetres pass: see `rocking_cli.core.size`.
+    """
     return quantity(description, unit="m", symbol=symbol, example=example, gt=0, le=1e6, **bounds)
 
 
@@ -70,6 +87,33 @@ def geometry_error(field: str, message: str) -> PydanticCustomError:
 
 def _is_mass(unit: object) -> bool:
     return isinstance(unit, str) and re.match(r"(kg|t)\b", unit) is not None
+
+
+def in_unit(value: Any, unit: str) -> Any:
+    """A value, or lists of them, with every text such as `800 mm` replaced by its number in a unit.
+
+    What is no such text stays as it is. Raises `ValidationError` with every text whose unit is wrong, and its place.
+    """
+    wrong: list[InitErrorDetails] = []
+
+    def number(each: Any, place: tuple[int, ...]) -> Any:
+        if isinstance(each, list | tuple):
+            items = [number(item, (*place, k)) for k, item in enumerate(each)]
+            return tuple(items) if isinstance(each, tuple) else items
+        parts = split(each) if isinstance(each, str) else None
+        if parts is None or not parts[1]:
+            return each
+        try:
+            return read(each, unit)
+        except UnitError as error:
+            said = PydanticCustomError("unit", "{reason}", {"reason": error.message, "hint": error.hint})
+            wrong.append(InitErrorDetails(type=said, loc=place, input=each))
+            return each
+
+    found = number(value, ())
+    if wrong:
+        raise ValidationError.from_exception_data("quantity", wrong)
+    return found
 
 
 class DirectionalRestitution(BaseModel):
@@ -106,7 +150,7 @@ class Mechanism(BaseModel, ABC):
     starter: ClassVar[tuple[str, ...]] = ()
     """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
 
-    name: str | None = Field(None, description="what to call the structure")
+    name: Name | None = Field(None, description="what to call the structure")
     gravity: float = Field(
         9.80665, gt=0, le=1000, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"}
     )
@@ -124,6 +168,15 @@ class Mechanism(BaseModel, ABC):
         extras = {key: info.json_schema_extra for key, info in type(self).model_fields.items()}
         of_mass = [key for key, extra in extras.items() if isinstance(extra, dict) and _is_mass(extra.get("unit"))]
         return any(getattr(self, key) is not None for key in of_mass)
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _with_a_unit(cls, value: Any, info: ValidationInfo) -> Any:
+        """Every field that has a unit takes texts with units."""
+        if not isinstance(value, str | list | tuple):
+            return value
+        extra = cls.model_fields[info.field_name or ""].json_schema_extra
+        return in_unit(value, str(extra["unit"])) if isinstance(extra, dict) and extra.get("unit") else value
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""
@@ -168,6 +221,7 @@ class Mechanism(BaseModel, ABC):
 
     def coefficients(self, phi: Reals, direction: Direction) -> Coefficients:
         """Coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8]."""
+        phi = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
         return coefficients(phi, direction, self.bodies(), self.motion(phi, direction))
 
     def kinetic_inertia(self, phi: Reals, direction: Direction) -> Reals:

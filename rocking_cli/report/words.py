@@ -10,6 +10,7 @@ from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.core.restitution import restitution_in_words, why_none
+from rocking_cli.core.size import doubtful_size
 from rocking_cli.dynamics.history import History, Outcome
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, SENSE, agreements, bearing, disagree
@@ -100,6 +101,9 @@ def doubts(content: Content) -> list[str]:
         said.append(f"Nobody has verified the mechanism {content.mechanism.mechanism}: its numbers need a check.")
     if content.mechanism.caution:
         said.append(content.mechanism.caution)
+    size = doubtful_size(content.mechanism)
+    if size is not None:
+        said.append(f"The sizes look wrong. {size[0].upper()}{size[1:]}{'' if size.endswith('?') else '.'}")
     etas = [content.equivalence[direction].eta for direction in Direction]
     if min(etas) <= 0:
         said.append(

@@ -1,0 +1,53 @@
+"""Text of others - names, keys, lines of files - made fit to be shown on a terminal, in a picture or on a page."""
+
+from __future__ import annotations
+
+import re
+
+# Control characters, marks that turn the direction of writing, line ends of other kinds, and what is no character at
+# all. Tabs and line feeds are let through: they do no harm.
+_UNSEEN = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff\ud800-\udfff]"
+)
+LONGEST = 60  # characters of a value that is quoted
+BEFORE, AFTER = 50, 70  # characters of a line that is quoted, on either side of what is wrong with it
+
+
+def visible(text: str) -> str:
+    r"""A text with the characters spelled out that a terminal would obey, or a page could not hold: ESC is `\x1b`.
+
+    A byte of a file name that is not UTF-8 is spelled as this byte, `\xff`.
+
+    Examples
+    --------
+    >>> visible("a\x1b[31mb")
+    'a\\x1b[31mb'
+    """
+    return _UNSEEN.sub(_spelled, text)
+
+
+def _spelled(found: re.Match[str]) -> str:
+    code = ord(found[0])
+    if 0xDC80 <= code <= 0xDCFF:  # Python's stand-in for a byte that is not UTF-8
+        code -= 0xDC00
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
+
+
+def is_one_line(text: str) -> bool:
+    """Whether a text can be shown as it is, in one line."""
+    return not _UNSEEN.search(text) and not {"\t", "\n"} & set(text)
+
+
+def cut(text: str, most: int = LONGEST) -> str:
+    """A text of this length at most, with dots where it was cut."""
+    return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def quoted_line(line: str, column: int | None) -> list[str]:
+    """A line of a file to quote, cut around a column that is counted from 1, and below it a mark at this column."""
+    start = (column or 1) - 1
+    before, after = visible(line[:start]), visible(line[start:])
+    if len(before) > BEFORE:
+        before = f"...{before[3 - BEFORE :]}"
+    lines = [before + cut(after, AFTER)]
+    return lines if column is None else [*lines, " " * len(before) + "^"]

@@ -1,0 +1,150 @@
+"""Quantities with units, as people write them: `800 mm`, `2.1 t/m3`, `10 deg`. One table for files, options and Python.
+
+Without numpy and pydantic, so that the command line can use it before it needs them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from decimal import Context, Decimal
+from difflib import get_close_matches
+
+from rocking_cli.text import cut, visible
+
+PI = "3.14159265358979323846264338327950288419716939937510"
+
+# What is measured, and its units in SI units. The first of each is the SI unit itself. Decimal, so that 800 mm is 0.8 m
+# to the last digit.
+KINDS: Mapping[str, Mapping[str, str]] = {
+    "length": {"m": "1", "mm": "0.001", "cm": "0.01", "dm": "0.1", "km": "1000", "in": "0.0254", "ft": "0.3048"},
+    # Before mass: a field in g is one of accelerations, a mass is in kg.
+    "acceleration": {"m/s2": "1", "cm/s2": "0.01", "mm/s2": "0.001", "gal": "0.01", "g": "9.80665", "ft/s2": "0.3048"},
+    "mass": {"kg": "1", "g": "0.001", "t": "1000", "Mg": "1000", "lb": "0.45359237"},
+    "force": {"N": "1", "kN": "1000", "MN": "1000000", "lbf": "4.4482216152605", "kip": "4448.2216152605"},
+    "pressure": {
+        "Pa": "1",
+        "kPa": "1000",
+        "MPa": "1000000",
+        "GPa": "1000000000",
+        "N/mm2": "1000000",
+        "kN/m2": "1000",
+        "bar": "100000",
+        "psi": "6894.757293168361336722673445346890693781",
+        "ksi": "6894757.293168361336722673445346890693781",
+    },
+    "density": {"kg/m3": "1", "t/m3": "1000", "g/cm3": "1000", "kg/dm3": "1000", "lb/ft3": "16.01846337396013951629"},
+    "weight density": {"N/m3": "1", "kN/m3": "1000", "lbf/ft3": "157.0874606378413602512"},
+    "angle": {"rad": "1", "deg": f"{PI}/180", "°": f"{PI}/180", "mrad": "0.001"},
+}
+STANDARD_GRAVITY = Decimal("9.80665")  # m/s2
+
+_FORM = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s\d.,+-].*)?", re.DOTALL)
+_COMMA = re.compile(r"[-+]?[0-9]+(,[0-9]+)+\s*\D*", re.ASCII)
+_RAISED = str.maketrans({"²": "2", "³": "3", "º": "°", "^": "", "·": "", "*": ""})
+_EXACT = Context(prec=60, Emax=10**6, Emin=-(10**6), traps=[])
+
+
+class UnitError(ValueError):
+    """A text that is not the quantity asked for.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, such as "12 kg is a mass, not a length".
+    hint : str, optional
+        What to do about it.
+    """
+
+    def __init__(self, message: str, hint: str | None = None) -> None:
+        self.message, self.hint = message, hint
+        super().__init__(f"{message} ({hint})" if hint else message)
+
+
+def kind_of(unit: str) -> str | None:
+    """What a unit measures: "length" for `mm`; None for a unit that is not in the table, or for none."""
+    return next((kind for kind, units in KINDS.items() if unit in units), None)
+
+
+def units_of(unit: str) -> tuple[str, ...]:
+    """The units in which a field of this unit may be given: all of its kind, or the one only."""
+    kind = kind_of(unit)
+    return tuple(KINDS[kind]) if kind is not None else (unit,) if unit else ()
+
+
+def split(text: str) -> tuple[str, str] | None:
+    """The number and the unit of a text such as `800 mm`, which may lack the unit; None if it is no number."""
+    found = _FORM.fullmatch(text.strip())
+    return (found[1], _plain(found[2] or "")) if found else None
+
+
+def _plain(unit: str) -> str:
+    """A unit as the table spells it: `kg / m³` is `kg/m3`."""
+    return "".join(unit.translate(_RAISED).split())
+
+
+def read(text: str, unit: str) -> float:
+    """The number of a text with a unit.
+
+    Parameters
+    ----------
+    text : str
+        Such as `800 mm`; the unit may be any of the same kind as `unit`.
+    unit : str
+        The unit of the number that is given back, such as `m`.
+
+    Returns
+    -------
+    float
+        The number nearest to what the text says.
+
+    Raises
+    ------
+    UnitError
+        If it is no number with a unit, the unit is not known, or it measures something else.
+
+    Examples
+    --------
+    >>> read("800 mm", "m")
+    0.8
+    >>> read("0.5 rad", "deg")
+    28.64788975654116
+    """
+    shown, parts = cut(visible(text.strip())), split(text)
+    if parts is None:
+        hint = "write a decimal point, and nothing between thousands" if _COMMA.match(text.strip()) else None
+        raise UnitError(f"{shown!r} is not a number with a unit", hint)
+    (number, given), kind, known = parts, kind_of(unit), units_of(unit)
+    if not given:
+        raise UnitError(f"{shown!r} is a text without a unit")
+    if not known:
+        raise UnitError(f"{shown!r}: this is a number without a unit")
+    if given == _plain(unit):
+        return float(number)
+    if kind and given in known:
+        ratio = _EXACT.divide(_factor(kind, given), _factor(kind, unit))
+        return float(_EXACT.multiply(_EXACT.create_decimal(number), ratio))
+    other = kind_of(given)
+    if other is None:
+        raise UnitError(f"{cut(visible(given))!r} is not a unit of {kind or unit}", _guess(given, known))
+    if (other, kind) == ("weight density", "density"):
+        mass = _EXACT.divide(_EXACT.multiply(_EXACT.create_decimal(number), _factor(other, given)), STANDARD_GRAVITY)
+        hint = f"over {STANDARD_GRAVITY} m/s2 it is {float(mass):.6g} kg/m3"
+        raise UnitError(f"{shown} is a weight of a volume, not a density, which is a mass of it", hint)
+    raise UnitError(f"{shown} is {_a(other)}, not {_a(kind) if kind else f'in {unit}'}", f"units: {', '.join(known)}")
+
+
+def _guess(given: str, known: tuple[str, ...]) -> str:
+    alike = {unit.lower(): unit for unit in reversed(known)}
+    close = get_close_matches(given.lower(), list(alike), n=1)
+    return f"did you mean {alike[close[0]]}?" if close else f"known: {', '.join(known)}"
+
+
+def _a(kind: str) -> str:
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+
+
+def _factor(kind: str, unit: str) -> Decimal:
+    """A unit in SI units."""
+    above, _, below = KINDS[kind][unit].partition("/")
+    return _EXACT.divide(Decimal(above), Decimal(below or "1"))
