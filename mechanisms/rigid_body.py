@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import combinations
 from math import pi, radians
 from typing import Annotated, ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, Length, Outline, Sketch, geometry_error, length, polygon, quantity
+from rocking_cli.core import (
+    Body,
+    Direction,
+    Length,
+    Outline,
+    Reals,
+    Sketch,
+    geometry_error,
+    length,
+    polygon,
+    quantity,
+)
 
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
 Vertex = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
-LEVEL = 1e-9  # of the polygon's size: how level two corners must be to stand on both
+SAME = 1e-9  # of the polygon's size: points that are nearer are one
+LEVEL = 1e-6  # of the polygon's width or height, the smaller: how level two corners must be to stand on both; nobody measures finer
+MOST = 10_000  # corners
+Points = NDArray[np.complex128]
+Indices = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 
 class RigidBody(SingleBody):
@@ -48,6 +64,7 @@ class RigidBody(SingleBody):
         example=[[0.0, 0.0], [1.0, 0.0], [0.8, 3.0], [0.0, 3.0]],
         default=None,
         min_length=3,
+        max_length=MOST,
     )
 
     @model_validator(mode="after")
@@ -62,23 +79,23 @@ class RigidBody(SingleBody):
             return self
         if len(missing) < len(numbers):
             raise geometry_error("polygon", "a polygon needs no R, alpha_deg or inertia_ratio: give one or the other")
-        self._check_polygon(np.array([complex(*vertex) for vertex in self.polygon]))
+        self._check_polygon()
         return self
 
-    def _check_polygon(self, z: np.ndarray) -> None:
-        size = np.ptp(z.real) + np.ptp(z.imag)
-        edges = list(zip(z, np.roll(z, -1), strict=True))
-        if any(abs(one - other) <= LEVEL * size for one, other in combinations(z, 2)):
+    def _check_polygon(self) -> None:
+        z, size = self._corners, self._size
+        if _any_alike(z, SAME * size):
             raise geometry_error("polygon", "two corners are the same point; the last need not repeat the first")
-        if abs((z.conj() * np.roll(z, -1)).imag.sum()) / 2 <= LEVEL * size**2 or any(
-            _meet(*one, *other) for one, other in combinations(edges, 2)
-        ):
+        if abs((z.conj() * np.roll(z, -1)).imag.sum()) / 2 <= SAME * size**2 or _any_meet(z):
             raise geometry_error(
                 "polygon", "its sides cross or enclose nothing: list the corners in order around the outline"
             )
         if not self._feet[1].real > self._feet[0].real:
+            second = np.sort(z.imag)[1] - z.imag.min()
             raise geometry_error(
-                "polygon", "it stands on one corner: its two lowest corners must be level with each other"
+                "polygon",
+                f"it stands on one corner, the next is {second:.4g} m higher: its two lowest corners must be level "
+                f"with each other, to {self._level:.2g} m",
             )
         if not self._feet[0].real < self._body.centroid.real < self._feet[1].real:
             raise geometry_error(
@@ -94,17 +111,36 @@ class RigidBody(SingleBody):
                 )
 
     @cached_property
+    def _corners(self) -> Points:
+        return np.array([complex(*vertex) for vertex in self.polygon or []])
+
+    @property
+    def _size(self) -> float:
+        return float(np.ptp(self._corners.real) + np.ptp(self._corners.imag))
+
+    @property
+    def _stands(self) -> Bools:
+        """Which corners are on the ground at rest."""
+        level: Bools = self._corners.imag <= self._corners.imag.min() + self._level
+        return level
+
+    @property
+    def _level(self) -> float:
+        """Height up to which a corner is on the ground [m]."""
+        narrow = min(np.ptp(self._corners.real), np.ptp(self._corners.imag))
+        return float(max(LEVEL * narrow, SAME * self._size))
+
+    @cached_property
     def _body(self) -> Body:
         if self.polygon is not None:
-            return polygon("body", 1.0, [complex(*vertex) for vertex in self.polygon])
+            return polygon("body", 1.0, self._corners.tolist())
         assert self.R is not None and self.alpha_deg is not None and self.inertia_ratio is not None
         return Body("body", 1.0, (self.inertia_ratio - 1) * self.R**2, 1j * self.R * np.cos(radians(self.alpha_deg)))
 
     @cached_property
     def _feet(self) -> tuple[complex, complex]:
         if self.polygon is not None:
-            z = np.array([complex(*vertex) for vertex in self.polygon])
-            low = z[z.imag <= z.imag.min() + LEVEL * (np.ptp(z.real) + np.ptp(z.imag))]
+            low = self._corners[self._stands]
             return complex(low[low.real.argmin()]), complex(low[low.real.argmax()])
         assert self.R is not None and self.alpha_deg is not None
         b = self.R * np.sin(radians(self.alpha_deg))
@@ -120,13 +156,12 @@ class RigidBody(SingleBody):
         if self.polygon is None:
             return pi / 2 + self.alpha(direction)  # no outline: until the centroid is on the ground
         left, right = self._feet
-        arms = np.array([complex(*vertex) for vertex in self.polygon]) - (right if direction > 0 else left)
-        above = arms[arms.imag > LEVEL * abs(arms).max()]
+        above = self._corners[~self._stands] - (right if direction > 0 else left)
         turns = np.angle(above) if direction > 0 else pi - np.angle(above)
         return float(turns.min())  # the next corner meets the ground
 
     def outlines(self) -> Sequence[Outline]:
-        return ([complex(*vertex) for vertex in self.polygon],) if self.polygon is not None else ()
+        return (self._corners.tolist(),) if self.polygon is not None else ()
 
     def lengths(self) -> Sequence[Length]:
         if self.polygon is None:
@@ -146,16 +181,50 @@ class RigidBody(SingleBody):
         return replace(super().sketch(), notes=["its shape is not given: a disc of the same mass and inertia"])
 
 
-def _meet(a: complex, b: complex, c: complex, d: complex) -> bool:
-    """Whether two sides ab and cd cross or touch; neighbours share a corner, and only neighbours do."""
-    if len({a, b, c, d}) < 4:
-        return False
+def _nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
+    """Pairs of boxes that overlap or touch, given their lower left and upper right corners, many at a time."""
+    order = np.argsort(low.real, kind="stable")
+    low, high = low[order], high[order]
+    for step in range(1, len(order)):
+        first = np.flatnonzero(low.real[step:] <= high.real[:-step])
+        if first.size == 0:
+            return  # boxes that are further apart in this order begin even further to the right
+        second = first + step
+        meet = (low.imag[second] <= high.imag[first]) & (low.imag[first] <= high.imag[second])
+        if meet.any():
+            yield order[first[meet]], order[second[meet]]
 
-    def side(p: complex, q: complex, r: complex) -> float:
-        return float(np.sign(((q - p).conjugate() * (r - p)).imag))
 
-    def within(p: complex, q: complex, r: complex) -> bool:
-        return side(p, q, r) == 0 and ((r - p) * (r - q).conjugate()).real <= 0
+def _any_alike(z: Points, tolerance: float) -> bool:
+    """Whether two points are within a tolerance of each other."""
+    around = tolerance * (1 + 1j)
+    return any((np.abs(z[i] - z[j]) <= tolerance).any() for i, j in _nearby(z, z + around))
 
-    crosses = side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
-    return crosses or within(a, b, c) or within(a, b, d) or within(c, d, a) or within(c, d, b)
+
+def _any_meet(z: Points) -> bool:
+    """Whether two sides of a polygon cross or touch; neighbours share a corner, and only neighbours do."""
+    w = np.roll(z, -1)
+    low = np.minimum(z.real, w.real) + 1j * np.minimum(z.imag, w.imag)
+    high = np.maximum(z.real, w.real) + 1j * np.maximum(z.imag, w.imag)
+    for i, j in _nearby(low, high):
+        apart = (z[i] != z[j]) & (z[i] != w[j]) & (w[i] != z[j]) & (w[i] != w[j])
+        if _meet(z[i][apart], w[i][apart], z[j][apart], w[j][apart]).any():
+            return True
+    return False
+
+
+def _meet(a: Points, b: Points, c: Points, d: Points) -> Bools:
+    """Whether sides ab and cd, which share no corner, cross or touch."""
+
+    def side(p: Points, q: Points, r: Points) -> Reals:
+        u, v = q - p, r - p
+        return np.sign(u.real * v.imag - u.imag * v.real)
+
+    def within(p: Points, q: Points, r: Points, where: Reals) -> Bools:
+        u, v = r - p, r - q
+        return (where == 0) & (u.real * v.real + u.imag * v.imag <= 0)
+
+    of_c, of_d, of_a, of_b = side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)
+    touch = within(a, b, c, of_c) | within(a, b, d, of_d) | within(c, d, a, of_a) | within(c, d, b, of_b)
+    crosses: Bools = (of_c != of_d) & (of_a != of_b)
+    return crosses | touch

@@ -65,11 +65,10 @@ def _unnamed() -> Mechanism:
 def told_apart(mechanisms: Sequence[Mechanism], files: Sequence[str]) -> list[Mechanism]:
     """The structures, those that share a name called after their files too."""
     names = [each.name for each in mechanisms]
+    longer = [f"{name} ({visible(Path(file).name)})" for name, file in zip(names, files, strict=True)]
     return [
-        each.model_copy(update={"name": f"{each.name} ({visible(Path(file).name)})"})
-        if names.count(each.name) > 1
-        else each
-        for each, file in zip(mechanisms, files, strict=True)
+        each.model_copy(update={"name": name}) if names.count(each.name) > 1 else each
+        for each, name in zip(mechanisms, longer, strict=True)
     ]
 
 

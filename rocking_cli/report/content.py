@@ -15,7 +15,7 @@ from rocking_cli.core import Equivalence, Mechanism, equivalent_block
 from rocking_cli.dynamics.history import History, respond
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.verdict import governs
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.doubts import Doubt, coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
@@ -159,7 +159,7 @@ class Content:
     picture : Picture
         What it looks like.
     curves, asked : tuple of Linearisation
-        The error of the equivalent block over its range, and where it is said in numbers.
+        The error of the equivalent block over its range, and where it is said in numbers; empty if it has none.
     trust : str
         What that means.
     shakings : tuple of Shaking
@@ -227,7 +227,11 @@ def gather(
     """
     done = progress or (lambda count: None)
     equivalence = equivalent_block(mechanism)
-    curves, asked = compare(mechanism, equivalence, AMPLITUDES, ACCELERATIONS)
+    try:
+        curves, asked = compare(mechanism, equivalence, AMPLITUDES, ACCELERATIONS)
+        said = trust(curves, asked)
+    except SolverError as error:  # the rest of the report stands without it
+        curves, asked, said = [], [], f"The error of the equivalent block is left out: {error}."
     done(1)
     shakings = []
     for each in given:
@@ -242,7 +246,7 @@ def gather(
         picture=picture(mechanism),
         curves=tuple(curves),
         asked=tuple(asked),
-        trust=trust(curves, asked),
+        trust=said,
         shakings=tuple(shakings),
         maps=tuple(maps),
         command=command,

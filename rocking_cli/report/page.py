@@ -68,7 +68,7 @@ def render(content: Content) -> str:
         geometry=_geometry(content),
         responses=[_response(content, each, k, bins) for k, each in enumerate(content.shakings)],
         maps=[_map(each, k) for k, each in enumerate(content.maps)],
-        errors=_still(draw_linearisation(content.curves, content.asked, ""), "errors"),
+        errors=_still(draw_linearisation(content.curves, content.asked, ""), "errors") if content.curves else None,
         error_tables=[
             (each.direction.label if len(content.asked) > 1 else "", _errors(each)) for each in content.asked
         ],

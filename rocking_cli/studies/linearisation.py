@@ -224,8 +224,12 @@ def _integral(integrand: Callable[[Reals], Reals], until: Reals) -> Reals:
     nodes = FEWEST
     while nodes <= MOST:
         x, weight = np.polynomial.legendre.leggauss(nodes)
-        found: Reals = until / 2 * (integrand(until[:, None] * (1 + x) / 2) @ weight)
+        with np.errstate(over="ignore", invalid="ignore"):  # what is beyond the range of numbers does not converge
+            found: Reals = until / 2 * (integrand(until[:, None] * (1 + x) / 2) @ weight)
         if (np.abs(found - before) <= PRECISION * np.abs(found)).all():
             return found
         before, nodes = found, 2 * nodes
-    raise SolverError("the integral of the energy equation does not converge: is the mechanism smooth up to phi_cr?")
+    raise SolverError(
+        "the integral of the energy equation does not converge: the mechanism is not smooth up to phi_cr, or so stocky "
+        "that rounding hides how it moves"
+    )

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Outline, RigidMotion, Sketch, disc
-from rocking_cli.errors import RockingError
+from rocking_cli.core.size import extent
+from rocking_cli.errors import MechanismError, RockingError
 from rocking_cli.plugin_errors import plugin_error
 
 Reals = NDArray[np.float64]
@@ -23,6 +24,7 @@ Points = NDArray[np.complex128]
 NODES = 60  # of a table of positions in either direction: straight lines between them are right to 1e-4 of the size
 FURTHEST = 0.999  # of the kinematic limit, at which a linkage has no derivatives
 SAME = 1e-6  # of the size: points that are nearer are one
+TINIEST = 1e-150  # m: scales of what is smaller are beyond the range of numbers
 STILL = 1e-9  # rate of turning below which a body does not turn
 
 ASSUMED = (
@@ -222,6 +224,8 @@ def box_around(outlines: Sequence[Points]) -> tuple[complex, complex]:
 def _picture(mechanism: Mechanism) -> Picture:
     bodies, sketch = mechanism.bodies(), mechanism.sketch()
     phi_cr = {direction: mechanism.critical_rotation(direction) for direction in Direction}
+    if not (min(phi_cr.values()) > 0 and extent(mechanism) > TINIEST):
+        raise MechanismError("it is too small to be drawn: check the sizes and their units")
     limit = {direction: FURTHEST * mechanism.limit(direction) for direction in Direction}
     parts = tuple(
         Part(
