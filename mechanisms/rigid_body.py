@@ -29,7 +29,7 @@ from rocking_cli.core import (
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
 Vertex = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 SAME = 1e-9  # of the polygon's size: points that are nearer are one
-LEVEL = 1e-6  # of the polygon's width or height, the smaller: how level two corners must be to stand on both; nobody measures finer
+LEVEL = 1e-6  # of its width or height, the smaller: nobody measures finer how level two corners are
 MOST = 10_000  # corners
 Points = NDArray[np.complex128]
 Indices = NDArray[np.intp]

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from rocking_cli.text import quoted_line, visible
+from rocking_cli.text import printable, quoted_line
 
 INCOMPLETE = 5
 """Exit code of a command that did its work except for what it reports: one bad record in a hundred."""
@@ -48,12 +48,12 @@ class Problem:
     def __str__(self) -> str:
         place = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
         # What is quoted of a file must not command the terminal, nor fill it.
-        head = ": ".join(visible(part) for part in (place, self.field, self.message) if part)
+        head = ": ".join(printable(part) for part in (place, self.field, self.message) if part)
         lines = [head]
         if self.excerpt is not None:
             lines += [f"    {line}" for line in quoted_line(self.excerpt, self.column)]
         if self.hint:
-            lines.append(f"  {visible(self.hint)}")
+            lines.append(f"  {printable(self.hint)}")
         return "\n".join(lines)
 
 

@@ -7,6 +7,8 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import BinaryIO
 
+from rocking_cli.text import printable
+
 
 def write_table_csv(stream: BinaryIO, columns: Mapping[str, Sequence[object]]) -> None:
     """Write columns under their headings, a line a row.
@@ -27,12 +29,14 @@ def write_blocks_csv(stream: BinaryIO, blocks: Iterable[Mapping[str, Sequence[ob
     writer = csv.writer(text, lineterminator="\n")
     for k, columns in enumerate(blocks):
         if k == 0:
-            writer.writerow(columns)
+            writer.writerow([printable(name) for name in columns])
         writer.writerows(zip(*([_field(value) for value in column] for column in columns.values()), strict=True))
     text.detach()
 
 
 def _field(value: object) -> object:
+    if isinstance(value, str):
+        return printable(value)  # a name may hold what no text file can
     if not isinstance(value, float):
         return value
     return "" if value != value else f"{value:.9g}"

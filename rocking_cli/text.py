@@ -13,14 +13,14 @@ LONGEST = 60  # characters of a value that is quoted
 BEFORE, AFTER = 50, 70  # characters of a line that is quoted, on either side of what is wrong with it
 
 
-def visible(text: str) -> str:
+def printable(text: str) -> str:
     r"""A text with the characters spelled out that a terminal would obey, or a page could not hold: ESC is `\x1b`.
 
     A byte of a file name that is not UTF-8 is spelled as this byte, `\xff`.
 
     Examples
     --------
-    >>> visible("a\x1b[31mb")
+    >>> printable("a\x1b[31mb")
     'a\\x1b[31mb'
     """
     return _UNSEEN.sub(_spelled, text)
@@ -46,7 +46,7 @@ def cut(text: str, most: int = LONGEST) -> str:
 def quoted_line(line: str, column: int | None) -> list[str]:
     """A line of a file to quote, cut around a column that is counted from 1, and below it a mark at this column."""
     start = (column or 1) - 1
-    before, after = visible(line[:start]), visible(line[start:])
+    before, after = printable(line[:start]), printable(line[start:])
     if len(before) > BEFORE:
         before = f"...{before[3 - BEFORE :]}"
     lines = [before + cut(after, AFTER)]

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from decimal import Context, Decimal
 from difflib import get_close_matches
 
-from rocking_cli.text import cut, visible
+from rocking_cli.text import cut, printable
 
 PI = "3.14159265358979323846264338327950288419716939937510"
 
@@ -110,7 +110,7 @@ def read(text: str, unit: str) -> float:
     >>> read("0.5 rad", "deg")
     28.64788975654116
     """
-    shown, parts = cut(visible(text.strip())), split(text)
+    shown, parts = cut(printable(text.strip())), split(text)
     if parts is None:
         hint = "write a decimal point, and nothing between thousands" if _COMMA.match(text.strip()) else None
         raise UnitError(f"{shown!r} is not a number with a unit", hint)
@@ -126,7 +126,7 @@ def read(text: str, unit: str) -> float:
         return float(_EXACT.multiply(_EXACT.create_decimal(number), ratio))
     other = kind_of(given)
     if other is None:
-        raise UnitError(f"{cut(visible(given))!r} is not a unit of {kind or unit}", _guess(given, known))
+        raise UnitError(f"{cut(printable(given))!r} is not a unit of {kind or unit}", _guess(given, known))
     if (other, kind) == ("weight density", "density"):
         mass = _EXACT.divide(_EXACT.multiply(_EXACT.create_decimal(number), _factor(other, given)), STANDARD_GRAVITY)
         hint = f"over {STANDARD_GRAVITY} m/s2 it is {float(mass):.6g} kg/m3"

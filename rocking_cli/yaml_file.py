@@ -13,7 +13,7 @@ from yaml.reader import ReaderError
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.files import read_bytes
-from rocking_cli.text import cut, visible
+from rocking_cli.text import cut, printable
 
 LARGEST = 1_000_000  # bytes; a structure takes a few hundred, a study a few thousand
 DEEPEST = 20  # nesting
@@ -200,7 +200,7 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
         raise InputError(document.problem(f"not YAML: {said}", mark)) from None
     except ReaderError as error:
         line = len(_LINE_END.findall(text, 0, error.position)) + 1
-        message = f"not YAML: the character {visible(chr(error.character))} cannot stand in it"
+        message = f"not YAML: the character {printable(chr(error.character))} cannot stand in it"
         raise InputError(Problem(message, file, line)) from None
     except RecursionError:
         raise InputError(Problem(f"nested too deep to be a {what}", file)) from None

@@ -98,6 +98,7 @@ def _write(paper: PaperFigure, folder: Path, suffix: str) -> list[Path]:
     import csv
     import io
 
+    from rocking_cli.cli.pictures import save
     from rocking_cli.files import check_writable, write_whole
     from rocking_cli.plotting.paper_figures import draw_paper_figure
 
@@ -105,7 +106,7 @@ def _write(paper: PaperFigure, folder: Path, suffix: str) -> list[Path]:
     for file in (picture, data):
         check_writable(file)
     figure = draw_paper_figure(paper)
-    write_whole(picture, lambda stream: figure.savefig(stream, format=suffix))
+    save(picture, figure)
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(paper.rows())
     write_whole(data, lambda stream: stream.write(text.getvalue().encode()))

@@ -15,6 +15,7 @@ import click
 from rocking_cli import __version__
 from rocking_cli.cli import terminal
 from rocking_cli.errors import PluginWarning, RockingError
+from rocking_cli.text import printable
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "respond", "animate", "pulse", "overturning", "spectrum", "equivalent",
@@ -80,6 +81,9 @@ class LazyGroup(click.Group):
                 stream.reconfigure(errors="replace")  # a name that an old code page cannot spell ends nothing
         try:
             return super().invoke(ctx)
+        except click.ClickException as error:
+            error.message = printable(error.message)  # it quotes what was typed
+            raise
         except RockingError as error:
             terminal.error(str(error))
             terminal.plugin_traceback(error)

@@ -21,7 +21,25 @@ MODELS = ("nonlinear", "linear1", "linear2")
 POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 SIZES, MOST = 60, 2000  # of a curve, unless asked otherwise and at most
 AROUND = 10.0  # scale up to which, and one over which down to, a structure is shown
+RIGHT = "no angle in rad between 0 and pi/2: alpha = atan(b/h) of a block 2b wide, 2h high"
 BLOCKS = (1.0, 10.0)  # 2 pi/p of blocks [s]: R from 0.19 to 19 m
+
+
+def _slenderness(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[float, ...]:
+    """Different angles between 0 and a right one, in rad unless a unit says otherwise."""
+    from rocking_cli.units import UnitError, read, split
+
+    found = []
+    for word in value.split(",") if value is not None else []:
+        try:
+            parts = split(word)
+            angle = float(word) if parts is not None and not parts[1] else read(word, "rad")
+        except UnitError as error:
+            raise click.BadParameter(f"{error}.", ctx, param) from None
+        if not 0 < angle < pi / 2:
+            raise click.BadParameter(f"{word.strip()} is {RIGHT}.", ctx, param)
+        found.append(angle)
+    return tuple(dict.fromkeys(found))
 
 
 def _numbers(low: float, high: float, what: str) -> Any:
@@ -52,8 +70,8 @@ def _numbers(low: float, high: float, what: str) -> Any:
 @click.option(
     "--slenderness",
     metavar="A,B,...",
-    callback=_numbers(0, pi / 2, "no angle in rad between 0 and pi/2: alpha = atan(b/h) of a block 2b wide, 2h high"),
-    help="Also rectangular blocks: alpha = atan(b/h) in rad, such as 0.1,0.2.",
+    callback=_slenderness,
+    help="Also rectangular blocks: alpha = atan(b/h) in rad, such as 0.1,0.2, or 10deg.",
 )
 @click.option(
     "--sizes",

@@ -1,4 +1,7 @@
-"""The one place that writes to the terminal: results on standard output, everything else on standard error."""
+"""The one place that writes to the terminal: results on standard output, everything else on standard error.
+
+What it is given may quote files and their names: nothing in it commands the terminal.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,8 @@ from time import monotonic
 from typing import Any, Protocol, TextIO
 
 import click
+
+from rocking_cli.text import printable
 
 ABSENT = "-"
 PATIENCE = 1.0  # s of work before it is shown
@@ -37,7 +42,7 @@ def results_only() -> Iterator[None]:
 
 def result(text: str = "") -> None:
     """A line of the result."""
-    click.echo(text, file=_results)
+    click.echo(printable(text), file=_results)
 
 
 def print_json(data: Mapping[str, Any]) -> None:
@@ -47,17 +52,17 @@ def print_json(data: Mapping[str, Any]) -> None:
 
 def note(text: str) -> None:
     """Something to know that is not part of the result."""
-    click.echo(text, err=True)
+    click.echo(printable(text), err=True)
 
 
 def warning(text: str) -> None:
     """Something to be careful about."""
-    click.echo(click.style("warning: ", fg="yellow", bold=True) + text, err=True)
+    click.echo(click.style("warning: ", fg="yellow", bold=True) + printable(text), err=True)
 
 
 def error(text: str) -> None:
     """What went wrong; a line each for several problems."""
-    click.echo(click.style("error: ", fg="red", bold=True) + text, err=True)
+    click.echo(click.style("error: ", fg="red", bold=True) + printable(text), err=True)
 
 
 def plugin_traceback(error: BaseException | None) -> None:
@@ -168,6 +173,8 @@ def table(
     from rich.table import Table
     from rich.text import Text
 
+    title, columns = printable(title), [printable(each) for each in columns]
+    rows = [[printable(cell) for cell in row] for row in rows]
     console = Console(file=_results)
     if explained and console.width < NARROW:
         columns, rows = columns[:-1], [row[:-1] for row in rows]

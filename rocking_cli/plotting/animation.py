@@ -32,6 +32,7 @@ from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_ground, draw_scale
 from rocking_cli.plotting.thinning import visible
 from rocking_cli.studies.film import Film
+from rocking_cli.text import printable
 
 Reals = NDArray[np.float64]
 DOTS = 100  # an inch of a frame
@@ -129,7 +130,7 @@ class _Stage:
         )
         _draw_traces(upper, lower, film, start, end)
         drawn = BytesIO()
-        figure.savefig(drawn, format="png", dpi=DOTS * FINER)
+        style.save(figure, drawn, format="png", dpi=DOTS * FINER)
         self._fine = Image.open(drawn).convert("RGB")
         self._coarse = self._fine.reduce(FINER)
         width, height = self._coarse.size
@@ -249,4 +250,4 @@ def animation_page(film: Film, title: str, speed: float = 1.0) -> str:
         "TITLE": html.escape(title), "STYLE": asset("motion.css"), "SCRIPT": asset("motion.js"), "DATA": as_script(data)
     }  # fmt: skip
     # All in one pass: a name in one part must not be taken for the place of another.
-    return re.sub("@(TITLE|STYLE|SCRIPT|DATA)@", lambda match: parts[match[1]], asset("animation.html"))
+    return printable(re.sub("@(TITLE|STYLE|SCRIPT|DATA)@", lambda match: parts[match[1]], asset("animation.html")))

@@ -39,9 +39,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
             ratio = ratio[: seen[0] if seen.size else int(np.isfinite(ratio).sum())]
         tau = found.tau[: ratio.size]
         fate = ", overturns" if each.history.overturned else ""
-        below.plot(
-            tau, ratio, label=f"{each.name}{fate}".replace("$", r"\$"), markevery=_spaced(tau, k), **style.distinct(k)
-        )
+        below.plot(tau, ratio, label=style.plain(f"{each.name}{fate}"), markevery=_spaced(tau, k), **style.distinct(k))
         if each.history.overturned and ratio.size:
             below.plot(tau[-1], ratio[-1], marker="x", markersize=7, color=style.distinct(k)["color"])
     _draw_linear(below, found)

@@ -155,7 +155,7 @@ def _key(each: Drawn, look: dict[str, Any]) -> Line2D:
         for name, spread in (("dispersion", curve.dispersion), ("scale", curve.scale)):
             if spread is not None:
                 said += f", {name} {spread.value:.2g} ({spread.low:.2g} to {spread.high:.2g})"
-    text = f"{each.name}: {said}".replace("$", r"\$")
+    text = style.plain(f"{each.name}: {said}")
     return Line2D([], [], label=text, markerfacecolor="white", **look)
 
 

@@ -142,7 +142,7 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     style.heading(axes, f"{title}, up to {found.top:.4g} g")
     every = max(1, found.periods.size // 8)
     for k, (structure, least) in enumerate(zip(found.structures, found.least, strict=True)):
-        name = structure.name.replace("$", r"\$")
+        name = style.plain(structure.name)
         axes.plot(found.periods, least, label=name, markevery=(k * every // 4, every), **style.distinct(k))
     axes.set_xscale("log")  # a curve is steep where pulses are short
     axes.set_yscale("log")

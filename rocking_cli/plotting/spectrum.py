@@ -156,7 +156,7 @@ def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None) -> 
     handles: list[Line2D | Patch] = []
     for k, each in enumerate(spectra):
         alpha = each.shape.slenderness
-        name = shorten(each.shape.structure.name, NAME, placeholder=" ...").replace("$", r"\$")
+        name = style.plain(shorten(each.shape.structure.name, NAME, placeholder=" ..."))
         label = rf"blocks, $\alpha$ = {alpha:g} rad" if alpha is not None else name
         handles.append(Line2D([], [], label=label, **style.distinct(k)))
     if any(each.given is not None for each in spectra):

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from textwrap import shorten
-from typing import Any
+from typing import IO, Any
+from warnings import catch_warnings, filterwarnings
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from rocking_cli import names
+from rocking_cli.text import printable
 
 WIDTH = 7.2  # inches: the width of a page of text
 DPI = 150
@@ -91,6 +94,31 @@ def heading(axes: Axes, text: str) -> None:
     """The title of a picture, above its first panel; a $ in a name is a $."""
     short = shorten(text, LONGEST, placeholder=" ...")
     axes.set_title(short, loc="left", fontsize=TITLE, color=INK, parse_math=False)
+
+
+def plain(text: str) -> str:
+    """A text of others as a label that has mathematics elsewhere: a $ in a name is a $."""
+    return text.replace("$", r"\$")
+
+
+def save(figure: Figure, stream: IO[Any], **options: Any) -> None:
+    """Write a figure, whatever characters its texts hold: those that an SVG cannot hold are spelled out.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        What to write.
+    stream : file
+        Where to.
+    **options
+        Of `Figure.savefig`.
+    """
+    for each in figure.findobj(Text):
+        if isinstance(each, Text) and each.get_text() != printable(each.get_text()):
+            each.set_text(printable(each.get_text()))
+    with catch_warnings():
+        filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # it is drawn as an empty box
+        figure.savefig(stream, **options)
 
 
 def note(axes: Axes, text: str, height: float = 0.96) -> None:

@@ -8,6 +8,8 @@ from io import StringIO
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from rocking_cli.plotting import style
+
 SANS = "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif"
 
 STILL = 'aria-hidden="true" focusable="false" style="stroke-linejoin: round; stroke-linecap: butt"'
@@ -25,7 +27,8 @@ def inline_svg(figure: Figure, prefix: str) -> str:
     """
     stream = StringIO()
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):  # text stays text
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+        unnamed = {"Date": None, "Creator": None, "Format": None, "Type": None}
+        style.save(figure, stream, format="svg", metadata=unnamed)
     text = stream.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r"<(metadata|style)\b.*?</\1>", "", text, flags=re.DOTALL)  # a style would hold for all of the page

@@ -28,6 +28,7 @@ from rocking_cli.report.definitions import PARAMETERS
 from rocking_cli.report.figures import inline_svg
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
+from rocking_cli.text import printable
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
 FEWEST, MOST = 300, 2500  # of one motion
@@ -53,7 +54,7 @@ def render(content: Content) -> str:
     )  # fmt: skip
     environment.filters["symbols"] = symbols
     bins = int(np.clip(BINS // max(1, len(content.shakings)), FEWEST, MOST))
-    return environment.get_template("report.html").render(
+    page = environment.get_template("report.html").render(
         content=content,
         answer=words.in_a_sentence(content),
         verdicts=words.verdicts(content),
@@ -76,6 +77,7 @@ def render(content: Content) -> str:
         style=Markup(asset("motion.css")),
         script=Markup(asset("motion.js")),
     )
+    return printable(page)  # a file may be called, and contain, what no page can hold
 
 
 def symbols(text: str) -> Markup:

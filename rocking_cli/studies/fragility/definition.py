@@ -8,11 +8,12 @@ from typing import Annotated, Any, Literal, Self, TypeVar
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError, model_validator
 
-from rocking_cli.core.mechanism import Restitution, geometry_error
+from rocking_cli.core.mechanism import Name, Restitution, geometry_error
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.field_problems import problems
 from rocking_cli.studies.fragility.distributions import STRICT, Distribution, Positive
 from rocking_cli.studies.fragility.intensity import MEASURES, PGA
+from rocking_cli.studies.fragility.varied import in_units_of_fields
 from rocking_cli.yaml_file import Document, parse, read_text
 
 T = TypeVar("T")
@@ -66,7 +67,7 @@ class StructureEntry(BaseModel):
     model_config = STRICT
 
     file: str = Field(description="its YAML file")
-    name: str | None = Field(None, description="what to call it here")
+    name: Name | None = Field(None, description="what to call it here")
     vary: dict[str, Distribution] = Field({}, description="distributions of some of its fields")
 
 
@@ -156,7 +157,7 @@ class Definition(BaseModel):
 
     model_config = STRICT
 
-    name: str | None = Field(None, description="what to call the study")
+    name: Name | None = Field(None, description="what to call the study")
     structures: list[Annotated[StructureEntry, BeforeValidator(_file)]] = Field(
         min_length=1, description="what is shaken"
     )
@@ -242,11 +243,15 @@ def read_definition(path: Path) -> tuple[Document, Definition | None]:
         If it cannot be read at all.
     """
     document = parse(read_text(path, "study"), str(path), "study", HINT)
+    of_units = in_units_of_fields(document, path.parent)
+    document.problems += of_units
     try:
         return document, Definition.model_validate(document.data)
     except ValidationError as error:
         found: Any = error.errors(include_url=False)
-    document.problems += problems(document, Definition, [*found, *_together(document.data, found)], **WORDS)
+    known = {(each.field, each.line) for each in of_units}
+    wrong = problems(document, Definition, [*found, *_together(document.data, found)], **WORDS)
+    document.problems += [each for each in wrong if (each.field, each.line) not in known]
     return document, None
 
 

@@ -30,6 +30,7 @@ from rocking_cli.studies.fragility.definition import (
 from rocking_cli.studies.fragility.distributions import Distribution, draw
 from rocking_cli.studies.fragility.hazard import HazardCurve, read_hazard
 from rocking_cli.studies.fragility.sources import Source
+from rocking_cli.text import printable
 from rocking_cli.yaml_file import Document, Place
 
 RESTITUTION = "restitution"
@@ -165,14 +166,18 @@ def load_study(path: str | Path) -> Study:
     document.check()
     assert definition is not None
     known = tuple(each for each in structures if each is not None)
-    return Study(definition.name or path.stem, definition, known, tuple(samples), tuple(sources), hazard)
+    return Study(definition.name or printable(path.stem), definition, known, tuple(samples), tuple(sources), hazard)
 
 
 def _structure(document: Document, place: Place, folder: Path, entry: StructureEntry) -> Mechanism | None:
     try:
         structure = load_structure(folder / entry.file)
     except InputError as error:
-        document.problems += error.problems
+        where = _within(document, place, "file")  # of what is wrong with the file as a whole
+        document.problems += [
+            each if each.line else document.at(where, f"{each.file}: {each.message}", each.hint)
+            for each in error.problems
+        ]
         return None
     except MechanismError as error:
         raise MechanismError(f"{entry.file}: {error}") from error
@@ -220,7 +225,7 @@ def _within(document: Document, place: Place, key: str) -> Place:
 
 def _shown(path: Path, folder: Path) -> str:
     """A file as the study names it, alike on every system."""
-    return (path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix()
+    return printable((path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix())
 
 
 def _refuse_repeated(document: Document, field: str, names: Sequence[str]) -> None:
