@@ -5,7 +5,6 @@ What it is given may quote files and their names: nothing in it commands the ter
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,6 +14,7 @@ from typing import Any, Protocol, TextIO
 
 import click
 
+from rocking_cli.json_text import json_text
 from rocking_cli.text import printable
 
 ABSENT = "-"
@@ -46,8 +46,8 @@ def result(text: str = "") -> None:
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """One JSON object on one line of standard output; NaN is a bug, not a value."""
-    click.echo(json.dumps(data, allow_nan=False), file=_results)
+    """One JSON object on one line of standard output."""
+    click.echo(json_text(data), file=_results)
 
 
 def note(text: str) -> None:

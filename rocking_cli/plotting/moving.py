@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from typing import Any
@@ -14,6 +13,7 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
+from rocking_cli.json_text import json_text
 from rocking_cli.plotting.structure import colour
 from rocking_cli.plotting.thinning import BINS, visible
 from rocking_cli.studies.film import Film
@@ -35,7 +35,7 @@ def asset(name: str) -> str:
 
 def as_script(data: Mapping[str, Any]) -> str:
     """JSON to stand in a script element: a name in it must not end the element."""
-    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+    text = json_text(data, compact=True)
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return text

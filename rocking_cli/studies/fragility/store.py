@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.json_text import json_text
 from rocking_cli.studies.fragility.engines import GOES_ON
 from rocking_cli.studies.fragility.plan import Plan, Trial
 from rocking_cli.studies.fragility.sources import Record
@@ -226,7 +227,7 @@ class Store:
 
     def note(self, facts: Mapping[str, Any]) -> None:
         """Keep plain data by name, in place of what was there."""
-        rows = [(key, json.dumps(value, sort_keys=True)) for key, value in facts.items()]
+        rows = [(key, json_text(value, sort_keys=True)) for key, value in facts.items()]
         self._connection.executemany("INSERT OR REPLACE INTO study VALUES (?, ?)", rows)
 
     def _insert(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
@@ -300,7 +301,7 @@ class Store:
 
 
 def _as_row(trial: Trial) -> tuple[Any, ...]:
-    columns = {**asdict(trial), "drawn": json.dumps(trial.drawn, sort_keys=True)}
+    columns = {**asdict(trial), "drawn": json_text(trial.drawn, sort_keys=True)}
     return tuple(columns.values())
 
 
