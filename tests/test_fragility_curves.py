@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from scipy.stats import t as student
 from rocking_cli.errors import InputError
 from rocking_cli.studies.fragility.curves import Curve, Observations, fit_capacities, fit_curve, fit_surface
 from rocking_cli.studies.fragility.goodness import goodness_of_runs
-from rocking_cli.studies.fragility.likelihood import fit_binomial, separable
+from rocking_cli.studies.fragility.likelihood import NO_ERRORS, fit_binomial, separable
 from rocking_cli.studies.shaken import linear_block, outcomes, parse_shape
 
 MEDIAN, DISPERSION = 0.4, 0.5
@@ -361,6 +362,142 @@ class TestKinds:
         assert set(kinds) >= {"lognormal", "step", "none"}
 
 
+def rounded(x, seed):
+    """Intensities as another processor may round them."""
+    return x * (1 + np.random.default_rng(seed).integers(-2, 3, x.size) * np.finfo(float).eps)
+
+
+def wide_logistic(random):
+    x = random.uniform(0.02, 3.0, 1500)
+    return Observations(x, random.random(x.size) < 1 / (1 + np.exp(-(x - 0.8) / 0.4)), np.arange(x.size))
+
+
+def level_with_both_outcomes(random):
+    x = np.tile([0.1, 0.2, 0.3], 8)
+    return Observations(x, (x > 0.25) | ((x > 0.15) & (random.random(24) < 0.5)), np.repeat(np.arange(8), 3))
+
+
+class TestUnits:
+    """A measure times a constant is the same measure: whatever the constant, and however it is rounded."""
+
+    @pytest.mark.parametrize("c", [1e-3, 0.1, 1.0, 3.7, 1e3, 1e6])
+    @pytest.mark.parametrize(
+        "made",
+        [
+            lambda random: stripes(random, 30, 0.4),
+            lambda random: stripes(random, 6, 0.4),
+            lambda random: cloud(random, 100),
+            wide_logistic,
+            level_with_both_outcomes,
+        ],
+    )
+    def test_curves_and_tests_do_not_depend_on_them(self, made, c):
+        seen = made(np.random.default_rng(61))
+        one, other = fit_curve(seen), fit_curve(replace(seen, x=rounded(c * seen.x, 62)))
+        assert (other.kind, other.goodness and other.goodness.name) == (one.kind, one.goodness and one.goodness.name)
+        for name in ("median", "scale", "dispersion"):
+            before, after = getattr(one, name), getattr(other, name)
+            assert (before is None) == (after is None)
+            if before is not None:
+                factor = 1.0 if name == "dispersion" else c
+                expected = [factor * value for value in (before.value, before.low, before.high)]
+                assert [after.value, after.low, after.high] == pytest.approx(expected, rel=1e-8)
+        if one.goodness is not None:
+            assert other.goodness.why == one.goodness.why
+            if one.goodness.p_value is not None:
+                assert other.goodness.p_value == pytest.approx(one.goodness.p_value, rel=1e-7)
+                assert other.goodness.degrees == pytest.approx(one.goodness.degrees, rel=1e-8)
+        fine = np.geomspace(0.01, 10, 50)
+        np.testing.assert_allclose(other.probability(c * fine), one.probability(fine), atol=1e-9)
+        np.testing.assert_allclose(other.band(c * fine), one.band(fine), atol=1e-8)
+
+    @pytest.mark.parametrize("c", [1e-3, 3.7, 1e3])
+    @pytest.mark.parametrize("each", [1, 3])
+    def test_nor_do_those_of_capacities(self, c, each):
+        lower, upper = brackets(np.random.default_rng(63), 60)
+        record = np.arange(60) // each
+        one = fit_capacities(lower, upper, record)
+        other = fit_capacities(rounded(c * lower, 64), rounded(c * upper, 65), record)
+        for name, factor in (("median", c), ("dispersion", 1.0)):
+            before, after = getattr(one, name), getattr(other, name)
+            expected = [factor * value for value in (before.value, before.low, before.high)]
+            assert [after.value, after.low, after.high] == pytest.approx(expected, rel=1e-8)
+        assert (one.goodness.p_value is None) == (each > 1)
+        assert other.goodness.p_value == (one.goodness.p_value and pytest.approx(one.goodness.p_value, rel=1e-7))
+
+    @pytest.mark.parametrize("c", [1e-3, 3.7, 1e3])
+    def test_nor_do_those_of_surfaces(self, c):
+        random = np.random.default_rng(66)
+        x1, x2 = np.exp(random.normal(size=(2, 300)))
+        exceeded = np.log(x1) + 0.5 * np.log(x2) > random.normal(size=300)
+        one, other = (fit_surface(factor * x1, x2, exceeded, np.arange(300) // 3) for factor in (1.0, c))
+        for before, after in zip(one.coefficients[1:], other.coefficients[1:], strict=True):
+            assert [after.value, after.low, after.high] == pytest.approx(
+                [before.value, before.low, before.high], rel=1e-7
+            )
+        assert other.p_values == pytest.approx(one.p_values, rel=1e-6)
+        flat = fit_surface(x1, rounded(np.full(300, c), 67), exceeded, np.arange(300))
+        assert "the same in all runs" in flat.why
+
+    def test_a_level_that_is_rounded_otherwise_for_each_record_is_one(self):
+        # None exceeds at 0.1, one half at 0.2, all at 0.3: over each float of 0.2 by itself these are two steps.
+        x, record = np.tile([0.1, 0.2, 0.3], 12), np.repeat(np.arange(12), 3)
+        seen = Observations(rounded(x, 68), (x > 0.25) | ((x > 0.15) & (record % 2 == 0)), record)
+        curve = fit_curve(seen)
+        assert curve.kind == "step" and "both outcomes occur at 0.2 only" in curve.why
+        assert (curve.step.low, curve.step.value, curve.step.high) == pytest.approx((0.1, 0.2, 0.3))
+
+    def test_brackets_that_share_an_end_share_it_however_it_is_rounded(self):
+        lower, upper = brackets(np.random.default_rng(69), 200)
+        exact, found = fit_capacities(lower, upper), fit_capacities(rounded(lower, 70), rounded(upper, 71))
+        assert exact.goodness.p_value is not None
+        assert found.goodness.p_value == pytest.approx(exact.goodness.p_value, rel=1e-8)
+
+
+class TestCovariance:
+    @pytest.mark.parametrize("covariance", [[[1.0, 2.0], [2.0, 1.0]], [[1.0, np.nan], [np.nan, 1.0]]])
+    def test_that_is_none_is_refused_with_the_reason(self, monkeypatch, covariance):
+        from statsmodels.genmod.generalized_linear_model import GLMResultsWrapper
+
+        monkeypatch.setattr(GLMResultsWrapper, "cov_params", lambda self: np.array(covariance))
+        curve = fit_curve(cloud(np.random.default_rng(72), 60))
+        assert (curve.kind, curve.why, curve.fit) == ("none", NO_ERRORS, None)
+
+    @pytest.mark.parametrize("gap", [1e-12, 1e-9, 3e-9, 1e-8, 1e-6, 1e-3])
+    def test_no_overlap_however_narrow_gives_an_error_of_no_number(self, gap):
+        random = np.random.default_rng(74)
+        for _ in range(20):
+            middle = 1 + gap * np.arange(6)
+            x = np.concatenate([np.full(12, 0.5), np.repeat(middle, 2), np.full(12, 2.0)])
+            exceeded = np.concatenate([np.zeros(12), random.random(12) < 0.5, np.ones(12)]).astype(bool)
+            curve = fit_curve(Observations(x, exceeded, np.arange(36) % 6))
+            assert curve.why
+            assert not np.isnan(curve.band(np.array([0.7, 1.0, 1.5]))).any() or curve.kind == "none"
+            if curve.fit is not None:
+                assert np.linalg.eigvalsh(curve.fit.covariance)[0] >= -1e-9 * np.trace(curve.fit.covariance)
+
+
+class TestFewRecords:
+    @pytest.mark.parametrize(("records", "said"), [(6, "only 6 distinct records"), (20, "")])
+    def test_carry_a_warning(self, records, said):
+        seen = stripes(np.random.default_rng(75), records, 0.3)
+        lower, upper = brackets(np.random.default_rng(76), 2 * records)
+        surface = fit_surface(seen.x, seen.x * np.exp(seen.record % 5), seen.exceeded, seen.record)
+        for found in (fit_curve(seen), fit_capacities(lower, upper, np.repeat(np.arange(records), 2)), surface):
+            assert found.records == records
+            assert found.warning.startswith(said) and bool(found.warning) == bool(said)
+
+    def test_intervals_of_some_numbers_below_twenty_hold_less_than_they_say(self):
+        # The word of the warning: of ten records with all the scatter between them.
+        random, held, fitted = np.random.default_rng(77), 0, 0
+        for _ in range(300):
+            curve = fit_curve(stripes(random, 10, 0.5, np.geomspace(0.15, 1.1, 7)))
+            if curve.dispersion is not None:
+                fitted += 1
+                held += curve.dispersion.low <= DISPERSION <= curve.dispersion.high
+        assert fitted > 280 and held < binom.ppf(0.05, fitted, 0.95)
+
+
 class TestRefused:
     @pytest.mark.parametrize("x", [0.0, -1.0, np.nan, np.inf])
     def test_an_intensity_without_a_logarithm(self, x):
@@ -415,10 +552,10 @@ class TestGoodness:
         found, naive = [], []
         for _ in range(200):
             seen = stripes(random, 60, 0.47)
-            X, alone = design(seen.x), np.arange(seen.x.size)
-            fit = fit_binomial("probit", X, seen.exceeded, alone, 0.95)
-            for kept, record in ((found, seen.record), (naive, alone)):
-                goodness = goodness_of_runs(fit, seen.x, X, seen.exceeded, record)
+            X, alone = design(seen.x), replace(seen, record=np.arange(seen.x.size))
+            fit = fit_binomial("probit", X, seen.exceeded, alone.record, 0.95)
+            for kept, runs in ((found, seen), (naive, alone)):
+                goodness = goodness_of_runs(fit, X, runs)
                 kept.append(goodness.statistic / goodness.degrees)
         error = 3 * np.std(found) / np.sqrt(len(found))
         assert abs(np.mean(found) - 1) < error < 0.2
@@ -441,6 +578,16 @@ class TestGoodness:
         place = np.searchsorted(levels, capacity)
         curve = fit_capacities(bounds[place], bounds[place + 1])
         assert curve.goodness.p_value < 1e-6 and "do not rely on it" in curve.why
+
+    def test_what_is_not_tested_says_the_same_reason_everywhere(self):
+        lower, upper = brackets(np.random.default_rng(46), 40)
+        several = fit_capacities(lower, upper, np.arange(40) // 2)
+        x = np.repeat([1.0, 2, 3, 4], 4)
+        few = fit_curve(one_each(x, [0] * 4 + [0, 0, 0, 1] + [0, 1, 1, 1] + [1] * 4))
+        for curve, reason in ((several, "several capacities of a record"), (few, "three are needed")):
+            assert curve.goodness.p_value is None and reason in curve.goodness.why
+            assert curve.why.endswith(f"the lognormal curve is not tested: {curve.goodness.why}")
+        assert "too few" not in several.why
 
     def test_brackets_that_overlap_have_no_cells(self):
         curve = fit_capacities(np.array([1.0, 1.5, 2.0, 2.5, 4.0]), np.array([1.8, 2.2, 2.8, 4.5, 5.0]))

@@ -53,6 +53,32 @@ def test_stripes_are_marked_with_counts_and_wilsons_intervals_under_the_curve():
     assert f"median {each.curve.median.value:.3g}" in words(figure)[0] and "95 %" in words(figure)[1]
 
 
+def test_bars_and_bands_count_records():
+    # Sixty runs of each of eight records at each level: eight records, whatever the number of runs.
+    random = np.random.default_rng(3)
+    capacity = 0.5 * np.exp(0.5 * random.normal(size=8))
+    x = np.tile(np.repeat(LEVELS, 60), 8)
+    record = np.repeat(np.arange(8), 240)
+    seen = Observations(x, x > capacity[record] * np.exp(0.02 * random.normal(size=x.size)), record)
+    figure = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a block"))
+    (axes,) = figure.axes
+    ends = np.array([segment[:, 1] for segment in axes.containers[0][2][0].get_segments()])
+    parts = seen.parts(0.95)
+    np.testing.assert_allclose(ends, np.column_stack([parts.low, parts.high]))
+    assert (np.diff(ends, axis=1) > 0.35).all()
+    said = words(figure)
+    assert "bars and shades: 95 % confidence, by record" in said[1]
+    assert said[2].startswith("only 8 distinct records")
+
+
+def test_a_cloud_of_many_runs_is_a_few_marks():
+    x = np.outer(np.geomspace(0.1, 0.9, 12), np.geomspace(0.5, 4, 10)).ravel().repeat(60)
+    record = np.repeat(np.arange(12), 600)
+    seen = Observations(x, x > np.exp(0.3 * np.random.default_rng(4).normal(size=x.size)), record)
+    (axes,) = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a cloud")).axes
+    assert len(axes.containers[0][0].get_xdata()) == 10
+
+
 def test_a_step_a_curve_and_nothing_share_a_picture():
     entries = [
         drawn("uplift $1", stripes([0, 20, 20, 20])),

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from rocking_cli.cli import terminal
 from rocking_cli.errors import INCOMPLETE as INCOMPLETE
+from rocking_cli.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility
-    from rocking_cli.studies.fragility.curves import Curve, Estimate
+    from rocking_cli.studies.fragility.curves import Curve, Estimate, Surface
     from rocking_cli.studies.fragility.definition import Definition, Limit
     from rocking_cli.studies.fragility.hazard import Rate
     from rocking_cli.studies.fragility.plan import Plan
@@ -62,13 +63,18 @@ def give(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool
         Whether all records, samples and runs could be used, and all are there.
     """
     import numpy as np
+    from pydantic import ValidationError
 
     from rocking_cli.studies.fragility import assess
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.hazard import HazardCurve
 
     plan = store.plan()
-    definition = Definition.model_validate(store.fact("definition"))
+    try:
+        definition = Definition.model_validate(store.fact("definition"))
+    except ValidationError:
+        hint = "`rocking fragility STUDY.yaml` says what, and keeps the runs"
+        raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
     points = store.fact("hazard")
     hazard = HazardCurve(*np.array(points)) if points is not None else None
     finished, failed = store.count()
@@ -167,6 +173,13 @@ def _print_curves(structure: str, measure: str, curves: Sequence[Fragility], con
     terminal.table(f"{structure}, over {label(measure)}", headings, rows, numbers=range(2, len(headings)))
     for each in curves:
         terminal.result(f"{limit_name(each.limit)}: {each.curve.why}.{_in_years(each.rate)}")
+    _print_warnings([each.curve for each in curves])
+
+
+def _print_warnings(fitted: Sequence[Curve | Surface]) -> None:
+    """What to be careful about in some fits, each thing once; with the result, as it belongs to the numbers."""
+    for warning in dict.fromkeys(each.warning for each in fitted if each.warning):
+        terminal.result(f"Warning: {warning}.")
 
 
 def _in_years(rate: Rate | None) -> str:
@@ -196,6 +209,7 @@ def _print_surfaces(
     )
     for each in surfaces:
         terminal.result(f"{limit_name(each.limit)}: {each.surface.why}.")
+    _print_warnings([each.surface for each in surfaces])
 
 
 def limit_name(limit: Limit) -> str:
@@ -246,6 +260,8 @@ def _as_json(
                 "p_values": each.surface.p_values,
                 "runs": each.surface.runs,
                 "exceedances": each.surface.exceedances,
+                "distinct_records": each.surface.records,
+                "warning": each.surface.warning or None,
             }
             for each in surfaces
         ],
@@ -261,7 +277,7 @@ def _curve_json(found: Fragility) -> dict[str, Any]:
         "kind": curve.kind,
         "why": curve.why,
         **{
-            name: None if each is None else _finite(asdict(each))
+            name: None if each is None else asdict(each)
             for name, each in (("median", curve.median), ("dispersion", curve.dispersion), ("scale", curve.scale))
         },
         "confidence": curve.confidence,
@@ -269,12 +285,7 @@ def _curve_json(found: Fragility) -> dict[str, Any]:
         "aic": curve.aic,
         "runs": curve.runs,
         "exceedances": curve.exceedances,
-        "annual_rate": None if found.rate is None else _finite(asdict(found.rate)),
-    }
-
-
-def _finite(data: dict[str, Any]) -> dict[str, Any]:
-    """Plain data with null for what is infinite: JSON has no such number."""
-    return {
-        key: None if isinstance(value, float) and abs(value) == float("inf") else value for key, value in data.items()
+        "distinct_records": curve.records,
+        "warning": curve.warning or None,
+        "annual_rate": None if found.rate is None else asdict(found.rate),
     }

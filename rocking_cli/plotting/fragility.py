@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
 from rocking_cli.studies.fragility.curves import Curve, Observations, Surface
-from rocking_cli.studies.fragility.goodness import groups
 
 Reals = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -47,7 +46,7 @@ class Drawn:
 
 
 def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
-    """Draw curves with their bands, and the observed parts that exceed with binomial intervals.
+    """Draw curves with their bands, and the observed parts that exceed with intervals that count records.
 
     Parameters
     ----------
@@ -84,8 +83,8 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
     axes.set_ylabel("probability of exceedance", fontsize=style.LABEL)
     style.tidy(axes)
     handles = [_key(each, style.distinct(k)) for k, each in enumerate(drawn)]
-    said = f"marks: observed parts; bars and shades: {100 * drawn[0].curve.confidence:.3g} % confidence"
-    handles.append(Line2D([], [], linestyle="none", label=said))
+    said = f"marks: observed parts; bars and shades: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
+    handles += [Line2D([], [], linestyle="none", label=each) for each in [said, *_warnings(drawn)]]
     figure.legend(
         handles=handles,
         loc="outside lower center",
@@ -98,28 +97,23 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
     return figure
 
 
-def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, counted: bool) -> None:
-    """Mark the part that exceeds in each group, at the mean intensity, with Wilson's interval."""
-    from scipy.special import ndtri
+def _warnings(drawn: Sequence[Drawn]) -> list[str]:
+    """What to be careful about in a picture, each thing once."""
+    return list(dict.fromkeys(each.curve.warning for each in drawn if each.curve.warning))
 
-    seen = each.observations
-    group = groups(seen.x)
-    runs = np.bincount(group)
-    over = np.bincount(group, weights=seen.exceeded)
-    x = np.bincount(group, weights=seen.x) / runs
-    part = over / runs
-    z2 = float(ndtri((1 + each.curve.confidence) / 2)) ** 2
-    middle = (over + z2 / 2) / (runs + z2)
-    half = np.sqrt(z2 * (part * (1 - part) / runs + z2 / (4 * runs**2))) / (1 + z2 / runs)
-    bars = np.array([part - (middle - half), middle + half - part]).clip(min=0.0)
+
+def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, counted: bool) -> None:
+    """Mark the part that exceeds in each group, at the mean intensity, with its interval."""
+    seen = each.observations.parts(each.curve.confidence)
+    bars = np.array([seen.part - seen.low, seen.high - seen.part])
     axes.errorbar(
-        x, part, yerr=bars, fmt=look["marker"], color=look["color"], markersize=4.5, markerfacecolor="white",
+        seen.x, seen.part, yerr=bars, fmt=look["marker"], color=look["color"], markersize=4.5, markerfacecolor="white",
         elinewidth=style.CURVE, capsize=2, zorder=4,
     )  # fmt: skip
     if counted:
-        for place, n, m, top in zip(x, over, runs, part + bars[1], strict=True):
+        for place, n, m, top in zip(seen.x, seen.exceeding, seen.runs, seen.high, strict=True):
             axes.annotate(
-                f"{n:.0f}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center",
+                f"{n}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center",
                 fontsize=style.SMALL, color=style.INK,
             )  # fmt: skip
 

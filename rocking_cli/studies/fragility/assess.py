@@ -17,9 +17,10 @@ from rocking_cli.studies.fragility.curves import (
 )
 from rocking_cli.studies.fragility.definition import OVERTURNING, Definition, Limit
 from rocking_cli.studies.fragility.hazard import HazardCurve, Rate, annual_rate
-from rocking_cli.studies.fragility.intensity import intensity
+from rocking_cli.studies.fragility.intensity import intensity, proportional
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import FAILED, STANDS, Rows, Store
+from rocking_cli.studies.fragility.study import RESTITUTION
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -55,6 +56,18 @@ class Found:
         peaks = np.array([(each.pga, each.pgv) for each in self.plan.records])[self.record]
         factors = self.rows.scale
         return intensity(measure, factors * peaks[:, 0], factors * peaks[:, 1], self.plan.scales(self.sample))
+
+    def decided_by_level(self, measure: str) -> bool:
+        """Whether all runs of a level have one intensity: whatever was scaled to it, and drawn of the structure."""
+        if measure == self.plan.measure:
+            return True
+        drawn = {name for k in np.unique(self.sample) for name in self.plan.trials[k].drawn}
+        return proportional(measure, self.plan.measure) and drawn <= {RESTITUTION}
+
+    def observations(self, measure: str, exceeded: Bools) -> Observations:
+        """The runs over a measure, those of a level together where it decides their intensity."""
+        level = self.level if self.decided_by_level(measure) else None
+        return Observations(self.intensities(measure), exceeded, self.record, level)
 
     def exceeds(self, limit: Limit) -> Bools:
         """Which runs exceed a limit state."""
@@ -125,14 +138,12 @@ def curves(
     """The fragility curves of a structure: each limit state over each measure."""
     made = []
     for measure in definition.fitted_measures:
-        x = found.intensities(measure)
         for limit in definition.limit_states:
-            exceeded = found.exceeds(limit)
-            seen = Observations(x, exceeded, found.record)
+            seen = found.observations(measure, found.exceeds(limit))
             if definition.method == "ida":
-                each = ladders(found, x, exceeded)
+                each = ladders(found, seen.x, seen.exceeded)
                 curve = fit_capacities(each.lower, each.upper, each.record, confidence=definition.confidence)
-                seen = replace(seen, exceeded=x >= each.upper[each.which])
+                seen = replace(seen, exceeded=found.level >= each.first[each.which])
             else:
                 curve = fit_curve(seen, confidence=definition.confidence)
             rate = None
@@ -164,6 +175,8 @@ class Ladders:
         The ladder of each run.
     record : ndarray of int, shape (m,)
         The record of each ladder.
+    first : ndarray of int, shape (m,)
+        The level at which it first exceeds; the number of levels if it does not.
     lower, upper : ndarray, shape (m,)
         Between which intensities it first exceeds: the last below the first that exceeds, 0 if that is the lowest; and
         the first that exceeds, infinite if none does.
@@ -171,6 +184,7 @@ class Ladders:
 
     which: Integers
     record: Integers
+    first: Integers
     lower: Reals
     upper: Reals
 
@@ -179,12 +193,13 @@ def ladders(found: Found, x: Reals, exceeded: Bools) -> Ladders:
     """Sort runs of some intensities, which exceed a limit state or do not, into ladders."""
     keys = np.stack([found.sample, found.record, found.eta, found.polarity])
     each, which = np.unique(keys, axis=1, return_inverse=True)
-    upper = np.full(each.shape[1], np.inf)
-    np.minimum.at(upper, which, np.where(exceeded, x, np.inf))
-    lower = np.zeros(each.shape[1])
-    below = x < upper[which]
+    first = np.full(each.shape[1], len(found.plan.levels))
+    np.minimum.at(first, which[exceeded], found.level[exceeded])
+    lower, upper = np.zeros(each.shape[1]), np.full(each.shape[1], np.inf)
+    below, there = found.level < first[which], found.level == first[which]
     np.maximum.at(lower, which[below], x[below])
-    return Ladders(which, each[1], lower, upper)
+    upper[which[there]] = x[there]
+    return Ladders(which, each[1], first, lower, upper)
 
 
 def peaks(found: Found) -> Reals:

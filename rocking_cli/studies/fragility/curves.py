@@ -10,7 +10,6 @@ import numpy as np
 from rocking_cli.errors import InputError
 from rocking_cli.studies.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
 from rocking_cli.studies.fragility.likelihood import (
-    Bools,
     Estimate,
     Fit,
     Integers,
@@ -20,6 +19,7 @@ from rocking_cli.studies.fragility.likelihood import (
     fit_brackets,
     too_few,
 )
+from rocking_cli.studies.fragility.observed import Observations, few_records, one_of_each
 from rocking_cli.studies.fragility.surfaces import Surface, fit_surface
 
 __all__ = ["Curve", "Estimate", "Kind", "Observations", "Surface", "fit_capacities", "fit_curve", "fit_surface"]
@@ -27,46 +27,9 @@ __all__ = ["Curve", "Estimate", "Kind", "Observations", "Surface", "fit_capaciti
 Kind = Literal["lognormal", "logistic", "step", "none"]
 LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
 REJECTED = 0.05  # p-value below which a curve is rejected
+LIKELIER = 1e-6  # of a log-likelihood: less is rounding
 _DECREASING = "nothing increases: fewer exceed as the intensity grows, so this measure does not tell what exceeds"
-_NO_MAXIMUM = "the likelihood found no maximum: the data hardly tell a slope"
 TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
-
-
-@dataclass(frozen=True, eq=False)
-class Observations:
-    """Which runs exceed a limit state.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-        Intensity of each run, positive.
-    exceeded : ndarray of bool, shape (n,)
-        Whether it exceeds the limit state.
-    record : ndarray of int, shape (n,)
-        The record it belongs to: runs of one record are not independent.
-
-    Raises
-    ------
-    InputError
-        If an intensity is not a positive number, or there are no runs.
-    """
-
-    x: Reals
-    exceeded: Bools
-    record: Integers
-
-    def __post_init__(self) -> None:
-        if not self.x.size == self.exceeded.size == self.record.size:
-            raise InputError(f"{self.x.size} intensities, {self.exceeded.size} outcomes, {self.record.size} records")
-        if not self.x.size:
-            raise InputError("a fragility curve needs runs, and there are none")
-        wrong = ~((self.x > 0) & np.isfinite(self.x))
-        if wrong.any():
-            k = int(wrong.argmax())
-            raise InputError(
-                f"the intensity of run {k} (record {self.record[k]}) is {self.x[k]:g}: a curve over its logarithm "
-                "needs positive ones; leave out records without shaking"
-            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +55,8 @@ class Curve:
         Of the kind that was chosen.
     aic : dict of str to float, or None
         Akaike's criterion of the kinds that were fitted; of repeated records without what makes them alike.
+    records : int
+        Number of different records.
     """
 
     kind: Kind
@@ -103,6 +68,12 @@ class Curve:
     step: Estimate | None = None
     goodness: Goodness | None = None
     aic: dict[Kind, float] | None = None
+    records: int = 0
+
+    @property
+    def warning(self) -> str:
+        """What to say where records are so few that intervals may not hold as they say; empty elsewhere."""
+        return few_records(self.records, self.confidence)
 
     @property
     def median(self) -> Estimate | None:
@@ -173,7 +144,7 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
         then grows for ever with the slope. None if there is nothing to fit.
     """
     x, exceeded = observations.x, observations.exceeded
-    bare = Curve("none", "", confidence, x.size, int(exceeded.sum()))
+    bare = Curve("none", "", confidence, x.size, int(exceeded.sum()), records=observations.records)
     if not 0 < bare.exceedances < bare.runs:
         return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
     special = _step_or_none(bare, x[~exceeded], x[exceeded])
@@ -182,13 +153,16 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
     if few := too_few(observations.record, 2):
         return replace(bare, why=few)
     curves: dict[Kind, Curve] = {}
+    refused: dict[Kind, str] = {}
     for kind, link in LINKS.items():
         design = _design(kind, x)
         fit = fit_binomial(link, design, exceeded, observations.record, confidence)
-        if fit is not None:
-            goodness = goodness_of_runs(fit, x, design, exceeded, observations.record)
+        if isinstance(fit, str):
+            refused[kind] = fit
+        else:
+            goodness = goodness_of_runs(fit, design, observations)
             curves[kind] = replace(bare, kind=kind, fit=fit, goodness=goodness)
-    kind, why = _choice(curves)
+    kind, why = _choice(curves) if "lognormal" in curves else ("none", refused["lognormal"])
     aic = {kind: curve.fit.aic for kind, curve in curves.items() if curve.fit is not None}
     return replace(curves.get(kind, bare), why=why, aic=aic)
 
@@ -218,12 +192,16 @@ def fit_capacities(
     InputError
         If a bracket is empty.
     """
+    ends = one_of_each(np.concatenate([lower, upper]))
+    lower, upper = ends[: lower.size], ends[lower.size :]
     wrong = ~((lower >= 0) & (lower < upper))
     if wrong.any():
         k = int(wrong.argmax())
         raise InputError(f"the capacity of record {k} lies between {lower[k]:g} and {upper[k]:g}: no such interval")
+    if record is None:
+        record = np.arange(lower.size)
     above = np.isfinite(upper)
-    bare = Curve("none", "", confidence, lower.size, int(above.sum()))
+    bare = Curve("none", "", confidence, lower.size, int(above.sum()), records=np.unique(record).size)
     if not bare.exceedances:
         return replace(bare, why=f"none of the {bare.runs} records exceeds at any level")
     if not (lower > 0).any():
@@ -233,12 +211,9 @@ def fit_capacities(
         return special
     with np.errstate(divide="ignore"):
         logs = np.log(lower), np.log(upper)
-    if record is None:
-        record = np.arange(lower.size)
-    few = too_few(record, 2)
-    fit = fit_brackets(*logs, record, confidence) if not few else None
-    if fit is None:
-        return replace(bare, why=few or _NO_MAXIMUM)
+    fit = too_few(record, 2) or fit_brackets(*logs, record, confidence)
+    if isinstance(fit, str):
+        return replace(bare, why=fit)
     if fit.coefficients[1] <= 0:
         return replace(bare, why=_DECREASING)
     goodness = goodness_of_brackets(fit, *logs, record)
@@ -275,16 +250,14 @@ def _step_or_none(bare: Curve, below: Reals, above: Reals) -> Curve | None:
 
 def _choice(curves: dict[Kind, Curve]) -> tuple[Kind, str]:
     """Which kind, and why."""
-    lognormal, logistic = curves.get("lognormal"), curves.get("logistic")
-    if lognormal is None:
-        return "none", _NO_MAXIMUM
+    lognormal, logistic = curves["lognormal"], curves.get("logistic")
     if _slope(lognormal) <= 0:
         if logistic is None or _slope(logistic) <= 0:
             return "none", _DECREASING
         return "logistic", f"the lognormal does not increase; {_tested(logistic)}"
     if not _rejected(lognormal):
         return "lognormal", f"lognormal is the default; {_tested(lognormal)}"
-    if logistic is None or _slope(logistic) <= 0 or _likelihood(logistic) <= _likelihood(lognormal):
+    if logistic is None or _slope(logistic) <= 0 or _likelihood(logistic) < _likelihood(lognormal) + LIKELIER:
         return "lognormal", f"lognormal is the default, and logistic no likelier; {_tested(lognormal)}"
     assert lognormal.goodness is not None
     why = f"the lognormal is rejected (p = {lognormal.goodness.p_value:.2g}) and logistic is likelier"
@@ -311,7 +284,7 @@ def _tested(curve: Curve) -> str:
     assert curve.goodness is not None and curve.fit is not None
     p = curve.goodness.p_value
     if p is None:
-        said = f"the data are too few to test a {curve.kind} curve"
+        said = f"the {curve.kind} curve is not tested: {curve.goodness.why}"
     elif _rejected(curve):
         said = f"do not rely on it: the data reject a {curve.kind} curve (p = {p:.2g})"
     else:

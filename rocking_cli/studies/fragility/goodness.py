@@ -6,11 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.studies.fragility.likelihood import FARTHEST, Bools, Fit, Integers, Reals, cumulative, density
+from rocking_cli.studies.fragility.likelihood import (
+    FARTHEST,
+    Fit,
+    Integers,
+    Reals,
+    cumulative,
+    density,
+    standardised,
+)
+from rocking_cli.studies.fragility.observed import Observations
 
-LEAST = 2.0  # runs expected on either side in a group, and records expected in a cell
-A_LEVEL = 5  # runs at one intensity, on average, that make it a stripe
-GROUPS = 10  # of runs at intensities that are all different
+LEAST = 2.0 - 1e-6  # runs expected on either side in a group, or records in a cell: two less rounding are two
 
 
 @dataclass(frozen=True)
@@ -25,7 +32,7 @@ class Goodness:
         The statistic, its degrees of freedom, and how likely one as large is if the curve is right; None if there
         are too few data.
     why : str
-        What was too few; empty if it was tested.
+        Why it was not tested; empty if it was.
     """
 
     name: str
@@ -35,19 +42,17 @@ class Goodness:
     why: str = ""
 
 
-def goodness_of_runs(fit: Fit, x: Reals, design: Reals, exceeded: Bools, record: Integers) -> Goodness:
-    """Test a curve against the numbers that exceed, at each intensity or in tenths of the runs.
+def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
+    """Test a curve against the numbers that exceed, in each group of the runs.
 
     Parameters
     ----------
     fit : Fit
         The curve.
-    x : ndarray, shape (n,)
-        Intensities.
     design : ndarray, shape (n, 2)
         X of the fit.
-    exceeded, record : ndarray, shape (n,)
-        As fitted.
+    seen : Observations
+        The runs, as fitted.
 
     Notes
     -----
@@ -59,23 +64,23 @@ def goodness_of_runs(fit: Fit, x: Reals, design: Reals, exceeded: Bools, record:
     """
     eta = np.clip(design @ fit.coefficients, -FARTHEST, FARTHEST)
     p, q, slope = cumulative(fit.link, eta), cumulative(fit.link, -eta), density(fit.link, eta)
-    name = "Pearson chi-square over the intensities" if are_stripes(x) else "Hosmer-Lemeshow"
-    member = _membership(_merged(groups(x), p, q))
+    name = "Pearson chi-square over the intensities" if seen.stripes else "Hosmer-Lemeshow"
+    member = _membership(_merged(seen.group, p, q))
     count = member.shape[1]
     if count < 3:
-        why = f"{count} group{'s' * (count > 1)} with {LEAST:g} or more expected on either side, three are needed"
+        why = f"{count} group{'s' * (count > 1)} with two or more expected on either side, three are needed"
         return Goodness(name, why=why)
     deviation = np.sqrt(member.T @ (p * q))
-    standard = member.T @ (exceeded - p) / deviation
+    standard = member.T @ (seen.exceeded - p) / deviation
     # What one run adds to the standardised differences, less what it takes off them through the coefficients.
     weight = slope / (p * q)
+    design, _ = standardised(design)
     information = (design * (slope * weight)[:, None]).T @ design
     through = np.linalg.solve(information, (design * slope[:, None]).T @ member)
     adds = (member - (design * weight[:, None]) @ through) / deviation
-    if np.unique(record).size < record.size:
-        place = np.unique(record, return_inverse=True)[1]
-        sums = np.zeros((int(place.max()) + 1, count))
-        np.add.at(sums, place, adds * (exceeded - p)[:, None])
+    if seen.repeated:
+        sums = np.zeros((seen.records, count))
+        np.add.at(sums, seen.who, adds * (seen.exceeded - p)[:, None])
         covariance = sums.T @ sums
         name += ", corrected for repeated records"
     else:
@@ -116,7 +121,7 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, record: Integers)
     expected, by_coefficients = member.T @ expected, member.T @ by_coefficients
     count = expected.size
     if count < 4:
-        why = f"{count} cell{'s' * (count > 1)} with {LEAST:g} or more capacities expected, four are needed"
+        why = f"{count} cell{'s' * (count > 1)} with two or more capacities expected, four are needed"
         return Goodness(name, why=why)
     observed = member.T @ np.bincount(np.searchsorted(whole, lower, side="right"), minlength=whole.size + 1)
     covariance = np.diag(expected) - np.outer(expected, expected) / lower.size
@@ -130,6 +135,8 @@ def _weighted(name: str, standard: Reals, covariance: Reals) -> Goodness:
     from scipy.special import chdtrc
 
     first, second = np.trace(covariance), (covariance**2).sum()
+    if first <= 0:
+        return Goodness(name, why="the fit takes up all the scatter that there could be")
     statistic, degrees = float(standard @ standard * first / second), float(first**2 / second)
     return Goodness(name, statistic, degrees, float(chdtrc(degrees, statistic)))
 
@@ -137,17 +144,6 @@ def _weighted(name: str, standard: Reals, covariance: Reals) -> Goodness:
 def _membership(group: Integers) -> Reals:
     """One where a run, or a cell, belongs to a group."""
     return np.eye(int(group.max()) + 1)[group]
-
-
-def are_stripes(x: Reals) -> bool:
-    """Whether intensities repeat often enough to be looked at one by one."""
-    return bool(A_LEVEL * np.unique(x).size <= x.size)
-
-
-def groups(x: Reals) -> Integers:
-    """Put runs into groups, numbered from the lowest: of one intensity each, or of a tenth of the runs in its order."""
-    place = x if are_stripes(x) else np.searchsorted(np.sort(x), x) * GROUPS // x.size  # equal values stay together
-    return np.unique(place, return_inverse=True)[1].astype(np.int64)
 
 
 def _merged(group: Integers, p: Reals, q: Reals) -> Integers:

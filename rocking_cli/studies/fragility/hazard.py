@@ -14,6 +14,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.studies.fragility.curves import Curve
 from rocking_cli.studies.fragility.likelihood import Reals
+from rocking_cli.studies.fragility.observed import SAME
 
 NODES = 16  # of Gauss's rule in a piece
 PIECE = 0.05  # of ln x: a curve of dispersion 0.02 is still smooth in it
@@ -41,9 +42,9 @@ class HazardCurve:
     annual_rate: Reals
 
     def __post_init__(self) -> None:
-        problem = _problem(self.intensity, self.annual_rate)
-        if problem is not None:
-            raise InputError(f"hazard curve, point {problem[0] + 1}: {problem[1]}")
+        problems = wrong_points(self.intensity, self.annual_rate)
+        if problems:
+            raise InputError(*(f"hazard curve, point {k + 1}: {message}" for k, message in problems))
 
     def rate(self, x: Reals) -> Reals:
         """Annual rate of exceeding x; NaN outside the points."""
@@ -51,20 +52,21 @@ class HazardCurve:
         return np.exp(np.interp(np.log(x), *logs, left=np.nan, right=np.nan))
 
 
-def _problem(intensity: Reals, rate: Reals) -> tuple[int, str] | None:
-    """The first point that is wrong, counted from 0, and what is wrong there."""
+def wrong_points(intensity: Reals, rate: Reals) -> list[tuple[int, str]]:
+    """The points of a hazard curve that are wrong, counted from 0, and what is wrong there."""
     if intensity.size != rate.size:
-        return min(intensity.size, rate.size), "an intensity without a rate, or a rate without an intensity"
+        return [(min(intensity.size, rate.size), "an intensity without a rate, or a rate without an intensity")]
+    found = []
     for k, (x, value) in enumerate(zip(intensity, rate, strict=True)):
         if not 0 < x < math.inf:
-            return k, f"the intensity is {x:g}, it must be positive"
-        if not 0 < value < math.inf:
-            return k, f"the annual rate is {value:g}, it must be positive"
-        if k and x <= intensity[k - 1]:
-            return k, f"the intensity {x:g} does not exceed the {intensity[k - 1]:g} before it"
-        if k and value > rate[k - 1]:
-            return k, f"the annual rate {value:g} is above the {rate[k - 1]:g} of the lower intensity before it"
-    return (intensity.size, "at least two are needed") if intensity.size < 2 else None
+            found.append((k, f"the intensity is {x:g}, it must be positive"))
+        elif not 0 < value < math.inf:
+            found.append((k, f"the annual rate is {value:g}, it must be positive"))
+        elif k and x <= intensity[k - 1]:
+            found.append((k, f"the intensity {x:g} does not exceed the {intensity[k - 1]:g} before it"))
+        elif k and value > rate[k - 1]:
+            found.append((k, f"the annual rate {value:g} is above the {rate[k - 1]:g} at the lower intensity"))
+    return found or ([(intensity.size, "at least two are needed")] if intensity.size < 2 else [])
 
 
 def read_hazard(path: Path) -> HazardCurve:
@@ -104,12 +106,15 @@ def read_hazard(path: Path) -> HazardCurve:
             raise InputError(Problem(message, str(path), k + 1, excerpt=lines[k].strip()[:100], hint=hint))
         rows.append(numbers_in(str(path), k + 1, lines[k], cells))
     intensity, rate = np.array(rows).reshape(-1, 2).T
-    problem = _problem(intensity, rate)
-    if problem is not None:
-        point, message = problem
+    problems = []
+    for point, message in wrong_points(intensity, rate):
         if point == len(used):
-            raise InputError(Problem(f"{len(used)} point{'s' * (len(used) != 1)}: {message}", str(path)))
-        raise InputError(Problem(message, str(path), used[point] + 1, excerpt=lines[used[point]].strip()[:100]))
+            problems.append(Problem(f"{len(used)} point{'s' * (len(used) != 1)}: {message}", str(path)))
+        else:
+            excerpt = lines[used[point]].strip()[:100]
+            problems.append(Problem(message, str(path), used[point] + 1, excerpt=excerpt))
+    if problems:
+        raise InputError(*problems)
     return HazardCurve(intensity, rate)
 
 
@@ -173,7 +178,7 @@ def annual_rate(curve: Curve, hazard: HazardCurve) -> Rate:
     last = float(hazard.annual_rate[-1])
     if curve.step is not None:
         at, low, high = (_rate_at(hazard, x) for x in (curve.step.value, curve.step.high, curve.step.low))
-        above = last if curve.step.value > hazard.intensity[-1] else 0.0
+        above = last if curve.step.value > hazard.intensity[-1] * (1 + SAME) else 0.0
         return Rate(at, low, high, above, _beyond(hazard, curve.step.value))
     end = hazard.intensity[-1:]
     low, rate, high = (
@@ -204,9 +209,10 @@ def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals]) -> flo
 
 def _rate_at(hazard: HazardCurve, x: float) -> float:
     """Rate at an intensity; that of the first point below it, and none above the last."""
-    if x > hazard.intensity[-1]:
+    first, last = hazard.intensity[[0, -1]]
+    if x > last * (1 + SAME):
         return 0.0
-    return float(hazard.rate(np.array([max(x, hazard.intensity[0])]))[0])
+    return float(hazard.rate(np.clip([x], first, last))[0])
 
 
 def _first_slope(hazard: HazardCurve) -> float:

@@ -60,6 +60,11 @@ def intensity(measure: str, pga: float | Reals, pgv: float | Reals, scales: Scal
     return np.asarray(pga if measure in (PGA, PGA_RATIO) else pgv, dtype=np.float64)
 
 
+def proportional(one: str, other: str) -> bool:
+    """Whether two measures are in proportion for one structure: both of the acceleration, or both of the velocity."""
+    return any(one in pair and other in pair for pair in ((PGA, PGA_RATIO), (PGV, PGV_RATIO)))
+
+
 def label(measure: str) -> str:
     """A measure with its unit, for a heading."""
     return f"{measure} [{UNITS[measure]}]" if UNITS[measure] else measure

@@ -18,6 +18,9 @@ STEPS = 100  # of Newton's method, which takes about six
 DECREMENT = 1e-12  # of the log-likelihood per record, before the last of them
 SHORTEST = 1e-10  # part of a step
 SEPARABLE = 1e-9  # per run, of the margin by which a line separates
+ROUNDING = 1e-9  # of the largest eigenvalue of a covariance: a negative one beyond it is no rounding
+NO_MAXIMUM = "the likelihood found no maximum: the data hardly tell a slope"
+NO_ERRORS = "the errors of the fit cannot be told: its covariance is not positive semi-definite"
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,8 @@ class Fit:
     def band(self, design: Reals) -> tuple[Reals, Reals]:
         """Confidence limits of P of each row: those of eta, through the link, so that they stay within 0 and 1."""
         eta = design @ self.coefficients
-        reach = self.quantile * np.sqrt(np.einsum("ij,jk,ik->i", design, self.covariance, design))
+        variance = np.einsum("ij,jk,ik->i", design, self.covariance, design)
+        reach = self.quantile * np.sqrt(np.maximum(variance, 0.0))  # what rounding leaves of a variance of zero
         return cumulative(self.link, eta - reach), cumulative(self.link, eta + reach)
 
 
@@ -115,7 +119,37 @@ def _normal(u: Reals) -> Reals:
     return result
 
 
-def fit_binomial(link: Link, design: Reals, exceeded: Bools, record: Integers, confidence: float) -> Fit | None:
+def standardised(design: Reals) -> tuple[Reals, Reals]:
+    """A design whose columns after the first, of ones, are about their mean, in units of their deviation.
+
+    Neither the unit of an intensity nor how far from one it lies then matters to a fit.
+
+    Returns
+    -------
+    design : ndarray, shape (n, k)
+        The new one.
+    back : ndarray, shape (k, k)
+        Coefficients of the new one times this are those of the old one.
+    """
+    mean, deviation = design[:, 1:].mean(axis=0), design[:, 1:].std(axis=0)
+    back = np.diag(np.concatenate([[1.0], 1 / deviation]))
+    back[0, 1:] = -mean / deviation
+    return np.column_stack([design[:, :1], (design[:, 1:] - mean) / deviation]), back
+
+
+def _returned(back: Reals, coefficients: Reals, covariance: Reals) -> tuple[Reals, Reals] | None:
+    """What was fitted to a standardised design, in terms of the old one; None if the covariance is none."""
+    covariance = (covariance + covariance.T) / 2
+    if not (np.isfinite(covariance).all() and np.isfinite(coefficients).all()):
+        return None
+    values = np.linalg.eigvalsh(covariance)
+    if values[0] < -ROUNDING * values[-1]:
+        return None
+    covariance = back @ covariance @ back.T
+    return (back @ coefficients, covariance) if (np.diag(covariance) > 0).all() else None
+
+
+def fit_binomial(link: Link, design: Reals, exceeded: Bools, record: Integers, confidence: float) -> Fit | str:
     """Fit a predictor to runs that exceed or do not.
 
     Parameters
@@ -123,7 +157,8 @@ def fit_binomial(link: Link, design: Reals, exceeded: Bools, record: Integers, c
     link : str
         `probit` or `logit`.
     design : ndarray, shape (n, k)
-        X, a row a run. The caller has made sure that no plane separates the outcomes.
+        X, a row a run, ones first. The caller has made sure that no column after it is constant, and that no plane
+        separates the outcomes.
     exceeded : ndarray of bool, shape (n,)
         Whether the run exceeds.
     record : ndarray of int, shape (n,)
@@ -134,15 +169,16 @@ def fit_binomial(link: Link, design: Reals, exceeded: Bools, record: Integers, c
 
     Returns
     -------
-    Fit or None
-        None if the iteration does not settle.
+    Fit or str
+        Why there is none: the iteration does not settle, or its covariance is not positive semi-definite.
     """
     from statsmodels.genmod.families import Binomial
     from statsmodels.genmod.families.links import Logit, Probit
     from statsmodels.genmod.generalized_linear_model import GLM
 
     family = Binomial(link=Probit() if link == "probit" else Logit())
-    model = GLM(exceeded.astype(np.float64), design, family=family)
+    standard, back = standardised(design)
+    model = GLM(exceeded.astype(np.float64), standard, family=family)
     records = np.unique(record).size
     clustered = records < record.size
     options = {"cov_type": "cluster", "cov_kwds": {"groups": record}} if clustered else {}
@@ -152,11 +188,13 @@ def fit_binomial(link: Link, design: Reals, exceeded: Bools, record: Integers, c
             coefficients, covariance = np.asarray(found.params), np.asarray(found.cov_params())
             log_likelihood = float(found.llf)
     except np.linalg.LinAlgError:
-        return None
-    if not (found.converged and np.isfinite(covariance).all() and (np.diag(covariance) > 0).all()):
-        return None
-    degrees = records - 1.0 if clustered else np.inf
-    return Fit(link, coefficients, covariance, log_likelihood, confidence, degrees)
+        return NO_MAXIMUM
+    if not found.converged:
+        return NO_MAXIMUM
+    returned = _returned(back, coefficients, covariance)
+    if returned is None:
+        return NO_ERRORS
+    return Fit(link, *returned, log_likelihood, confidence, records - 1.0 if clustered else np.inf)
 
 
 def too_few(record: Integers, coefficients: int) -> str:
@@ -169,7 +207,7 @@ def too_few(record: Integers, coefficients: int) -> str:
     )
 
 
-def fit_brackets(lower: Reals, upper: Reals, record: Integers, confidence: float) -> Fit | None:
+def fit_brackets(lower: Reals, upper: Reals, record: Integers, confidence: float) -> Fit | str:
     """Fit eta = a + b u to capacities u that are normal with mean -a/b and deviation 1/b, and known to within brackets.
 
     Parameters
@@ -183,8 +221,8 @@ def fit_brackets(lower: Reals, upper: Reals, record: Integers, confidence: float
 
     Returns
     -------
-    Fit or None
-        None if the iteration does not settle. The covariance is that of the observed information; intervals are by
+    Fit or str
+        Why there is none, as of `fit_binomial`. The covariance is that of the observed information; intervals are by
         Student's distribution of one degree of freedom less than there are records, as they are for the mean of
         capacities known exactly.
 
@@ -194,21 +232,28 @@ def fit_brackets(lower: Reals, upper: Reals, record: Integers, confidence: float
     steps finds its one maximum.
     """
     ends = np.concatenate([lower[np.isfinite(lower)], upper[np.isfinite(upper)]])
-    coefficients = np.array([-ends.mean(), 1.0]) / ends.std()
+    mean, deviation = ends.mean(), ends.std()
+    back = np.array([[1.0, -mean / deviation], [0.0, 1 / deviation]])
+    lower, upper = (lower - mean) / deviation, (upper - mean) / deviation
+    coefficients = np.array([0.0, 1.0])
     value, scores, hessian = _bracketed(coefficients, lower, upper)
     for _ in range(STEPS):
         gradient = scores.sum(axis=0)
-        step = np.linalg.solve(-hessian, gradient)
+        try:
+            step = np.linalg.solve(-hessian, gradient)
+        except np.linalg.LinAlgError:
+            return NO_MAXIMUM
         gain = float(gradient @ step)
         if gain < DECREMENT * lower.size:
             covariance, records = _clustered(np.linalg.inv(-hessian).astype(np.float64), scores, record)
-            return Fit("probit", coefficients + step, covariance, value, confidence, records - 1.0)
+            returned = _returned(back, coefficients + step, covariance)
+            return Fit("probit", *returned, value, confidence, records - 1.0) if returned is not None else NO_ERRORS
         part = 1.0
         while _bracketed(coefficients + part * step, lower, upper)[0] < value and part > SHORTEST:
             part /= 2
         coefficients = coefficients + part * step
         value, scores, hessian = _bracketed(coefficients, lower, upper)
-    return None
+    return NO_MAXIMUM
 
 
 def _clustered(covariance: Reals, scores: Reals, record: Integers) -> tuple[Reals, int]:

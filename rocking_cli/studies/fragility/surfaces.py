@@ -16,8 +16,10 @@ from rocking_cli.studies.fragility.likelihood import (
     Reals,
     fit_binomial,
     separable,
+    standardised,
     too_few,
 )
+from rocking_cli.studies.fragility.observed import SAME, few_records
 
 ADDS = 0.05  # p-value below which a second measure adds something
 PARALLEL = 1e-4  # 1 - |correlation| of two measures that are one
@@ -44,6 +46,8 @@ class Surface:
     p_values : tuple of float or None
         How likely as much is gained by adding the first measure to the second, and the second to the first, if it
         does not matter: by the likelihood ratio, or where records repeat by the robust standard error.
+    records : int
+        Number of different records.
     """
 
     kind: Literal["lognormal", "none"]
@@ -54,6 +58,12 @@ class Surface:
     fit: Fit | None = None
     aic: dict[str, float] | None = None
     p_values: tuple[float, float] | None = None
+    records: int = 0
+
+    @property
+    def warning(self) -> str:
+        """What to say where records are so few that intervals may not hold as they say; empty elsewhere."""
+        return few_records(self.records, self.confidence)
 
     @property
     def coefficients(self) -> list[Estimate] | None:
@@ -95,19 +105,18 @@ def fit_surface(x1: Reals, x2: Reals, exceeded: Bools, record: Integers, *, conf
     for name, x in (("first", x1), ("second", x2)):
         if not ((x > 0) & np.isfinite(x)).all():
             raise InputError(f"the {name} intensity of a run is not a positive number: leave out what is not shaken")
-    bare = Surface("none", "", confidence, x1.size, int(exceeded.sum()))
+    bare = Surface("none", "", confidence, x1.size, int(exceeded.sum()), records=np.unique(record).size)
     if not 0 < bare.exceedances < bare.runs:
         return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
     design = _design(x1, x2)
-    if (np.ptp(design[:, 1:], axis=0) == 0).any():
+    if (np.ptp(design[:, 1:], axis=0) < SAME).any():
         return replace(bare, why="one of the measures is the same in all runs: take a curve over the other one")
     correlation = float(np.corrcoef(design[:, 1], design[:, 2])[0, 1])
     if 1 - abs(correlation) < PARALLEL:
         return replace(
             bare, why="the two measures are in proportion (of their logarithms): take a curve over either one"
         )
-    spread = np.column_stack([design[:, :1], (design[:, 1:] - design[:, 1:].mean(axis=0)) / design[:, 1:].std(axis=0)])
-    if separable(spread, exceeded):
+    if separable(standardised(design)[0], exceeded):
         why = "a line in the plane of the two measures separates what exceeds from what does not"
         return replace(bare, why=f"{why}: the likelihood has no maximum, more runs near the line are needed")
     if few := too_few(record, 3):
@@ -116,9 +125,10 @@ def fit_surface(x1: Reals, x2: Reals, exceeded: Bools, record: Integers, *, conf
         fit_binomial("probit", design[:, columns], exceeded, record, confidence)
         for columns in ([0, 1, 2], [0, 1], [0, 2])
     ]
-    if any(fit is None for fit in fits):
-        return replace(bare, why="the likelihood found no maximum: the runs hardly tell the slopes")
-    both, first, second = (fit for fit in fits if fit is not None)
+    for fit in fits:
+        if isinstance(fit, str):
+            return replace(bare, why=fit)
+    both, first, second = (fit for fit in fits if isinstance(fit, Fit))
     if (both.coefficients[1:] <= 0).all():
         return replace(bare, why="nothing increases: fewer exceed as either measure grows")
     clustered = np.unique(record).size < record.size

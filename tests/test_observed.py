@@ -1,0 +1,140 @@
+"""What was observed: which runs have one intensity, which are looked at together, and what intervals say of records."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.stats import binom, binomtest
+
+from rocking_cli.errors import InputError
+from rocking_cli.studies.fragility.observed import FEW, Observations, few_records, one_of_each
+
+LEVELS = np.array([0.2, 0.4, 0.6])
+
+
+def jittered(x, seed=0, ulps=3):
+    """Intensities as another processor may round them."""
+    return x + np.random.default_rng(seed).integers(-ulps, ulps + 1, x.size) * np.spacing(x)
+
+
+def scaled(records, each, levels=LEVELS, **options):
+    """`each` runs of every record at every level, none of which exceeds."""
+    x = np.repeat(np.tile(levels, records), each)
+    return Observations(x, np.zeros(x.size, dtype=bool), np.repeat(np.arange(records), levels.size * each), **options)
+
+
+class TestOneIntensity:
+    @pytest.mark.parametrize("scale", [1e-9, 1.0, 9.80665, 1e9])
+    def test_what_differs_by_rounding_alone_is_one(self, scale):
+        x = np.repeat(LEVELS, 50) * scale
+        found = one_of_each(jittered(x))
+        assert np.unique(found).size == 3
+        np.testing.assert_allclose(found, x, rtol=1e-14)
+
+    def test_what_differs_by_more_is_left_as_it_is(self):
+        x = np.random.default_rng(1).permutation(0.3 * (1 + 1e-6 * np.arange(100)))
+        np.testing.assert_array_equal(one_of_each(x), x)
+        np.testing.assert_array_equal(one_of_each(np.array([np.inf, 0.0, 1.0, np.inf, 0.0])), [np.inf, 0, 1, np.inf, 0])
+
+    def test_runs_of_a_level_have_the_intensity_of_the_level(self):
+        level = np.tile(np.arange(3), 40)
+        seen = Observations(jittered(LEVELS[level]), np.zeros(120, dtype=bool), np.arange(120) // 3, level)
+        assert np.unique(seen.x).size == 3
+        np.testing.assert_array_equal(seen.place, level)
+
+    def test_a_level_of_several_intensities_is_refused(self):
+        with pytest.raises(InputError, match=r"level 7 have the intensities 0.5 and 0.6"):
+            Observations(np.array([0.5, 0.6]), np.zeros(2, dtype=bool), np.arange(2), np.array([7, 7]))
+
+
+class TestGroups:
+    def test_stripes_are_of_many_records_not_of_many_runs(self):
+        assert not scaled(4, 60).stripes
+        assert scaled(5, 1).stripes
+
+    def test_a_cloud_run_over_and_over_is_looked_at_in_tenths(self):
+        # 12 records of unlike intensity at 10 factors, each 60 times: 120 intensities, and none of them is a stripe.
+        x = np.outer(np.geomspace(0.1, 0.9, 12), np.geomspace(0.5, 4, 10)).ravel()
+        seen = Observations(np.repeat(x, 60), np.zeros(7200, dtype=bool), np.repeat(np.arange(12), 600))
+        assert not seen.stripes and seen.group.max() == 9
+        assert np.bincount(seen.group).tolist() == [720] * 10
+        assert all(np.unique(seen.x[seen.group == k]).size == 12 for k in range(10))
+
+    def test_one_intensity_stays_together(self):
+        seen = Observations(np.repeat([1.0, 2.0], [9, 3]), np.zeros(12, dtype=bool), np.arange(12) % 3)
+        assert seen.group.tolist() == [0] * 9 + [1] * 3
+
+
+class TestIntervals:
+    def test_of_records_that_occur_once_are_wilsons(self):
+        x = np.repeat(LEVELS, 20)
+        exceeded = np.concatenate([np.arange(20) < k for k in (0, 7, 20)])
+        found = Observations(x, exceeded, np.arange(60)).parts(0.95)
+        expected = [binomtest(k, 20).proportion_ci(0.95, method="wilson") for k in (0, 7, 20)]
+        np.testing.assert_allclose(np.column_stack([found.low, found.high]), [[ci.low, ci.high] for ci in expected])
+        assert (found.runs.tolist(), found.exceeding.tolist(), found.records.tolist()) == (
+            [20] * 3,
+            [0, 7, 20],
+            [20] * 3,
+        )
+
+    def test_more_runs_of_the_same_records_say_no_more(self):
+        def of(each):
+            exceeded = np.repeat(np.repeat([True, False], 6), each)
+            record = np.repeat(np.arange(12), each)
+            return Observations(np.ones(12 * each), exceeded, record, np.zeros(12 * each, dtype=int)).parts(0.95)
+
+        two, many = of(2), of(60)
+        assert (two.low[0], two.high[0]) == pytest.approx((many.low[0], many.high[0]), rel=1e-12)
+        wilson = binomtest(360, 720).proportion_ci(0.95, method="wilson")
+        assert many.high[0] - many.low[0] > 5 * (wilson.high - wilson.low)
+
+    def test_one_record_says_nothing_of_others(self):
+        found = Observations(np.ones(60), np.ones(60, dtype=bool), np.zeros(60, dtype=int)).parts(0.95)
+        assert (found.part[0], found.low[0], found.high[0]) == (1, 0, 1)
+
+    @pytest.mark.parametrize("part", [0, 1])
+    def test_none_or_all_of_few_records_is_no_certainty(self, part):
+        seen = Observations(np.ones(360), np.full(360, bool(part)), np.repeat(np.arange(6), 60))
+        found = seen.parts(0.95)
+        assert abs((found.low if part else found.high)[0] - part) > 0.4
+        assert (found.high if part else found.low)[0] == part
+
+    def test_records_of_unlike_numbers_of_runs_count_for_less(self):
+        runs = np.array([100, 1, 1, 1, 1, 1])
+        uneven = Observations(np.ones(105), np.zeros(105, dtype=bool), np.repeat(np.arange(6), runs)).parts(0.95)
+        assert uneven.high[0] > 0.8
+
+    @pytest.mark.parametrize("records", [3, 6, 20])
+    @pytest.mark.parametrize("alike", [0.1, 0.5, 0.9, 1.0])
+    @pytest.mark.parametrize("true", [0.03, 0.3, 0.5])
+    def test_hold_at_their_rate_however_alike_the_runs_of_a_record_are(self, records, alike, true):
+        # Each record has a probability of its own, scattered as a beta distribution of this correlation of its runs.
+        random, repetitions, each = np.random.default_rng([records, int(10 * alike), int(100 * true)]), 400, 20
+        held = 0
+        for _ in range(repetitions):
+            if alike == 1:
+                own = (random.random(records) < true).astype(float)
+            else:
+                own = random.beta(true * (1 / alike - 1), (1 - true) * (1 / alike - 1), records)
+            exceeded = random.random((records, each)) < own[:, None]
+            seen = Observations(np.ones(exceeded.size), exceeded.ravel(), np.repeat(np.arange(records), each))
+            found = seen.parts(0.95)
+            held += bool(found.low[0] <= true <= found.high[0])
+        assert held >= binom.ppf(1e-4, repetitions, 0.95)
+
+    def test_over_all_runs_would_not(self):
+        random, held = np.random.default_rng(3), 0
+        for _ in range(300):
+            exceeding = 60 * int((random.random(6) < 0.3).sum())
+            low, high = binomtest(exceeding, 360).proportion_ci(0.95, method="wilson")
+            held += low <= 0.3 <= high
+        assert held < 150
+
+
+def test_few_records_are_said():
+    assert few_records(FEW, 0.95) == ""
+    assert few_records(6, 0.9) == (
+        "only 6 distinct records: below 20 or so, intervals and bands of 90 % are a rough guide"
+    )
+    assert few_records(1, 0.95).startswith("only 1 distinct record:")
