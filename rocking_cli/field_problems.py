@@ -34,20 +34,20 @@ def problems(
         What lists them.
     """
     found: dict[Place, Problem] = {}
-    placed = [(_place(document.data, error), error) for error in errors]
-    for place, error in placed:
-        within = any(len(other) > len(place) and other[: len(place)] == place for other, _ in placed)
+    errors = list(errors)
+    for error in errors:
+        if not _concerns(document.data, error, errors):
+            continue
+        place = place_of(document.data, error)
         if error["type"] == "geometry":
             place = (*place, error["ctx"]["field"])
-        elif within and _wants_a_number(document.data, place, error):
-            continue  # of the branches of a union the user meant the mapping, and that has problems of its own
         message, hint = say(model, place, error, owner, lister)
         key = error["type"] == "extra_forbidden"
         found.setdefault(place, document.at(place, message, hint, key=key))
     return list(found.values())
 
 
-def _place(data: Any, error: ErrorDetails) -> Place:
+def place_of(data: Any, error: ErrorDetails) -> Place:
     """The path of an error in the user's data: pydantic adds the branches of unions to it."""
     path: list[str | int] = []
     for k, part in enumerate(error["loc"]):
@@ -61,11 +61,16 @@ def _place(data: Any, error: ErrorDetails) -> Place:
     return tuple(path)
 
 
-def _wants_a_number(data: Any, place: Place, error: ErrorDetails) -> bool:
-    """Whether an error says of a mapping that it is no number."""
+def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) -> bool:
+    """Whether an error speaks of the branch of a union that the user meant: of a mapping, not that it is no number."""
+    if error["type"] not in ("float_type", "int_type"):
+        return True
+    place = place_of(data, error)
+    given = data
     for part in place:
-        data = data.get(part) if isinstance(data, dict) else data[part]
-    return isinstance(data, dict) and error["type"] in ("float_type", "int_type")
+        given = given.get(part) if isinstance(given, dict) else given[part]
+    others = (place_of(data, each) for each in errors if each["type"] not in ("float_type", "int_type"))
+    return not (isinstance(given, dict) and any(each[: len(place)] == place for each in others))
 
 
 BOUNDS = {

@@ -177,7 +177,7 @@ method: ida
         (("most: 4", "most: 0.4"), "levels.most", "more than least"),
         (("count: 8", "values: [1]"), "levels", "give values, or"),
         (("samples: 5", "samples: 5\nhazard: {file: none.csv}"), None, "none.csv"),
-        (("samples: 5", "samples: 5\nhazard: {points: [[1, 0.1], [0.5, 0.01]]}"), "hazard.points", ""),
+        (("samples: 5", "hazard: {points: [[1, 0.1], [0.5, 0.1]]}\nsamples: 5"), "hazard.points[2]", "does not exceed"),
     ],
 )
 def test_one_problem_at_a_time(tmp_path, change, field, said):
@@ -202,3 +202,109 @@ def test_nothing_varies_and_yet_samples_are_asked_for(tmp_path):
 def test_what_fits_badly_together_is_listed_with_the_rest(tmp_path):
     found = problems(tmp_path, GOOD.replace("method: stripes", "method: cloud").replace("samples: 5", "samples: x"))
     assert {each.field for each in found} == {"levels", "samples"}
+
+
+MANY = f"""\
+structures:
+  - nosuch.yaml
+  - file: {EXAMPLES / "block.yaml"}
+    name: uncertain
+    vary:
+      widht: {{normal: {{mean: 0.7, deviaton: 0.05}}}}
+      height: {{uniform: {{low: 3, high: 2}}, colour: red}}
+      width: {{normal: {{mean: 1, deviation: 0.1, low: 2, high: x}}}}
+  - {{file: other.yaml, nmae: x}}
+records:
+  - {{pulse: sine:0.6g, dt: 0.1}}
+  - {{file: none.AT2, units: foot, vertical: up.AT2}}
+method: cloud
+levels: {{measure: pga, least: 4, most: 1, count: x}}
+hazard: {{points: [[1, 2], [0.5, 1], [2, x], [3, 5], [1]]}}
+limit_states: [uplift, -1, 0.5, uplift, 0.5]
+bivariate: [[PGA, pga], [PGA, PGV], [PGA, PGD], [pgv, PGA], [PGA, PGV]]
+seed: -1
+"""
+
+
+def test_no_mistake_hides_another(tmp_path):
+    found = problems(tmp_path, MANY)
+    assert {(each.field, each.line, each.message.partition(",")[0]) for each in found} == {
+        ("samples", 1, "is missing: how many structures are drawn from the distributions"),
+        ("structures[1]", 2, "nosuch.yaml: no such file"),
+        ("structures[2].vary.widht", 6, "is not a number among the fields of block"),
+        ("structures[2].vary.widht.normal.deviaton", 6, "is not a field of structures[2].vary.widht.normal"),
+        ("structures[2].vary.widht.normal.deviation", 6, "is missing: standard deviation"),
+        ("structures[2].vary.height", 7, "give one distribution"),
+        ("structures[2].vary.height.uniform.high", 7, "must be more than low (3)"),
+        ("structures[2].vary.height.colour", 7, "is not a field of structures[2].vary.height"),
+        ("structures[2].vary.width.normal.high", 8, "must be a number"),
+        ("structures[3].file", 9, "other.yaml: no such file"),
+        ("structures[3].nmae", 9, "is not a field of structures[3]"),
+        ("records[1]", 11, "units"),
+        ("records[1].pulse", 11, "malformed pulse 'sine:0.6g': expected sine:AMPLITUDE:PERIOD"),
+        ("records[2].units", 12, "must be g"),
+        ("records[2].file", 12, "none.AT2: no such file"),
+        ("records[2].vertical", 12, "up.AT2: no such file"),
+        ("levels", 14, "a cloud scales records by factors: `measure: scale`"),
+        ("levels.count", 14, "must be a whole number"),
+        ("levels.most", 14, "must be more than least (4)"),
+        ("hazard.points[2]", 15, "the intensity 0.5 does not exceed the 1 before it"),
+        ("hazard.points[3][2]", 15, "must be a number"),
+        ("hazard.points[4]", 15, "the annual rate 5 is above the 1 at the lower intensity"),
+        ("hazard.points[5]", 15, "must have at least 2 entries"),
+        ("limit_states", 16, "uplift is given twice"),
+        ("limit_states[2]", 16, "must be uplift"),
+        ("bivariate", 17, "PGA and PGV is given twice"),
+        ("bivariate[1]", 17, "PGA is paired with itself"),
+        ("bivariate[3][2]", 17, "must be PGA"),
+        ("seed", 18, "must be at least 0"),
+    } | {("limit_states", 16, "0.5 is given twice")}
+
+
+def test_a_mapping_for_a_number_is_a_problem_with_its_line(tmp_path):
+    (found,) = problems(tmp_path, GOOD.replace("least: 0.5", "least: {}"))
+    assert (found.field, found.line, found.message) == ("levels.least", 12, "must be a number, got a mapping")
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "begun"),
+    [
+        ("structures: [a.yaml]\nmethod: cloud\nrecords: [b.csv\n", 3, 3),
+        ("structures: [a.yaml\nmethod: cloud\nrecords: [b.csv]\n", 2, 1),
+        ("structures: [a.yaml]\nrecords: {file: 'b.csv\n", 2, 2),
+    ],
+)
+def test_what_is_never_closed_has_a_line(tmp_path, text, line, begun):
+    (found,) = problems(tmp_path, text)
+    assert found.line == line and found.message.endswith(f"begun in line {begun}")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("bivariate: [[PGV, PGV]]", "bivariate[1]", "PGV is paired with itself"),
+        ("bivariate: [[PGV, PGA], [PGV, PGA]]", "bivariate", "PGV and PGA is given twice"),
+        ("measures: [pga, PGA]", "measures", "PGA is given twice"),
+    ],
+)
+def test_measures_that_repeat(tmp_path, old, new, said):
+    (found,) = problems(tmp_path, GOOD + old + "\n")
+    assert (found.field, found.message) == (new, said)
+
+
+@pytest.mark.parametrize(
+    ("levels", "said"),
+    [
+        ("values: [1, 2, 1]", "1 is given twice"),
+        ("values: [2, 1, 1.0000000000000002]", "1 and 1.0000000000000002 differ by rounding alone"),
+        ("least: 1, most: 1.000000000001, count: 2", "repeat"),
+    ],
+)
+def test_levels_that_only_rounding_tells_apart(tmp_path, levels, said):
+    (found,) = problems(tmp_path, GOOD.replace("least: 0.5, most: 4, count: 8", levels))
+    assert found.field in ("levels.values", "levels.most") and said in found.message
+
+
+def test_a_distribution_that_is_nothing_is_none(tmp_path):
+    (found,) = problems(tmp_path, GOOD.replace("{normal: {mean: 0.7, deviation: 0.05}}", "{normal: null}"))
+    assert found.field == "structures[2].vary.width" and "give one distribution" in found.message

@@ -300,7 +300,7 @@ class TestChanges:
         ("old", "new", "said"),
         [
             ("count: 5", "count: 6", "levels.values is now"),
-            ("most: 4", "most: 5", "levels.values[5] was 4.0, is now 5.0"),
+            ("most: 4", "most: 5", "levels.values was 5 numbers from 0.8 to 4.0, is now 5 numbers from 0.8 to 5.0"),
             ("mean: 0.7", "mean: 0.8", "structures.uncertain.vary.width.normal.mean was 0.7, is now 0.8"),
             ("samples: 4", "samples: 4\nseed: 9", "seed was 0, is now 9"),
             ("  - pulse: ricker:0.6g:1.2s\n", "", "records is now without ricker:0.6g:1.2s"),
@@ -314,6 +314,7 @@ class TestChanges:
         with pytest.raises(InputError) as caught:
             carry_out(path, place)
         assert said in str(caught.value) and "--restart" in str(caught.value)
+        assert len(caught.value.problems) == 1
         assert dump(place) == dump(whole[2])
 
     def test_a_changed_record_is_named(self, tmp_path):
@@ -512,6 +513,78 @@ def test_the_rate_is_there_though_other_measures_are_asked_for(tmp_path):
     assert {each["measure"] for each in curves} == {"PGV", "PGA"}
     rates = {name: [each["annual_rate"] for each in curves if each["measure"] == name] for name in ("PGA", "PGV")}
     assert any(rates["PGA"]) and not any(rates["PGV"])
+
+
+MORE = """\
+measures: [PGA, PGA/(g lambda), PGV, p PGV/(g lambda)]
+bivariate: [[PGA, PGV]]
+method:"""
+
+
+def both_as_text_and_json(path):
+    """A study's results, and its curves and surfaces as JSON."""
+    text = CliRunner().invoke(main, ["fragility", str(path)])
+    assert text.exit_code == 0, text.stderr
+    place = path.with_suffix(".db")
+    again = CliRunner().invoke(main, ["results", str(place)])
+    assert again.stdout == text.stdout
+    found = json.loads(CliRunner().invoke(main, ["results", str(place), "--json"]).stdout)
+    return text.stdout, found["curves"], found["surfaces"]
+
+
+def alike(data, factor=1.0):
+    """The same but for rounding, numbers times a factor."""
+    return {
+        key: pytest.approx(factor * each, rel=1e-6) if isinstance(each, float) else each for key, each in data.items()
+    }
+
+
+@pytest.mark.parametrize("method", ["stripes", "ida"])
+@pytest.mark.parametrize("of", ["PGA/(g lambda)", "PGV"])
+def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
+    text = STUDY.replace("measure: PGA/(g lambda), least: 0.8, most: 4", f"measure: {of}, least: 0.1, most: 3.3")
+    text = text.replace("method: stripes", f"method: {method}").replace("method:", MORE)
+    _, curves, _ = both_as_text_and_json(write(tmp_path, text, count=9))
+    found = {(each["limit_state"], each["measure"]): each for each in curves if each["structure"] == "valley bridge"}
+    block = equivalent_block(load_structure(EXAMPLES / "frame.yaml"))
+    weaker = min((block.positive, block.negative), key=lambda each: each.lambda_)
+    factors = {"PGA": 1 / weaker.lambda_, "PGV": weaker.p / (STANDARD_GRAVITY * weaker.lambda_)}
+    fitted = 0
+    for limit in ("uplift", 0.25, "overturning"):
+        for one, other in (("PGA", "PGA/(g lambda)"), ("PGV", "p PGV/(g lambda)")):
+            plain, relative = found[limit, one], found[limit, other]
+            assert relative["kind"] == plain["kind"]
+            if plain["median"] is not None:
+                assert relative["median"] == alike(plain["median"], factors[one])
+            if plain["dispersion"] is not None:
+                fitted += 1
+                assert relative["dispersion"] == alike(plain["dispersion"])
+                assert relative["goodness"] == alike(plain["goodness"])
+    assert fitted
+
+
+def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
+    with Store.reading(whole[2]) as kept:
+        found = {name: assess.find(kept, kept.plan(), name) for name in ("valley bridge", "uncertain")}
+    over = {name: {each for each in MEASURES if found[name].decided_by_level(each)} for name in found}
+    assert over == {"valley bridge": {"PGA", "PGA/(g lambda)"}, "uncertain": {"PGA/(g lambda)"}}  # its lambda varies
+    seen = found["valley bridge"].observations("PGA", found["valley bridge"].exceeds("uplift"))
+    assert seen.place.tolist() == found["valley bridge"].level.tolist()
+
+
+@pytest.mark.parametrize("method", ["stripes", "ida"])
+def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_path, method):
+    text = STUDY.replace("method: stripes", f"method: {method}").replace("method:", MORE)
+    said, curves, surfaces = both_as_text_and_json(write(tmp_path, text))
+    warning = "only 3 distinct records: below 20 or so, intervals and bands of 95 % are a rough guide"
+    assert {(each["distinct_records"], each["warning"]) for each in (*curves, *surfaces)} == {(3, warning)}
+    assert said.count(f"Warning: {warning}.") == len({(each["structure"], each["measure"]) for each in curves}) + 2
+    reasons = [each["goodness"]["why"] for each in curves if each["goodness"] and each["goodness"]["p_value"] is None]
+    assert reasons
+    for each in curves:
+        if each["goodness"] and each["goodness"]["p_value"] is None:
+            assert f"is not tested: {each['goodness']['why']}" in each["why"]
+        assert f"{each['why']}." in said
 
 
 def test_structures_of_like_names_have_a_picture_each(tmp_path):

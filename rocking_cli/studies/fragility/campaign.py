@@ -240,18 +240,28 @@ def differences(before: Any, now: Any, where: str = "") -> list[str]:
             for each in differences(before.get(key), now.get(key), f"{where}.{key}".lstrip("."))
         ]
     if isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
-        return [
+        found = [
             each
             for k, (one, other) in enumerate(zip(before, now, strict=True))
             for each in differences(one, other, f"{where}[{k + 1}]")
         ]
+        if len(found) > 1 and all(isinstance(each, int | float) for each in (*before, *now)):
+            return [f"{where} was {_ends(before)}, is now {_ends(now)}"]
+        return found
     if isinstance(before, list) and isinstance(now, list):
         gone = [each for each in before if each not in now]
         new = [each for each in now if each not in before]
         parts = [f"without {_told(gone)}"] if gone else []
         parts += [f"with {_told(new)}"] if new else []
         return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
+    if isinstance(before, float) and isinstance(now, float) and isclose(before, now, rel_tol=SAME):
+        return []
     return [] if before == now else [f"{where} was {_one(before)}, is now {_one(now)}"]
+
+
+def _ends(values: list[Any]) -> str:
+    """Numbers by how many they are and how far they reach."""
+    return f"{len(values)} numbers from {min(values)} to {max(values)}"
 
 
 def _told(values: list[Any], most: int = 3) -> str:

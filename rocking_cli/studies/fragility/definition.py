@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError
 
-from rocking_cli.core.mechanism import Name, Restitution, geometry_error
+from rocking_cli.core.mechanism import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.field_problems import problems
-from rocking_cli.studies.fragility.distributions import STRICT, Distribution, Positive
+from rocking_cli.field_problems import place_of, problems
+from rocking_cli.studies.fragility.distributions import Distribution, Positive
+from rocking_cli.studies.fragility.hazard import wrong_points
 from rocking_cli.studies.fragility.intensity import MEASURES, PGA
+from rocking_cli.studies.fragility.observed import SAME
+from rocking_cli.studies.fragility.together import Part, Sound, between_fields
 from rocking_cli.studies.fragility.varied import in_units_of_fields
-from rocking_cli.yaml_file import Document, parse, read_text
+from rocking_cli.yaml_file import Document, Place, parse, read_text
 
-T = TypeVar("T")
 UPLIFT, OVERTURNING = "uplift", "overturning"
 SCALE = "scale"
 MOST = 100_000  # levels or samples: more is a slip of the keyboard
 
 
 def _measure(value: object) -> object:
-    """A measure as it is spelt here, from any case and spacing."""
+    """A measure, or a list of them, as it is spelt here, from any case and spacing."""
+    if isinstance(value, list):
+        return [_measure(each) for each in value]
     plain = {name.replace(" ", "").lower(): name for name in (*MEASURES, SCALE)}
     return plain.get(value.replace(" ", "").lower(), value) if isinstance(value, str) else value
 
@@ -37,11 +43,25 @@ def _limit(value: object) -> object:
     raise ValueError(f"must be uplift, overturning or a positive number, got {value!r}")
 
 
-def _unlike(values: list[T]) -> list[T]:
-    """Refuse a list that repeats itself."""
-    for value in values:
-        if values.count(value) > 1:
-            raise ValueError(f"{value} is given twice")
+def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
+    """The entries of a list that are right by themselves, measures in their own spelling."""
+    values = given.get(name)
+    entries = enumerate(values if isinstance(values, list) else [])
+    return [_measure(each) for k, each in entries if sound(name, k)]
+
+
+def _twice(given: dict[str, Any], name: str, sound: Sound) -> Iterator[tuple[Place, str]]:
+    """What a list repeats."""
+    values = _right(given, name, sound)
+    for k, value in enumerate(values):
+        if value in values[:k] and value not in values[k + 1 :]:
+            yield (name,), f"{' and '.join(value) if isinstance(value, list) else value} is given twice"
+
+
+def _pair(values: list[str]) -> list[str]:
+    """Refuse a measure paired with itself: a surface over the two is a curve."""
+    if values[0] == values[1]:
+        raise ValueError(f"{values[0]} is paired with itself")
     return values
 
 
@@ -58,23 +78,18 @@ LevelMeasure = Annotated[
     Literal["PGA", "PGV", "PGA/(g lambda)", "p PGV/(g lambda)", "scale"], BeforeValidator(_measure)
 ]
 Limit = Annotated[str | float, BeforeValidator(_limit)]
-Unlike = AfterValidator(_unlike)
 
 
-class StructureEntry(BaseModel):
+class StructureEntry(Part):
     """A structure of the study."""
-
-    model_config = STRICT
 
     file: str = Field(description="its YAML file")
     name: Name | None = Field(None, description="what to call it here")
     vary: dict[str, Distribution] = Field({}, description="distributions of some of its fields")
 
 
-class RecordEntry(BaseModel):
+class RecordEntry(Part):
     """Ground motions of the study: files that a pattern stands for, or a pulse."""
-
-    model_config = STRICT
 
     file: str | None = Field(None, description="a file, or a pattern of file names")
     pulse: str | None = Field(None, description="a pulse, such as sine:0.6g:0.8s")
@@ -85,59 +100,71 @@ class RecordEntry(BaseModel):
     channel: str | None = Field(None, description="which of several channels")
     vertical: str | None = Field(None, description="the file of the vertical component")
 
-    @model_validator(mode="after")
-    def _one_source(self) -> Self:
-        if (self.file is None) == (self.pulse is None):
-            raise ValueError("give a file or a pulse")
-        if self.pulse is not None and self.model_fields_set != {"pulse"}:
-            raise ValueError("units, dt, channel and vertical describe a file")
-        return self
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """There must be one source."""
+        there = {name for name in cls.model_fields if given.get(name) is not None}
+        if len(there & {"file", "pulse"}) != 1:
+            yield (), "give a file or a pulse"
+        elif "pulse" in there and len(there) > 1:
+            yield (), "units, dt, channel and vertical describe a file"
 
 
 Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
 
 
-class Levels(BaseModel):
+class Levels(Part):
     """Intensities to which every record is scaled."""
 
-    model_config = STRICT
-
     measure: LevelMeasure = Field(description="what the levels are of")
-    values: Annotated[list[Intensity], Unlike] | None = Field(
-        None, min_length=1, max_length=MOST, description="the levels"
-    )
+    values: list[Intensity] | None = Field(None, min_length=1, max_length=MOST, description="the levels")
     least: Intensity | None = Field(None, description="the smallest")
     most: Intensity | None = Field(None, description="the largest")
     count: int | None = Field(None, ge=2, le=MOST, description="how many")
     spacing: Literal["even", "log"] = Field("even", description="steps of equal size, or of equal ratio")
 
-    @model_validator(mode="after")
-    def _listed_or_ranged(self) -> Self:
-        ranged = [self.least, self.most, self.count]
-        if self.values is not None:
-            if any(each is not None for each in ranged):
-                raise ValueError("give values, or least, most and count")
-        elif self.least is None or self.most is None or self.count is None:
-            raise ValueError("give values, or least, most and count")
-        elif self.least >= self.most:
-            raise geometry_error("most", f"must be more than least ({self.least:g}), got {self.most:g}")
-        elif len(set(self.levels())) < self.count:
-            raise geometry_error("most", f"is so close to least that {self.count} levels between them repeat")
-        return self
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """They must be listed or ranged, and differ by more than rounding."""
+        values: Any = given.get("values")
+        least, most, count = ranged = [given.get(name) for name in ("least", "most", "count")]
+        listed = values is not None
+        if any((each is None) != listed for each in ranged):
+            yield (), "give values, or least, most and count"
+        if listed:
+            for one, other in pairwise(sorted(_right(given, "values", sound))):
+                if not _apart(one, other):
+                    same = f"{one} is given twice" if one == other else f"{one} and {other} differ by rounding alone"
+                    yield ("values",), same
+        if least is None or most is None or not (sound("least") and sound("most")):
+            return
+        if least >= most:
+            yield ("most",), f"must be more than least ({least:g}), got {most:g}"
+        elif count is not None and sound("count") and sound("spacing"):
+            levels = _spaced(least, most, count, given.get("spacing", "even"))
+            if not all(_apart(one, other) for one, other in pairwise(levels)):
+                yield ("most",), f"is so close to least that {count} levels between them repeat"
 
     def levels(self) -> list[float]:
         """The levels, growing."""
         if self.values is not None:
             return sorted(self.values)
         assert self.least is not None and self.most is not None and self.count is not None
-        spaced = np.geomspace if self.spacing == "log" else np.linspace
-        return [float(each) for each in spaced(self.least, self.most, self.count)]
+        return _spaced(self.least, self.most, self.count, self.spacing)
 
 
-class Hazard(BaseModel):
+def _spaced(least: float, most: float, count: int, spacing: str) -> list[float]:
+    between = np.geomspace if spacing == "log" else np.linspace
+    return [float(each) for each in between(least, most, count)]
+
+
+def _apart(one: float, other: float) -> bool:
+    """Whether a level is above another by more than rounding."""
+    return other > one * (1 + SAME)
+
+
+class Hazard(Part):
     """How often intensities are exceeded at the site."""
-
-    model_config = STRICT
 
     measure: Measure = Field("PGA", description="of the intensities")
     file: str | None = Field(None, description="CSV of two columns: intensity, annual rate of exceedance")
@@ -145,17 +172,28 @@ class Hazard(BaseModel):
         None, min_length=2, description="[intensity, annual rate] of each point"
     )
 
-    @model_validator(mode="after")
-    def _one_source(self) -> Self:
-        if (self.file is None) == (self.points is None):
-            raise ValueError("give a file or points")
-        return self
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """There must be one source, and points in order."""
+        points = given.get("points")
+        if (given.get("file") is None) == (points is None):
+            yield (), "give a file or points"
+        right = [k for k in range(len(points) if isinstance(points, list) else 0) if sound("points", k)]
+        if points is not None and len(right) > 1:
+            for k, message in wrong_points(*np.array([points[k] for k in right], dtype=np.float64).T):
+                yield ("points", right[k]), message
 
 
-class Definition(BaseModel):
+class Sampling(Part):
+    """How samples of the structures are drawn."""
+
+    samples: int = Field(1, ge=1, le=MOST, description="how many structures are drawn from the distributions")
+    sampling: Literal["random", "latin hypercube"] = Field("latin hypercube", description="how they are drawn")
+    seed: int = Field(0, ge=0, lt=2**63, description="of the random numbers")
+
+
+class Definition(Sampling):
     """What a study file says."""
-
-    model_config = STRICT
 
     name: Name | None = Field(None, description="what to call the study")
     structures: list[Annotated[StructureEntry, BeforeValidator(_file)]] = Field(
@@ -164,44 +202,41 @@ class Definition(BaseModel):
     records: list[Annotated[RecordEntry, BeforeValidator(_file)]] = Field(min_length=1, description="what shakes it")
     method: Literal["cloud", "stripes", "ida"] = Field(description="how records and intensities are combined")
     levels: Levels = Field(
-        Levels(measure=SCALE, values=[1.0]), description="intensities to which every record is scaled"
+        Levels(measure="scale", values=[1.0]), description="intensities to which every record is scaled"
     )
-    polarities: Annotated[list[Literal[1, -1]], Unlike] = Field(
-        [1], min_length=1, max_length=2, description="-1 reverses the records"
-    )
-    eta: Annotated[list[Restitution], Unlike] | None = Field(
+    polarities: list[Literal[1, -1]] = Field([1], min_length=1, max_length=2, description="-1 reverses the records")
+    eta: list[Restitution] | None = Field(
         None, min_length=1, description="restitutions, instead of the structures' own"
     )
     model: ModelName = Field("nonlinear", description="equation of motion")
-    samples: int = Field(1, ge=1, le=MOST, description="how many structures are drawn from the distributions")
-    sampling: Literal["random", "latin hypercube"] = Field("latin hypercube", description="how they are drawn")
-    seed: int = Field(0, ge=0, lt=2**63, description="of the random numbers")
-    limit_states: Annotated[list[Limit], Unlike] = Field(
-        [UPLIFT, OVERTURNING], min_length=1, description="what is asked of the motions"
-    )
-    measures: Annotated[list[Measure], Unlike] | None = Field(
-        None, min_length=1, description="intensities that curves are fitted over"
-    )
-    bivariate: list[Annotated[list[Measure], Field(min_length=2, max_length=2)]] = Field(
+    limit_states: list[Limit] = Field([UPLIFT, OVERTURNING], min_length=1, description="what is asked of the motions")
+    measures: list[Measure] | None = Field(None, min_length=1, description="intensities that curves are fitted over")
+    bivariate: list[Annotated[list[Measure], Field(min_length=2, max_length=2), AfterValidator(_pair)]] = Field(
         [], description="pairs of intensities that surfaces are fitted over"
     )
     confidence: float = Field(0.95, gt=0.5, lt=1, description="of intervals and bands")
     hazard: Hazard | None = Field(None, description="how often intensities are exceeded at the site")
 
-    @model_validator(mode="after")
-    def _together(self) -> Self:
-        if self.method == "cloud" and self.levels.measure != SCALE:
-            raise geometry_error("levels", f"a cloud scales records by factors: `measure: {SCALE}`")
-        if self.method != "cloud" and "levels" not in self.model_fields_set:
-            raise geometry_error("levels", "is missing: every record is scaled to levels of intensity")
-        varied = any(each.vary for each in self.structures)
-        if varied and "samples" not in self.model_fields_set:
-            raise geometry_error("samples", "is missing: how many structures are drawn from the distributions")
-        if not varied and self.samples > 1:
-            raise geometry_error("samples", "nothing varies: give a structure a `vary`")
-        if self.eta is not None and any("restitution" in each.vary for each in self.structures):
-            raise geometry_error("eta", "a structure varies its restitution: give one of the two")
-        return self
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """Levels must suit the method, and samples what varies."""
+        method, levels, structures = (given.get(name) for name in ("method", "levels", "structures"))
+        scaled = isinstance(levels, dict) and sound("levels", "measure") and _measure(levels["measure"]) != SCALE
+        if method == "cloud" and scaled:
+            yield ("levels",), f"a cloud scales records by factors: `measure: {SCALE}`"
+        if method in ("stripes", "ida") and "levels" not in given:
+            yield ("levels",), "is missing: every record is scaled to levels of intensity"
+        entries = structures if isinstance(structures, list) else []
+        vary = [entry.get("vary") for entry in entries if isinstance(entry, dict)]
+        varied = {name for each in vary if isinstance(each, dict) for name in each}
+        if varied and "samples" not in given:
+            yield ("samples",), "is missing: how many structures are drawn from the distributions"
+        if not varied and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
+            yield ("samples",), "nothing varies: give a structure a `vary`"
+        if given.get("eta") is not None and "restitution" in varied:
+            yield ("eta",), "a structure varies its restitution: give one of the two"
+        for name in ("polarities", "eta", "limit_states", "measures", "bivariate"):
+            yield from _twice(given, name, sound)
 
     @property
     def fitted_measures(self) -> list[str]:
@@ -219,6 +254,7 @@ class Definition(BaseModel):
 
 HINT = "docs/fragility.md shows one to start from"
 WORDS = {"owner": "the study", "lister": HINT}
+PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))  # of an entry, each worth a look by itself
 Entry = TypeVar("Entry", bound=BaseModel)
 
 
@@ -250,33 +286,32 @@ def read_definition(path: Path) -> tuple[Document, Definition | None]:
     except ValidationError as error:
         found: Any = error.errors(include_url=False)
     known = {(each.field, each.line) for each in of_units}
-    wrong = problems(document, Definition, [*found, *_together(document.data, found)], **WORDS)
+    alone = [each for each in found if each["type"] != "geometry"]  # what is wrong between fields is found below
+    wrong = problems(document, Definition, alone, **WORDS)
     document.problems += [each for each in wrong if (each.field, each.line) not in known]
+    places = {place_of(document.data, each) for each in alone}
+    for place, message in between_fields(Definition, document.data, places):
+        document.problems.append(document.at(place, message))
     return document, None
 
 
-def _together(data: dict[str, Any], found: list[Any]) -> list[Any]:
-    """What is wrong between the fields that are right one by one: pydantic looks there only if all are."""
-    wrong = {error["loc"][0] for error in found if error["loc"]}
-    absent = {"structures": ["-"], "records": ["-"], "method": "cloud"}
-    if not wrong or "method" in wrong:
-        return []
-    if "structures" in wrong:
-        wrong |= {"samples", "eta"}  # right or wrong by what the structures vary
-    try:
-        Definition.model_validate({**absent, **{key: value for key, value in data.items() if key not in wrong}})
-    except ValidationError as error:
-        return [each for each in error.errors(include_url=False) if each["ctx"]["field"] not in wrong]
-    return []
-
-
-def sound_entries(document: Document, field: str, model: type[Entry]) -> list[tuple[int, Entry]]:
-    """The entries of a list that are right by themselves, with their places, whatever is wrong elsewhere."""
+def usable_entries(document: Document, field: str, model: type[Entry]) -> list[tuple[int, Entry]]:
+    """The entries of a list with their places; of those that are wrong what can be looked at all the same."""
     found = []
     entries = document.data.get(field)
     for k, entry in enumerate(entries if isinstance(entries, list) else []):
-        try:
-            found.append((k, model.model_validate(_file(entry))))
-        except ValidationError:
-            continue  # it is among the problems
+        given = _file(entry)
+        if not isinstance(given, dict):
+            continue
+        parts = [given, *({name: given.get(name) for name in names} for names in PARTS)]
+        usable = [each for each in (usable_part(model, part) for part in parts) if each is not None]
+        found += [(k, each) for each in usable[:1]]
     return found
+
+
+def usable_part(model: type[Entry], data: Any) -> Entry | None:
+    """A part of the file that is right by itself, whatever is wrong elsewhere; None if it is among the problems."""
+    try:
+        return model.model_validate(data)
+    except ValidationError:
+        return None

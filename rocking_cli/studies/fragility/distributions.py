@@ -2,32 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Annotated, Literal, Self
+from collections.abc import Callable, Iterator
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field
 
-from rocking_cli.core.mechanism import geometry_error
+from rocking_cli.studies.fragility.together import Part, Sound
+from rocking_cli.yaml_file import Place
 
 Reals = NDArray[np.float64]
 Positive = Annotated[float, Field(gt=0)]
 LEAST = 2.0**-54  # a random number may be zero, where a normal distribution has no quantile
-STRICT = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
-class _Bounded(BaseModel):
-    model_config = STRICT
+def _bounds_in_order(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+    low, high = given.get("low"), given.get("high")
+    if low is not None and high is not None and sound("low") and sound("high") and low >= high:
+        yield ("high",), f"must be more than low ({low:g}), got {high:g}"
 
+
+class _Bounded(Part):
     low: float | None = Field(None, description="smallest value: what lies below is not drawn")
     high: float | None = Field(None, description="largest value: what lies above is not drawn")
 
-    @model_validator(mode="after")
-    def _in_order(self) -> Self:
-        if self.low is not None and self.high is not None and self.low >= self.high:
-            raise geometry_error("high", f"must be more than low ({self.low:g}), got {self.high:g}")
-        return self
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """The bounds must be in order."""
+        return _bounds_in_order(given, sound)
 
 
 class Normal(_Bounded):
@@ -44,41 +47,36 @@ class Lognormal(_Bounded):
     dispersion: Positive = Field(description="standard deviation of the logarithm, before truncation")
 
 
-class Uniform(BaseModel):
+class Uniform(Part):
     """A uniform distribution."""
-
-    model_config = STRICT
 
     low: float = Field(description="smallest value")
     high: float = Field(description="largest value")
 
-    @model_validator(mode="after")
-    def _in_order(self) -> Self:
-        if self.low >= self.high:
-            raise geometry_error("high", f"must be more than low ({self.low:g}), got {self.high:g}")
-        return self
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """The ends must be in order."""
+        return _bounds_in_order(given, sound)
 
 
-class Triangular(BaseModel):
+class Triangular(Part):
     """A triangular distribution."""
-
-    model_config = STRICT
 
     low: float = Field(description="smallest value")
     mode: float = Field(description="most likely value")
     high: float = Field(description="largest value")
 
-    @model_validator(mode="after")
-    def _in_order(self) -> Self:
-        if not self.low <= self.mode <= self.high or self.low == self.high:
-            raise geometry_error("mode", f"must lie between low ({self.low:g}) and high ({self.high:g})")
-        return self
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """The mode must lie between the ends."""
+        if all(sound(name) for name in ("low", "mode", "high")):
+            low, mode, high = given["low"], given["mode"], given["high"]
+            if not low <= mode <= high or low == high:
+                yield ("mode",), f"must lie between low ({low:g}) and high ({high:g})"
 
 
-class Distribution(BaseModel):
+class Distribution(Part):
     """One of several distributions: a mapping with its name as the only key."""
-
-    model_config = STRICT
 
     normal: Normal | None = None
     lognormal: Lognormal | None = None
@@ -86,12 +84,11 @@ class Distribution(BaseModel):
     triangular: Triangular | None = None
     values: list[float] | None = Field(None, min_length=1, description="values that are equally likely")
 
-    @model_validator(mode="after")
-    def _exactly_one(self) -> Self:
-        if len(self.model_fields_set) != 1:
-            known = ", ".join(type(self).model_fields)
-            raise ValueError(f"give one distribution, of {known}")
-        return self
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """There must be exactly one."""
+        if sum(each is not None for each in given.values()) != 1:
+            yield (), f"give one distribution, of {', '.join(cls.model_fields)}"
 
     def quantile(self, probability: Reals) -> Reals:
         """The values that are not exceeded with these probabilities, in (0, 1)."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import nan
@@ -14,18 +13,22 @@ import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.core import Mechanism
-from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.selection import select
 from rocking_cli.field_problems import say
+from rocking_cli.json_text import json_text
 from rocking_cli.plugins import did_you_mean
 from rocking_cli.structure import load_structure
 from rocking_cli.studies.fragility.definition import (
     Definition,
+    Hazard,
     RecordEntry,
+    Sampling,
     StructureEntry,
     read_definition,
-    sound_entries,
+    usable_entries,
+    usable_part,
 )
 from rocking_cli.studies.fragility.distributions import Distribution, draw
 from rocking_cli.studies.fragility.hazard import HazardCurve, read_hazard
@@ -124,7 +127,7 @@ class Study:
 
 def digest(description: dict[str, Any]) -> str:
     """SHA-256 of a description, the same whatever the order of its keys."""
-    return hashlib.sha256(json.dumps(description, sort_keys=True).encode()).hexdigest()
+    return hashlib.sha256(json_text(description, sort_keys=True).encode()).hexdigest()
 
 
 def load_study(path: str | Path) -> Study:
@@ -144,25 +147,23 @@ def load_study(path: str | Path) -> Study:
     """
     path = Path(path)
     document, definition = read_definition(path)
-    structures = [
-        _structure(document, ("structures", k), path.parent, entry)
-        for k, entry in sound_entries(document, "structures", StructureEntry)
-    ]
+    entries = usable_entries(document, "structures", StructureEntry)
+    structures = [_structure(document, ("structures", k), path.parent, entry) for k, entry in entries]
     sources = [
         source
-        for k, entry in sound_entries(document, "records", RecordEntry)
+        for k, entry in usable_entries(document, "records", RecordEntry)
         for source in _sources(document, ("records", k), path.parent, entry)
     ]
     _refuse_repeated(
         document, "records", [source.path.resolve().as_posix() if source.path else source.name for source in sources]
     )
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
-    hazard = _hazard(document, path.parent, definition) if definition is not None else None
+    hazard = _hazard(document, path.parent)
+    sampling = usable_part(Sampling, {key: document.data[key] for key in Sampling.model_fields if key in document.data})
     samples: list[Sample] = []
-    if definition is not None:
-        for k, structure in enumerate(structures):
-            if structure is not None:
-                samples += _samples(document, definition, k, structure)
+    for (k, entry), structure in zip(entries, structures, strict=True):
+        if sampling is not None and structure is not None:
+            samples += _samples(document, sampling, k, entry, structure)
     document.check()
     assert definition is not None
     known = tuple(each for each in structures if each is not None)
@@ -170,24 +171,39 @@ def load_study(path: str | Path) -> Study:
 
 
 def _structure(document: Document, place: Place, folder: Path, entry: StructureEntry) -> Mechanism | None:
+    file = folder / entry.file
     try:
-        structure = load_structure(folder / entry.file)
+        structure = load_structure(file)
     except InputError as error:
-        where = _within(document, place, "file")  # of what is wrong with the file as a whole
-        document.problems += [
-            each if each.line else document.at(where, f"{each.file}: {each.message}", each.hint)
-            for each in error.problems
-        ]
+        document.problems += _of_file(document, _within(document, place, "file"), entry.file, file, error)
         return None
     except MechanismError as error:
         raise MechanismError(f"{entry.file}: {error}") from error
     fields = [name for name, info in type(structure).model_fields.items() if info.annotation in (float, float | None)]
     known = [*fields, RESTITUTION]
-    for name in entry.vary:
+    for name in _varied(document, place):
         if name not in known:
             what = f"is not a number among the fields of {structure.mechanism}"
             document.problems.append(document.at((*place, "vary", name), what, did_you_mean(name, known), key=True))
     return structure.model_copy(update={"name": entry.name}) if entry.name else structure
+
+
+def _of_file(document: Document, place: Place, name: str, file: Path, error: InputError) -> list[Problem]:
+    """The problems of a file that the study names; what stands in no line of it, in that of the study."""
+    return [
+        each
+        if each.line is not None or each.file != str(file)
+        else document.at(place, f"{name}: {each.field + ' ' if each.field else ''}{each.message}", each.hint)
+        for each in error.problems
+    ]
+
+
+def _varied(document: Document, place: Place) -> list[str]:
+    """The fields of a structure that vary, whether their distributions are right or not."""
+    field, k = place
+    entry = document.data[str(field)][k]
+    given = entry.get("vary") if isinstance(entry, dict) else None
+    return list(given) if isinstance(given, dict) else []
 
 
 def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry) -> list[Source]:
@@ -234,30 +250,30 @@ def _refuse_repeated(document: Document, field: str, names: Sequence[str]) -> No
         document.problems.append(document.at((field,), f"two of them are called {name}", hint, key=True))
 
 
-def _hazard(document: Document, folder: Path, definition: Definition) -> HazardCurve | None:
-    given = definition.hazard
+def _hazard(document: Document, folder: Path) -> HazardCurve | None:
+    given = usable_part(Hazard, document.data.get("hazard"))
     if given is None:
         return None
-    try:
-        if given.file is not None:
-            return read_hazard(folder / given.file)
-        assert given.points is not None
+    if given.points is not None:
         return HazardCurve(*np.array(given.points).T)
+    assert given.file is not None
+    file = folder / given.file
+    try:
+        return read_hazard(file)
     except InputError as error:
-        document.problems += [
-            each if each.file else document.at(("hazard", "points"), each.message, each.hint) for each in error.problems
-        ]
+        document.problems += _of_file(document, ("hazard", "file"), given.file, file, error)
         return None
 
 
-def _samples(document: Document, definition: Definition, k: int, structure: Mechanism) -> list[Sample]:
+def _samples(
+    document: Document, sampling: Sampling, k: int, entry: StructureEntry, structure: Mechanism
+) -> list[Sample]:  # fmt: skip
     """The samples of a structure; those that cannot be built are a problem of what it varies."""
-    entry = definition.structures[k]
     if not entry.vary or any(name not in type(structure).model_fields for name in entry.vary):
         return [Sample(k, 0, {}, structure)]
-    columns = {name: _drawn(definition, structure, name, each) for name, each in entry.vary.items()}
+    columns = {name: _drawn(sampling, structure, name, each) for name, each in entry.vary.items()}
     samples, wrong = [], []
-    for number in range(definition.samples):
+    for number in range(sampling.samples):
         drawn = {name: values[number] for name, values in columns.items()}
         try:
             samples.append(Sample(k, number, drawn, structure.model_copy(update=drawn)))
@@ -266,15 +282,15 @@ def _samples(document: Document, definition: Definition, k: int, structure: Mech
             message, _ = say(type(structure), first["loc"], first, structure.mechanism, "")
             wrong.append(f"{first['loc'][0]} {message}" if first["loc"] else message)
     if wrong:
-        what = f"{len(wrong)} of {definition.samples} samples cannot be built; the first: {wrong[0]}"
+        what = f"{len(wrong)} of {sampling.samples} samples cannot be built; the first: {wrong[0]}"
         hint = "bound the distributions with `low` and `high`"
         document.problems.append(document.at(("structures", k, "vary"), what, hint))
     return samples
 
 
-def _drawn(definition: Definition, structure: Mechanism, name: str, distribution: Distribution) -> list[float]:
+def _drawn(sampling: Sampling, structure: Mechanism, name: str, distribution: Distribution) -> list[float]:
     stream = f"{structure.name}.{name}"
     values = draw(
-        distribution, definition.samples, seed=definition.seed, stream=stream, method=definition.sampling
+        distribution, sampling.samples, seed=sampling.seed, stream=stream, method=sampling.sampling
     )  # fmt: skip
     return [float(each) for each in values]
