@@ -8,7 +8,7 @@ endif
 STAMP := $(VENV)/.installed
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test lint type contracts check bench validation pictures docs clean
+.PHONY: setup demo test test-kernels test-versions test-elsewhere lint type contracts check bench validation pictures docs clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -26,6 +26,15 @@ demo: setup  ## The main job on the shipped example: equiv, respond with a plot,
 
 test: setup  ## All tests
 	$(BIN)/python -m pytest
+
+test-kernels: setup  ## The tests of fits and studies, with the last bits as other processors round them
+	$(BIN)/python -m tests.elsewhere kernels
+
+test-versions: setup  ## The same with the other versions of Python that are installed here
+	$(BIN)/python -m tests.elsewhere versions
+
+test-elsewhere: setup  ## Both, side by side
+	$(BIN)/python -m tests.elsewhere kernels versions
 
 lint: setup
 	$(BIN)/ruff check .

@@ -76,16 +76,16 @@ def test_overturning_times_are_those_of_the_integrated_motion(file, direction):
 def test_the_period_of_a_block_is_an_elliptic_integral(r):
     # theta.^2/2 = p^2 (cos(alpha - theta) - cos(alpha - theta_0)), by mpmath's own quadrature of the pendulum's form.
     block = Block(width=0.7, height=2.8)
-    mp.dps = 30
-    alpha = mp.atan(mp.mpf(7) / 28)
-    p = mp.sqrt(3 * mp.mpf("9.80665") / (4 * mp.sqrt(mp.mpf("0.35") ** 2 + mp.mpf("1.4") ** 2)))
-    rest = alpha * (1 - mp.mpf(r))  # psi = alpha - theta, from rest to alpha
-    k = mp.cos(rest / 2) ** 2  # psi.^2 = 4 p^2 (sin^2(psi/2) - sin^2(rest/2)); cos(psi/2) = cos(rest/2) sin(w)
-    w = mp.asin(mp.cos(alpha / 2) / mp.cos(rest / 2))
-    quarter = (mp.ellipk(k) - mp.ellipf(w, k)) / p
-    found = linearisation(block, Direction.POSITIVE, r)
-    assert found.period[0] == pytest.approx(float(4 * quarter), rel=1e-9)
-    assert found.period_ratio[0] == pytest.approx(float(mp.acosh(1 / (1 - mp.mpf(r))) / p / quarter), rel=1e-9)
+    with mp.workdps(30):
+        alpha = mp.atan(mp.mpf(7) / 28)
+        p = mp.sqrt(3 * mp.mpf("9.80665") / (4 * mp.sqrt(mp.mpf("0.35") ** 2 + mp.mpf("1.4") ** 2)))
+        rest = alpha * (1 - mp.mpf(r))  # psi = alpha - theta, from rest to alpha
+        k = mp.cos(rest / 2) ** 2  # psi.^2 = 4 p^2 (sin^2(psi/2) - sin^2(rest/2)); cos(psi/2) = cos(rest/2) sin(w)
+        w = mp.asin(mp.cos(alpha / 2) / mp.cos(rest / 2))
+        quarter = (mp.ellipk(k) - mp.ellipf(w, k)) / p
+        found = linearisation(block, Direction.POSITIVE, r)
+        assert found.period[0] == pytest.approx(float(4 * quarter), rel=1e-9)
+        assert found.period_ratio[0] == pytest.approx(float(mp.acosh(1 / (1 - mp.mpf(r))) / p / quarter), rel=1e-9)
 
 
 def test_ratios_are_those_of_equations_24_and_25():
