@@ -8,7 +8,7 @@ endif
 STAMP := $(VENV)/.installed
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere lint type contracts check bench validation pictures docs clean
+.PHONY: setup demo test test-kernels test-versions test-elsewhere lint type contracts check bench soak validation pictures docs clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -53,6 +53,9 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 	$(BIN)/python benchmarks/histories.py $(RECORD)
 	$(BIN)/python benchmarks/maps.py
 	$(BIN)/python benchmarks/fragility.py
+
+soak: setup  ## What takes too long for the tests, some ten minutes: 500 damaged stores, 50 races of three processes
+	$(BIN)/python -m tests.soak
 
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py

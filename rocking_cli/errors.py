@@ -107,6 +107,10 @@ def renamed(error: InputError, options: Mapping[str, str]) -> InputError:
     )
 
 
+class Refused(RockingError):
+    """What the system does not let us do: a full disk."""
+
+
 class MechanismError(RockingError):
     """A mechanism or plugin that does not hold its side of the contract, or whose mechanics has no answer."""
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import shutil
 import stat
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, Refused, RockingError
 
 
 def read_bytes(
@@ -61,14 +63,22 @@ def read_bytes(
 
 def check_writable(path: Path) -> None:
     """Refuse, before any work, a place where no file can be written: `InputError` says why."""
+    shown, path = str(path), Path(os.path.realpath(path))  # through a link, the file it stands for
+    if path.is_symlink():
+        raise InputError(Problem("this link leads back to itself", shown))
     if path.is_dir():
-        raise InputError(Problem("this is a folder: give a file name", str(path)))
+        raise InputError(Problem("this is a folder: give a file name", shown))
     if not path.parent.is_dir():
-        raise InputError(Problem(f"the folder {path.parent} does not exist", str(path), hint="create it first"))
-    if not os.access(path.parent, os.W_OK):
-        raise InputError(Problem(f"the folder {path.parent} cannot be written to", str(path)))
+        raise InputError(Problem(f"the folder {path.parent} does not exist", shown, hint="create it first"))
     if path.exists() and not os.access(path, os.W_OK):
-        raise InputError(Problem("the file is there already and is protected from writing", str(path)))
+        raise InputError(Problem("the file is there already and is protected from writing", shown))
+    if not _is_special(path) and not os.access(path.parent, os.W_OK):
+        raise InputError(Problem(f"the folder {path.parent} cannot be written to", shown))
+
+
+def _is_special(path: Path) -> bool:
+    """Whether this is a device or a pipe, which is written into: a file in its place would end what it is for."""
+    return path.exists() and not path.is_file()
 
 
 def keep_apart(outputs: Sequence[tuple[str, Path | None]], inputs: Sequence[str | None]) -> None:
@@ -101,8 +111,27 @@ def keep_apart(outputs: Sequence[tuple[str, Path | None]], inputs: Sequence[str 
         taken[place] = option
 
 
+REFUSED = (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EPIPE, getattr(errno, "EDQUOT", errno.ENOSPC))
+"""What is nobody's mistake: no room, too large for the file system, a broken disk, a reader that has gone."""
+
+
+class _Output(io.FileIO):
+    """A file that remembers what the system refused: libraries that write to it may say something else."""
+
+    refused: OSError | None = None
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except OSError as error:
+            self.refused = error
+            raise
+
+
 def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     """Write a file through a temporary neighbour, so that no half-written one is ever seen.
+
+    A device, or a pipe that somebody reads, gets what is written when it is complete.
 
     Parameters
     ----------
@@ -114,15 +143,23 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     Raises
     ------
     InputError
-        If the file cannot be written; an older file of that name is then untouched.
+        If there can be no such file; an older one of that name is then untouched.
+    Refused
+        If the system refuses: a full disk. The same holds.
     """
     check_writable(path)
-    path = path.resolve()  # through a link, to the file it stands for
+    path = Path(os.path.realpath(path))
+    if _is_special(path):
+        _write_into(path, write)
+        return
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        # Within the length of a name, whatever that of the file.
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}.")
+    except OSError as error:
+        raise _cannot(path, error) from error
+    try:
+        _fill(handle, path, write)
         try:
-            with os.fdopen(handle, "wb") as file:
-                write(file)
             if path.exists():
                 shutil.copymode(path, name)
             else:  # mkstemp makes files private; give this one the usual rights
@@ -130,8 +167,49 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
                 os.umask(umask)
                 os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
             os.replace(name, path)  # noqa: PTH105
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
+        except OSError as error:
+            raise _cannot(path, error) from error
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def _fill(handle: int, path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Write to an open file and close it; where the system refuses, that is what is said."""
+    output = _Output(handle, "wb")
+    try:
+        with io.BufferedWriter(output) as file:
+            write(file)
+    except Exception as error:
+        refused = error if isinstance(error, OSError) else output.refused
+        if refused is None:
             raise
+        raise _cannot(path, refused) from error
+    finally:
+        output.close()
+
+
+def _write_into(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    try:
+        # Opening a pipe that nobody reads would wait for ever.
+        handle = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except OSError as error:
-        raise InputError(Problem(f"cannot be written: {error.strerror or error}", str(path))) from error
+        if error.errno == errno.ENXIO:
+            raise InputError(Problem("nobody reads from this pipe", str(path), hint="start its reader first")) from None
+        raise _cannot(path, error) from error
+    with tempfile.TemporaryFile() as whole:
+        try:
+            _fill(os.dup(whole.fileno()), Path(tempfile.gettempdir()), write)
+        except BaseException:
+            os.close(handle)
+            raise
+        whole.seek(0)
+        if hasattr(os, "set_blocking"):
+            os.set_blocking(handle, True)
+        _fill(handle, path, lambda file: shutil.copyfileobj(whole, file))
+
+
+def _cannot(path: Path, error: OSError) -> RockingError:
+    """What to say of a file that cannot be written."""
+    problem = Problem(f"cannot be written: {error.strerror or error}", str(path))
+    return Refused(str(problem)) if error.errno in REFUSED else InputError(problem)

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Refused
 from rocking_cli.files import check_writable, keep_apart, read_bytes, write_whole
 
 
@@ -43,11 +43,11 @@ def test_a_failure_leaves_the_older_file_and_nothing_else(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_full_disk_is_an_input_error(tmp_path):
+def test_a_full_disk_is_refused_by_the_system(tmp_path):
     def full(file):
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(InputError, match="No space left"):
+    with pytest.raises(Refused, match="No space left"):
         write_whole(tmp_path / "a.csv", full)
     assert list(tmp_path.iterdir()) == []
 

@@ -22,9 +22,10 @@ from rocking_cli import GroundMotion, equivalent_block, exact_response, load_str
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.fragility import assess, engines, sources, store, work
+from rocking_cli.studies.fragility import assess, engines, sources, store, store_file, work
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.intensity import MEASURES, Scales, intensity
+from rocking_cli.studies.fragility.plan import weaker
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
@@ -354,13 +355,15 @@ class TestChanges:
             carry_out(path, place)
         assert all("order of structures" in str(each) for each in caught.value.problems)
 
-    def test_another_mechanics_of_the_same_version_is_named(self, whole, tmp_path):
+    def test_another_mechanics_of_the_same_version_is_named(self, whole, tmp_path, monkeypatch):
         place = tmp_path / "study.db"
         place.write_bytes(whole[2].read_bytes())
-        connection = sqlite3.connect(place)
-        connection.execute("UPDATE sample SET p = p * 1.001 WHERE id = 2")
-        connection.commit()
-        connection.close()
+
+        def other(equivalence, model):
+            p, lambda_ = weaker(equivalence, model)
+            return 1.001 * p, lambda_
+
+        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.weaker", other)
         with pytest.raises(InputError, match=r"p of sample 1 of uncertain was .*, is now"):
             carry_out(whole[0], place)
 
@@ -380,6 +383,8 @@ class TestChanges:
         path = write(tmp_path, STUDY.replace("samples: 4", "samples: 4\nseed: 9"))
         result = CliRunner().invoke(main, ["fragility", str(path), "--restart", "--json"])
         assert result.exit_code == 0 and json.loads(result.stdout)["seed"] == 9
+        assert "the store as it was is kept as" in result.stderr
+        assert dump(tmp_path / "study.before.db") == dump(whole[2])
 
     def test_differences_are_said_as_people_would(self):
         before = {"a": 1, "b": [1, 2], "c": {"d": [1, 2, 3]}, "e": 5}
@@ -486,7 +491,7 @@ class TestOtherFiles:
 
 
 def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, monkeypatch):
-    monkeypatch.setattr(store, "WAITING", 0.2)
+    monkeypatch.setattr(store_file, "WAITING", 0.2)
     monkeypatch.setattr(store, "PATIENCE", 0.0)
     place = tmp_path / "study.db"
     with Store.writing(place) as kept, engines.threads(1) as workers:
@@ -619,7 +624,7 @@ def test_columns_of_a_row_are_those_of_the_table(whole):
     connection = sqlite3.connect(whole[2])
     names = [row[1] for row in connection.execute("PRAGMA table_info(run)")]
     connection.close()
-    assert tuple(names) == COLUMNS
+    assert tuple(names) == (*COLUMNS, "checksum")
 
 
 def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, monkeypatch):

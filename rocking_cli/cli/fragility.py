@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import options, terminal
+from rocking_cli.cli import endings, options, terminal
 
 if TYPE_CHECKING:
     from rocking_cli.studies.fragility.campaign import Prepared
     from rocking_cli.studies.fragility.engines import Engine
-    from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import Study
-
-INTERRUPTED = 130  # the exit code that shells give an interrupt
 
 
 @click.command(short_help="Run a study of many records and intensities, and fit fragility curves.")
@@ -26,7 +22,7 @@ INTERRUPTED = 130  # the exit code that shells give an interrupt
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processors to use.  [default: all]")
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the dask.distributed cluster of this scheduler.")
 @click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
-@click.option("--restart", is_flag=True, help="Throw the kept runs away and begin anew.")
+@click.option("--restart", is_flag=True, help="Begin anew; the store there is is kept, renamed.")
 @click.option("--pictures", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.as_json
 @click.pass_context
@@ -81,43 +77,32 @@ def command(
             _bring_up_to_date(study, place, jobs, scheduler, restart=restart)
             with Store.reading(place) as kept:
                 complete = results.give(kept, None, folder, as_json=as_json)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
-        ctx.exit(INTERRUPTED)
+        ctx.exit(endings.exit_code(stopped))
     if not complete:
         ctx.exit(results.INCOMPLETE)
 
 
 def _bring_up_to_date(study: Study, place: Path, jobs: int | None, scheduler: str | None, *, restart: bool) -> None:
-    """Run what the store does not hold; with `restart` the old one is thrown away once a new one has begun."""
-    from rocking_cli.studies.fragility.store import Store
-
-    aside = place.with_name(f"{place.name}.before")
-    if restart and place.exists():
-        with Store.writing(place):
-            pass  # it is a store, and nobody is at work on it
-        place.replace(aside)
-    try:
-        with Store.writing(place) as kept:
-            _run(study, kept, jobs, scheduler, begun=lambda: aside.unlink(missing_ok=True) if restart else None)
-    finally:
-        if restart and aside.exists():
-            aside.replace(place)
-
-
-def _run(study: Study, store: Store, jobs: int | None, scheduler: str | None, begun: Callable[[], None]) -> None:
+    """Run what the store does not hold; with `restart` all, and the old store is kept under another name."""
     from rocking_cli.cli import work
     from rocking_cli.studies.fragility.campaign import prepare, run
+    from rocking_cli.studies.fragility.store import Store
 
-    with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
-        prepared = prepare(study, store, examined)
-    _report(prepared)
-    if prepared.finished == prepared.plan.total:
-        return
-    if scheduler is None:
-        work.say_if_compiling()
-    with _engine(jobs, scheduler) as engine:
-        begun()
+    with ExitStack() as stack:
+        # The old store gives way only when there is somebody to run the study anew.
+        engine = stack.enter_context(_engine(jobs, scheduler)) if restart else None
+        say = terminal.note if restart else terminal.warning
+        store = stack.enter_context(Store.writing(place, anew=restart, say=say))
+        with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
+            prepared = prepare(study, store, examined)
+        _report(prepared)
+        if prepared.finished == prepared.plan.total:
+            return
+        if scheduler is None:
+            work.say_if_compiling()
+        engine = engine or stack.enter_context(_engine(jobs, scheduler))
         done, failed = prepared.finished, prepared.failed
         with terminal.progress(prepared.plan.total, "runs", done=done, failed=failed) as advance:
             run(prepared, store, engine, advance)

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from rocking_cli import __version__
-from rocking_cli.cli import terminal
+from rocking_cli.cli import endings, terminal
 from rocking_cli.errors import PluginWarning, RockingError
 from rocking_cli.text import printable
 
@@ -80,10 +80,14 @@ class LazyGroup(click.Group):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="replace")  # a name that an old code page cannot spell ends nothing
         try:
-            return super().invoke(ctx)
+            with endings.in_order():
+                return super().invoke(ctx)
         except click.ClickException as error:
             error.message = printable(error.message)  # it quotes what was typed
             raise
+        except KeyboardInterrupt as stopped:
+            terminal.error("interrupted")
+            ctx.exit(endings.exit_code(stopped))
         except RockingError as error:
             terminal.error(str(error))
             terminal.plugin_traceback(error)
@@ -120,7 +124,7 @@ def main() -> None:
       rocking report block.yaml --record accel.csv -o report.html
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
-    3 mechanism or plugin, 4 solver, 5 done except for records or runs that are reported.
+    3 mechanism or plugin, 4 solver, 5 done except for records or runs that are reported; 128 + n ended by signal n.
 
     ROCKING_DEBUG=1 in the environment shows the traceback of an error that a plugin itself makes.
     """

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from rocking_cli.cli import options
+from rocking_cli.cli import options, terminal
 
 
 @click.command(short_help="Summarise and export the store of a study.")
@@ -42,6 +42,11 @@ def command(ctx: click.Context, file: str, out: Path | None, pictures: str | Non
         check_parquet(out)
     folder = ready(pictures)
     with Store.reading(Path(file)) as store:
-        complete = results.give(store, out, folder, as_json=as_json)
+        for each in store.doubts():
+            terminal.warning(f"{file}: {each}")
+        harmed = bool(store.damaged) or store.unreadable
+        if harmed:
+            terminal.note("`rocking fragility STUDY.yaml` takes over what is sound, and runs the rest again")
+        complete = results.give(store, out, folder, as_json=as_json) and not harmed
     if not complete:
         ctx.exit(results.INCOMPLETE)

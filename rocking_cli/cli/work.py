@@ -10,11 +10,15 @@ from rocking_cli.cli import terminal
 
 def say_if_compiling(*, exact: bool = False) -> None:
     """Say that the first history on a machine takes a while, or the first exact response to many pulses."""
-    from rocking_cli.dynamics.compiled import HISTORIES, PULSES, needs_compiling
+    from rocking_cli.dynamics.compiled import HISTORIES, PULSES, cache_folder, needs_compiling, unwritable
 
     if needs_compiling(PULSES if exact else HISTORIES):
         what = "the exact response to pulses, some five" if exact else "the history kernel, some ten"
-        terminal.note(f"compiling {what} seconds, once for this machine ...")
+        if unwritable() is None:
+            terminal.note(f"compiling {what} seconds, once for this machine ...")
+            return
+        terminal.note(f"compiling {what} seconds, again in every process: {cache_folder()} cannot be written to")
+        terminal.note(f"  ({unwritable()}); name another folder in NUMBA_CACHE_DIR")
 
 
 @contextmanager

@@ -1,14 +1,17 @@
 """Compilation of the history kernel: where its machine code is kept, and whether it is there yet.
 
-Numba is imported only when a history is asked for. Its cache must not land beside the installed source, which
-may be read-only, so it goes to the user's cache folder unless NUMBA_CACHE_DIR says otherwise.
+Numba is imported only when a history is asked for. Its cache must not land beside the installed source, so it goes to
+the user's cache folder unless NUMBA_CACHE_DIR says otherwise; where that cannot be written each process compiles anew.
 """
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
+import tempfile
 import threading
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FunctionType
@@ -16,10 +19,23 @@ from typing import Any
 
 import platformdirs
 
+from rocking_cli.errors import InputError
+
 
 def cache_folder() -> Path:
     """The folder that keeps compiled kernels."""
     return Path(os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_path("rocking-cli") / "numba")
+
+
+@functools.cache
+def unwritable() -> str | None:
+    """Why compiled kernels cannot be kept: what the system says of the cache folder; None if they can."""
+    try:
+        cache_folder().mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=cache_folder()):
+            return None
+    except OSError as error:
+        return error.strerror or str(error)
 
 
 # A kernel releases the GIL and keeps IEEE arithmetic to the letter: a history that meets a NaN must show it, and a
@@ -33,6 +49,7 @@ def _start_numba() -> None:
     No kernel calls a BLAS; other code of numba that does still finds it, but for one-dimensional inner products, which
     numba then sums itself. Where other threads may want scipy.linalg at this moment it is left alone.
     """
+    _import_numba()
     if "numba.np.arraymath" in sys.modules or "scipy.linalg" in sys.modules or threading.active_count() > 1:
         return
     sys.modules["scipy.linalg"] = None  # type: ignore[assignment]
@@ -40,6 +57,27 @@ def _start_numba() -> None:
         import numba.np.arraymath  # noqa: F401
     finally:
         del sys.modules["scipy.linalg"]
+
+
+def _import_numba() -> None:
+    """Load numba; settings in the environment with which it does not start are the user's to mend."""
+    if "numba" in sys.modules:
+        return
+    given = [f"{name}={value}" for name, value in sorted(os.environ.items()) if name.startswith("NUMBA_")]
+    try:
+        features = [each for each in os.environ.get("NUMBA_CPU_FEATURES", "").split(",") if each]
+        if not all(each.startswith(("+", "-")) for each in features):  # LLVM would end the process
+            raise ValueError("features of a processor begin with + or -")
+        with warnings.catch_warnings():
+            if given:  # what it cannot parse numba would take for absent, and show a traceback of its own
+                warnings.filterwarnings("error", message="Environment variable", category=RuntimeWarning)
+            import numba  # noqa: F401
+    except Exception as error:
+        if not given:
+            raise
+        reason = next((line for line in str(error).splitlines() if line.strip()), type(error).__name__)
+        what = f"numba, which compiles the histories, does not start with {', '.join(given)}: {reason}"
+        raise InputError(f"{what}\n  unset these variables of the environment, or mend them") from error
 
 
 def compile_inline(function: Callable[..., Any]) -> Any:
@@ -58,15 +96,19 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
 
     config: Any = numba.config
 
+    kernel = njit(**OPTIONS)(function)
+    if unwritable() is not None or not hasattr(kernel, "enable_caching"):
+        return kernel
     theirs = config.CACHE_DIR
     try:
-        cache_folder().mkdir(parents=True, exist_ok=True)
         config.CACHE_DIR = str(cache_folder())
-        return njit(cache=True, **OPTIONS)(function)
-    except (OSError, RuntimeError):  # nowhere to write: compile anew in each process
-        return njit(**OPTIONS)(function)
+        kept = njit(cache=True, **OPTIONS)(function)
+    except (OSError, RuntimeError):
+        return kernel
     finally:
         config.CACHE_DIR = theirs
+    # Where it may not write to its folder within ours, numba would go beside the source.
+    return kept if Path(kept.stats.cache_path).is_relative_to(cache_folder()) else kernel
 
 
 def compile_source(
@@ -100,7 +142,9 @@ HISTORIES, PULSES = "kernels.run", "pulse_motion.many"
 
 
 def needs_compiling(kernel: str = HISTORIES) -> bool:
-    """Whether a kernel will have to be compiled when it is next called, some seconds once for this machine."""
+    """Whether a kernel will have to be compiled when it is next called, which takes some seconds."""
+    if unwritable() is not None:
+        return True
     source = Path(__file__).with_name(kernel.split(".")[0] + ".py")
     tag = f"py{sys.version_info.major}{sys.version_info.minor}"
     indexes = cache_folder().glob(f"*/{kernel}-*.{tag}.nbi")

@@ -104,6 +104,22 @@ class Plan:
         usable = [sum(each.reason is None for each in what) for what in (self.trials, self.records)]
         return prod(usable) * self.block
 
+    @property
+    def size(self) -> int:
+        """How many numbers there are: of runs that can be run and of those that cannot."""
+        return prod(self.shape)
+
+    def name(self, run: int) -> str:
+        """What a run is, in words."""
+        if not 0 <= run < self.size:
+            return f"run {run}, which the study does not have"
+        sample, record, _, level, polarity = (int(place[0]) for place in self.places(np.array([run])))
+        trial = self.trials[sample]
+        return (
+            f"run {run} ({trial.structure}, sample {trial.number}, {self.records[record].name}, "
+            f"level {self.levels[level]:.6g}, polarity {self.polarities[polarity]:+d})"
+        )
+
     def places(self, runs: Integers) -> tuple[Integers, Integers, Integers, Integers, Integers]:
         """The places of sample, record, restitution, level and polarity of runs."""
         sample, record, eta, level, polarity = np.unravel_index(runs, self.shape)

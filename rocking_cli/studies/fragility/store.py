@@ -1,34 +1,56 @@
-"""A study's runs in an SQLite file beside it: each finished run is there once, whatever stops the work."""
+"""A study's runs in an SQLite file beside it: each finished run is there once, whatever stops the work.
+
+What is damaged is found when a store is opened: every run has a checksum, and so has what they are runs of.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 import sqlite3
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from time import monotonic
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import TypeAdapter
 
-from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.json_text import json_text
-from rocking_cli.studies.fragility.engines import GOES_ON
+from rocking_cli.studies.fragility.definition import Definition
 from rocking_cli.studies.fragility.plan import Plan, Trial
 from rocking_cli.studies.fragility.sources import Record
+from rocking_cli.studies.fragility.store_file import (
+    AT_WORK,
+    MARK,
+    VERSION,
+    damaged,
+    exchange,
+    header,
+    in_words,
+    is_beyond_reading,
+    open_locked,
+    open_store,
+    tables,
+    this_process,
+)
+from rocking_cli.studies.fragility.store_file import StoreError as StoreError
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-MARK = 0x526F636B  # "Rock", in the header of the file
-VERSION = 1  # of the tables below
 PATIENCE = 1.0  # s between transactions: what is finished in between is run again after a crash
 READ = 100_000  # runs read at a time
-WAITING = 60.0  # s for somebody who reads the store meanwhile
 STANDS, FAILED = 0, 2  # outcomes; 1 and -1 for overturning in the positive and the negative direction
+OUTCOMES = (STANDS, FAILED, 1, -1)
+SEAL = "seal"  # the name in the table `study` of the checksum of all but the runs
+NAMED = 5  # damaged runs named one by one
 
 TABLES = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -45,9 +67,11 @@ CREATE TABLE level (id INTEGER PRIMARY KEY, value REAL NOT NULL);
 CREATE TABLE polarity (id INTEGER PRIMARY KEY, value INTEGER NOT NULL);
 CREATE TABLE run (
     id INTEGER PRIMARY KEY, scale REAL NOT NULL, eta REAL, outcome INTEGER NOT NULL,
-    peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL
+    peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL,
+    checksum INTEGER NOT NULL
 );
 """
+PLAN = ("sample", "record", "eta", "level", "polarity")  # what a run is of
 # Numbers of runs become words and values again for whoever opens the file with another program.
 VIEW = """
 CREATE VIEW runs AS SELECT
@@ -64,19 +88,8 @@ JOIN level ON level.id = run.id / {level} % {levels}
 JOIN polarity ON polarity.id = run.id % {polarities};
 """
 
-
-HINTS = {
-    sqlite3.SQLITE_FULL: f"make room: {GOES_ON}",
-    sqlite3.SQLITE_IOERR: f"see to the disk: {GOES_ON}",
-    sqlite3.SQLITE_BUSY: f"another program has kept it open for long: {GOES_ON}",
-    sqlite3.SQLITE_CORRUPT: "restore a copy of it, or give --restart",
-}
-
-
-class StoreError(RockingError):
-    """A store that the system does not let us write or read."""
-
-    exit_code = 1
+Say = Callable[[str], None]
+"""Called with a sentence for the user, before that of which it speaks is done."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +136,14 @@ class Rows:
         """Some of them."""
         return Rows(*(getattr(self, name)[which] for name in COLUMNS))
 
+    def checksums(self, salt: int) -> Integers:
+        """CRC-32 of each: of its columns as doubles, the lowest byte first, begun with that of the study."""
+        columns = np.stack([getattr(self, name) for name in COLUMNS], axis=1).astype("<f8")
+        columns = np.where(np.isnan(columns), np.nan, columns) + 0.0  # SQLite keeps neither NaNs nor zeros apart
+        row = 8 * len(COLUMNS)
+        data = memoryview(columns.tobytes())
+        return np.array([crc32(data[k : k + row], salt) for k in range(0, len(data), row)], dtype=np.int64)
+
 
 COLUMNS = tuple(each.name for each in fields(Rows))
 
@@ -135,42 +156,64 @@ class Store:
     path : Path
         The file.
     connection : sqlite3.Connection
-        To it.
+        To it; to an empty store in memory as long as there is no file.
+
+    Attributes
+    ----------
+    damaged : list of int
+        Numbers of the runs that do not agree with their checksums; they count as not finished.
+    unreadable : bool
+        Whether pages of the file are damaged, so that runs may be missing.
+    checked : bool
+        Whether its runs have checksums: those of the first versions have none.
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
         self.path = path
+        self.damaged: list[int] = []
+        self.unreadable = False
+        self.checked = True
         self._connection = connection
+        self._replaced: sqlite3.Connection | None = None  # the store whose place this one takes as it begins
+        self._there = False
+        self._say: Say = lambda text: None
+        self._salt = 0
         self._last = monotonic()
 
     @classmethod
     @contextmanager
-    def writing(cls, path: Path) -> Iterator[Store]:
-        """Open or create a store to add runs to; nobody else can write it meanwhile, everybody can read it.
+    def writing(cls, path: Path, *, anew: bool = False, say: Say = lambda text: None) -> Iterator[Store]:
+        """Open a store to add runs to, or make one; nobody else can write it meanwhile, everybody can read it.
 
-        What is finished is kept also when an error ends the work.
+        What is finished is kept also when an error ends the work. The file is made as the study begins, and none is
+        deleted: one that is damaged, or not wanted any more, is kept under a name that is new.
+
+        Parameters
+        ----------
+        path : Path
+            The file; through a link, the one it stands for.
+        anew : bool
+            Leave the runs there are aside: the store is empty, and takes the place of the old one as it begins.
+        say : callable, optional
+            Told what is damaged, and where an old file is kept.
 
         Raises
         ------
         InputError
-            If the file is no store, or another process is at work on it.
+            If the file is no store, is damaged beyond its runs, or another process is at work on it.
         StoreError
             If the system refuses: a full disk.
         """
-        unused = not path.exists()
-        try:
-            with _connected(path) as connection:
-                _lock(path, connection)
-                store = cls(path, connection)
-                try:
-                    yield store
-                finally:
-                    unused = unused and store.empty
-                    if connection.in_transaction:  # not after a full disk, which has undone the last one
-                        connection.execute("COMMIT")
-        finally:
-            if unused:  # the study was refused: leave nothing behind
-                path.unlink(missing_ok=True)
+        path = Path(os.path.realpath(path))
+        with in_words(path):
+            store = cls(path, _nothing())
+            store._say = say
+            try:
+                if path.exists():
+                    store._take(anew=anew)
+                yield store
+            finally:
+                store._leave()
 
     @classmethod
     @contextmanager
@@ -180,17 +223,92 @@ class Store:
             raise InputError(Problem("this is a folder, not the store of a study", str(path)))
         if not path.exists():
             raise InputError(Problem("no such store", str(path), hint="`rocking fragility STUDY.yaml` makes one"))
-        with _connected(path) as connection:
-            connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
-            store = cls(path, connection)
-            if store.empty:
-                raise InputError(Problem("this is not the store of a study, or it is still empty", str(path)))
-            yield store  # in short reads: a long one would keep a study that runs from adding to it
+        with in_words(path):
+            store = cls(path, open_store(path))
+            try:
+                if store.empty:
+                    raise InputError(Problem("this is not the store of a study, or it is still empty", str(path)))
+                store._check_plan()
+                store._check_runs()
+                yield store  # in short reads: a long one would keep a study that runs from adding to it
+            finally:
+                store._connection.close()
 
     @property
     def empty(self) -> bool:
         """Whether nothing has been written yet."""
-        return not self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        return not tables(self._connection)
+
+    def _take(self, *, anew: bool) -> None:
+        """Lock the store that is there, and make sure that its runs can be relied upon."""
+        self._there = True
+        try:
+            self._connection = open_locked(self.path)
+        except sqlite3.DatabaseError as error:
+            if not (anew and is_beyond_reading(self.path, error)):
+                raise
+            self._replaced = _nothing()
+            return
+        if anew and header(self._connection)[0] == MARK:
+            self._connection, self._replaced = _nothing(), self._connection
+        elif not self.empty:
+            self._check_plan()
+            self._check_pages()
+            self._check_runs()
+            if self.doubts():
+                self._mend()
+            self._sign()
+
+    def _sign(self) -> None:
+        """Tell others who is at work."""
+        self._connection.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (AT_WORK, this_process()))
+        self.commit()
+
+    def _leave(self) -> None:
+        """Keep what is finished, and let others write."""
+        try:
+            if self._connection.in_transaction:  # not after a full disk, which has undone the last one
+                self._connection.execute("COMMIT")
+            with suppress(sqlite3.Error):  # it tells nobody anything any more
+                self._connection.execute("PRAGMA busy_timeout = 0")
+                self._connection.execute("DELETE FROM study WHERE key = ? AND value = ?", (AT_WORK, this_process()))
+        finally:
+            self._connection.close()
+            if self._replaced is not None:
+                self._replaced.close()
+
+    def _mend(self) -> None:
+        """Take the sound runs over into a new store that takes the place of this one."""
+        plan, facts = self.plan(), self._facts()
+        for each in self.doubts():
+            self._say(f"{self.path}: {each}")
+        old = Store(self.path, self._connection)
+        old.checked, old._salt = self.checked, self._salt
+
+        def fill(connection: sqlite3.Connection) -> None:
+            new = Store(self.path, connection)
+            new._fill(plan, facts)
+            for rows in old._blocks(0, plan.size):
+                new._insert_runs(rows)
+
+        self._connection = _nothing()
+        self._connection = exchange(self.path, old._connection, fill, self._say)
+        self.damaged, self.unreadable, self.checked = [], False, True
+        self._check_plan()
+
+    def doubts(self) -> list[str]:
+        """What is wrong with the runs, a sentence each."""
+        found = []
+        if not self.checked:
+            found.append("an earlier version wrote this store without checksums: damage to its runs would not show")
+        if self.damaged:
+            count, plan = len(self.damaged), self.plan()
+            named = "; ".join(plan.name(k) for k in self.damaged[:NAMED]) + ("; ..." if count > NAMED else "")
+            what = "1 run is damaged and left out" if count == 1 else f"{count} runs are damaged and left out"
+            found.append(f"{what}: {named}")
+        if self.unreadable:
+            found.append("pages of the file are damaged: runs that were finished may be missing")
+        return found
 
     def begin(self, plan: Plan, facts: Mapping[str, Any]) -> None:
         """Write what a new store starts with.
@@ -201,7 +319,27 @@ class Store:
             The runs to come.
         facts : mapping
             Plain data to keep by name: `fact` gives them back.
+
+        Raises
+        ------
+        InputError
+            If another process has begun it meanwhile.
         """
+        if self._replaced is not None:
+            old, self._replaced = self._replaced, None
+            fill: Callable[[sqlite3.Connection], None] = lambda new: Store(self.path, new)._fill(plan, facts)  # noqa: E731
+            self._connection = exchange(self.path, old, fill, self._say)
+            self._check_plan()
+        else:
+            if not self._there:
+                self._connection = open_locked(self.path)
+            if not self.empty:
+                what = "another process has begun this study at the same moment"
+                raise InputError(Problem(what, str(self.path), hint="the same command goes on from there"))
+            self._fill(plan, facts)
+        self._sign()
+
+    def _fill(self, plan: Plan, facts: Mapping[str, Any]) -> None:
         for statement in TABLES.split(";"):
             self._connection.execute(statement)
         levels, polarities = plan.shape[3:]
@@ -223,12 +361,76 @@ class Store:
         self._insert("level", [(each,) for each in plan.levels])
         self._insert("polarity", [(each,) for each in plan.polarities])
         self.note(facts)
-        self.commit()
+        self._salt = _salt(self.fact("hash"))
 
     def note(self, facts: Mapping[str, Any]) -> None:
         """Keep plain data by name, in place of what was there."""
         rows = [(key, json_text(value, sort_keys=True)) for key, value in facts.items()]
         self._connection.executemany("INSERT OR REPLACE INTO study VALUES (?, ?)", rows)
+        self._connection.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (SEAL, self._digest()))
+
+    def _digest(self) -> str:
+        """SHA-256 of all that a store holds but its runs."""
+        found = hashlib.sha256()
+        queries = [f"SELECT * FROM {table} ORDER BY id" for table in PLAN]
+        for query in (*queries, f"SELECT * FROM study WHERE key NOT IN ('{SEAL}', '{AT_WORK}') ORDER BY key"):
+            found.update(json.dumps(self._connection.execute(query).fetchall(), default=repr).encode())
+        return found.hexdigest()
+
+    def _facts(self) -> dict[str, Any]:
+        rows = self._connection.execute("SELECT key, value FROM study WHERE key NOT IN (?, ?)", (SEAL, AT_WORK))
+        return {key: json.loads(value) for key, value in rows}
+
+    def _check_plan(self) -> None:
+        """Refuse a store that does not hold any more what its runs are runs of."""
+        if not (alone := self._connection.in_transaction):
+            self._connection.execute("BEGIN")  # at one moment: somebody may be at work
+        try:
+            _, version = header(self._connection)
+            self.checked = version >= VERSION
+            names = {row[1] for row in self._connection.execute("PRAGMA table_info(run)")}
+            if ("checksum" in names) != self.checked or not names.issuperset(COLUMNS):
+                raise damaged(self.path, "its tables are not those of a store")
+            if self.checked:
+                found = self._connection.execute("SELECT value FROM study WHERE key = ?", (SEAL,)).fetchone()
+                if found is None or found[0] != self._digest():
+                    raise damaged(self.path, "what its runs are runs of does not agree with its checksum")
+            try:
+                self._salt = _salt(self._facts()["hash"])
+                Definition.model_validate(self.fact("definition"))
+                plan = self.plan()
+            except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError) as error:
+                raise damaged(self.path, "what its runs are runs of cannot be read") from error
+            if not plan.size:
+                raise damaged(self.path, "it has lost what its runs are runs of")
+        finally:
+            if not alone and self._connection.in_transaction:
+                self._connection.execute("COMMIT")
+
+    def _check_pages(self) -> None:
+        """Find out whether the file can be written to: what is damaged would get worse."""
+        try:
+            self.unreadable = self._connection.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok"
+        except sqlite3.DatabaseError as error:
+            self._unless_corrupt(error)
+
+    def _check_runs(self) -> None:
+        """Find the runs that do not agree with their checksums."""
+        size = self.plan().size
+        strangers = self._connection.execute("SELECT id FROM run WHERE id < 0 OR id >= ?", (size,))
+        try:
+            self.damaged = [row[0] for row in strangers]
+        except sqlite3.DatabaseError as error:
+            self._unless_corrupt(error)
+        for first in range(0, size, READ):
+            _, bad = self._read(first, min(first + READ, size))
+            self.damaged += bad
+
+    def _unless_corrupt(self, error: sqlite3.DatabaseError) -> None:
+        """Note damaged pages; raise any other error."""
+        if getattr(error, "sqlite_errorcode", 0) & 0xFF != sqlite3.SQLITE_CORRUPT:
+            raise error
+        self.unreadable = True
 
     def _insert(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
         marks = ", ".join("?" * (len(rows[0]) + 1))
@@ -238,23 +440,32 @@ class Store:
     def fact(self, key: str) -> Any:
         """What was kept under a name."""
         found = self._connection.execute("SELECT value FROM study WHERE key = ?", (key,)).fetchone()
+        if found is None:
+            raise damaged(self.path, f"{key} is missing")
         return json.loads(found[0])
 
     def plan(self) -> Plan:
         """The runs that the store is for."""
 
-        def column(table: str) -> list[Any]:
-            return [row[0] for row in self._connection.execute(f"SELECT value FROM {table} ORDER BY id")]
+        def column(table: str, of: Any) -> list[Any]:
+            rows = self._connection.execute(f"SELECT value FROM {table} ORDER BY id")
+            return TypeAdapter(list[of]).validate_python([row[0] for row in rows])
 
-        samples = self._connection.execute("SELECT * FROM sample ORDER BY id").fetchall()
-        records = self._connection.execute("SELECT * FROM record ORDER BY id").fetchall()
+        def table(name: str, kind: Any) -> list[Any]:
+            names = [each.name for each in fields(kind)]
+            rows = self._connection.execute(f"SELECT {', '.join(names)} FROM {name} ORDER BY id")
+            found = [dict(zip(names, row, strict=True)) for row in rows]
+            for each in found if kind is Trial else []:
+                each["drawn"] = json.loads(each["drawn"])
+            return TypeAdapter(list[kind]).validate_python(found)
+
         return Plan(
-            [Trial(row[1], row[2], json.loads(row[3]), *row[4:]) for row in samples],
-            [Record(*row[1:]) for row in records],
-            [float("nan") if eta is None else eta for eta in column("eta")],
+            table("sample", Trial),
+            table("record", Record),
+            [float("nan") if eta is None else eta for eta in column("eta", float | None)],
             self.fact("description")["levels"]["measure"],
-            column("level"),
-            column("polarity"),
+            column("level", float),
+            column("polarity", int),
         )
 
     def replace_record(self, k: int, record: Record) -> None:
@@ -262,6 +473,7 @@ class Store:
         columns = asdict(record)
         names = ", ".join(f"{name} = ?" for name in columns)
         self._connection.execute(f"UPDATE record SET {names} WHERE id = ?", (*columns.values(), k))
+        self.note({})
 
     def finished(self, first: int, stop: int) -> Integers:
         """The numbers of the finished runs from `first` to before `stop`, growing."""
@@ -270,17 +482,23 @@ class Store:
 
     def count(self) -> tuple[int, int]:
         """How many runs are finished, and how many of these failed."""
+        if self.damaged or self.unreadable:
+            blocks = [(len(rows), rows.failed) for rows in self._blocks(0, self.plan().size)]
+            return sum(done for done, _ in blocks), sum(failed for _, failed in blocks)
         found = self._connection.execute("SELECT count(*), count(*) FILTER (WHERE outcome = ?) FROM run", (FAILED,))
         done, failed = found.fetchone()
         return done, failed
 
     def add(self, rows: Rows) -> None:
         """Add finished runs; about every second what has been added is made safe."""
-        columns = [getattr(rows, name).tolist() for name in COLUMNS]
-        marks = ", ".join("?" * len(columns))
-        self._connection.executemany(f"INSERT INTO run VALUES ({marks})", zip(*columns, strict=True))
+        self._insert_runs(rows)
         if monotonic() - self._last > PATIENCE:
             self.commit()
+
+    def _insert_runs(self, rows: Rows) -> None:
+        columns = [*(getattr(rows, name).tolist() for name in COLUMNS), rows.checksums(self._salt).tolist()]
+        marks = ", ".join("?" * len(columns))
+        self._connection.executemany(f"INSERT INTO run VALUES ({marks})", zip(*columns, strict=True))
 
     def commit(self) -> None:
         """Make safe what has been added, and keep others from writing."""
@@ -289,60 +507,71 @@ class Store:
         self._last = monotonic()
 
     def runs(self, first: int, stop: int) -> Rows:
-        """The finished runs with numbers from `first` to before `stop`."""
-        query = f"SELECT {', '.join(COLUMNS)} FROM run WHERE id >= ? AND id < ?"
-        tables = []
+        """The finished runs with numbers from `first` to before `stop`, without those that are damaged."""
+        blocks = list(self._blocks(first, stop)) or [_rows([])]
+        return Rows(*(np.concatenate([getattr(each, name) for each in blocks]) for name in COLUMNS))
+
+    def _blocks(self, first: int, stop: int) -> Iterator[Rows]:
         for start in range(first, stop, READ):  # as Python's numbers they take ten times the memory
-            found = self._connection.execute(query, (start, min(start + READ, stop))).fetchall()
-            tables.append(np.array(found, dtype=np.float64).reshape(-1, len(COLUMNS)))
-        table = np.concatenate(tables) if tables else np.empty((0, len(COLUMNS)))
-        columns: dict[str, Any] = dict(zip(COLUMNS, table.T, strict=True))
-        return Rows(**{**columns, **{name: columns[name].astype(np.int64) for name in ("id", "outcome")}})
+            yield self._read(start, min(start + READ, stop))[0]
+
+    def _read(self, first: int, stop: int) -> tuple[Rows, list[int]]:
+        """The sound runs with numbers from `first` to before `stop`, and the numbers of the damaged ones."""
+        names = (*COLUMNS, "checksum") if self.checked else COLUMNS
+        found = self._fetch(f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?", first, stop)
+        table, bad = _numbers(found, len(names))
+        rows = _rows(table[:, : len(COLUMNS)])
+        sound = np.isin(table[:, COLUMNS.index("outcome")], OUTCOMES) & np.isfinite(rows.scale)
+        # Where pages are damaged one may be met twice, or out of its place.
+        sound &= (rows.id >= first) & (rows.id < stop) & (np.diff(rows.id, prepend=first - 1) > 0)
+        if self.checked:
+            sound &= rows.checksums(self._salt) == table[:, -1]
+        return rows.select(sound), bad + rows.id[~sound].tolist()
+
+    def _fetch(self, query: str, first: int, stop: int) -> list[tuple[Any, ...]]:
+        """Rows between two numbers; of damaged pages those that can be reached from either side."""
+        try:
+            return self._connection.execute(query, (first, stop)).fetchall()
+        except sqlite3.DatabaseError as error:
+            self._unless_corrupt(error)
+        if stop - first == 1:
+            return []
+        middle = (first + stop) // 2
+        return self._fetch(query, first, middle) + self._fetch(query, middle, stop)
+
+
+def _nothing() -> sqlite3.Connection:
+    """An empty store that is in no file."""
+    return sqlite3.connect(":memory:", isolation_level=None)
+
+
+def _rows(table: Any) -> Rows:
+    """Runs from a table of numbers, a column each."""
+    columns: dict[str, Any] = dict(
+        zip(COLUMNS, np.array(table, dtype=np.float64).reshape(-1, len(COLUMNS)).T, strict=True)
+    )
+    for name in ("id", "outcome"):  # what is no whole number is no number of a run, and no outcome
+        columns[name] = np.where(np.abs(columns[name]) < 2.0**53, columns[name], -2).astype(np.int64)
+    return Rows(**columns)
+
+
+def _numbers(found: Sequence[tuple[Any, ...]], columns: int) -> tuple[Reals, list[int]]:
+    """Rows of a query as numbers, and the first numbers of the rows that are none."""
+    try:
+        return np.array(found, dtype=np.float64).reshape(-1, columns), []
+    except (ValueError, TypeError):
+        if len(found) == 1:
+            return np.empty((0, columns)), [int(found[0][0])]
+    middle = len(found) // 2
+    one, other = (_numbers(part, columns) for part in (found[:middle], found[middle:]))
+    return np.concatenate([one[0], other[0]]), one[1] + other[1]
+
+
+def _salt(hash_: Any) -> int:
+    """What the checksums of a study's runs begin with, so that none passes for that of another study."""
+    return int(str(hash_)[:8], 16)
 
 
 def _as_row(trial: Trial) -> tuple[Any, ...]:
     columns = {**asdict(trial), "drawn": json_text(trial.drawn, sort_keys=True)}
     return tuple(columns.values())
-
-
-@contextmanager
-def _connected(path: Path) -> Iterator[sqlite3.Connection]:
-    """A connection to a store or an empty file; what the system refuses is said in words."""
-    connection = None
-    try:
-        connection = sqlite3.connect(path, isolation_level=None)
-        _check(path, connection)
-        yield connection
-    except sqlite3.DatabaseError as error:
-        if getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_NOTADB:
-            raise InputError(Problem("this is not the store of a study", str(path))) from None
-        hint = HINTS.get(getattr(error, "sqlite_errorcode", 0) & 0xFF)  # the rest says more than is needed here
-        raise StoreError(str(Problem(f"the store cannot be used: {error}", str(path), hint=hint))) from error
-    finally:
-        if connection is not None:
-            connection.close()
-
-
-def _lock(path: Path, connection: sqlite3.Connection) -> None:
-    """Begin a transaction that keeps others from writing."""
-    try:
-        connection.execute("PRAGMA busy_timeout = 0")
-        connection.execute("BEGIN IMMEDIATE")
-    except sqlite3.OperationalError as error:
-        if error.sqlite_errorcode != sqlite3.SQLITE_BUSY:
-            raise
-        hint = "wait for it to end; `rocking results` shows what is there so far"
-        raise InputError(Problem("another process is at work on this study", str(path), hint=hint)) from None
-    connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
-
-
-def _check(path: Path, connection: sqlite3.Connection) -> None:
-    """Refuse a database that is something else, or a store of a later version."""
-    (mark,), (version,) = (
-        connection.execute(f"PRAGMA {name}").fetchone() for name in ("application_id", "user_version")
-    )
-    filled = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
-    if filled and mark != MARK:
-        raise InputError(Problem("this is another database, not the store of a study", str(path)))
-    if version > VERSION:
-        raise InputError(Problem("this store is of a later version of rocking", str(path), hint="upgrade rocking-cli"))

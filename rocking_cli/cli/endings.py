@@ -1,0 +1,44 @@
+"""How a command ends when the system asks it to: in order, as after Ctrl-C, so that nothing half-made stays behind."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import NoReturn
+
+ASKED = ("SIGTERM", "SIGHUP")  # `kill`, and a terminal that is closed; Windows has not the second
+
+
+class Stopped(KeyboardInterrupt):
+    """A signal that asks the program to end."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(signal.Signals(number).name)
+        self.number = number
+
+
+def exit_code(stopped: KeyboardInterrupt) -> int:
+    """The exit code that shells give a program that a signal ended: 130 for Ctrl-C."""
+    return 128 + (stopped.number if isinstance(stopped, Stopped) else signal.SIGINT)
+
+
+@contextmanager
+def in_order() -> Iterator[None]:
+    """Make of the signals that ask for an end a `Stopped`; not of those that somebody ignores, as `nohup` does."""
+    kept = {}
+    if threading.current_thread() is threading.main_thread():  # nobody else may
+        for number in (getattr(signal, name) for name in ASKED if hasattr(signal, name)):
+            if signal.getsignal(number) == signal.SIG_DFL:
+                kept[number] = signal.signal(number, _stop)
+    try:
+        yield
+    finally:
+        for number, handler in kept.items():
+            signal.signal(number, handler)
+
+
+def _stop(number: int, frame: FrameType | None) -> NoReturn:
+    raise Stopped(number)

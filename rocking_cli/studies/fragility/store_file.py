@@ -1,0 +1,213 @@
+"""The SQLite file of a store: opened, locked, and exchanged for another without losing anything.
+
+No store is ever deleted, and none is made before there is something to keep in it: whoever deletes what is empty may
+delete what another process fills at this moment.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import sqlite3
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from itertools import count
+from pathlib import Path
+
+from rocking_cli.errors import InputError, Problem, Refused
+from rocking_cli.studies.fragility.engines import GOES_ON
+
+MARK = 0x526F636B  # "Rock", in the header of the file
+VERSION = 2  # of the tables of a store; 1 had no checksums
+WAITING = 60.0  # s for somebody who reads the store meanwhile
+AT_WORK = "at work"  # the name in the table `study` under which the process is that adds runs
+
+RESTART = "restore a copy of it, or give --restart: that keeps this file under another name"
+HINTS = {
+    sqlite3.SQLITE_FULL: f"make room: {GOES_ON}",
+    sqlite3.SQLITE_IOERR: f"see to the disk: {GOES_ON}",
+    sqlite3.SQLITE_BUSY: f"another program has kept it open for long: {GOES_ON}",
+    sqlite3.SQLITE_READONLY: f"see to its rights, and whether somebody has moved it: {GOES_ON}",
+}
+
+
+class StoreError(Refused):
+    """A store that the system does not let us write or read."""
+
+
+def damaged(path: Path, what: str) -> InputError:
+    """The error of a store of which more than runs is damaged."""
+    return InputError(Problem(f"the store is damaged: {what}", str(path), hint=RESTART))
+
+
+@contextmanager
+def in_words(path: Path) -> Iterator[None]:
+    """Say what SQLite and the system refuse as errors that name the store."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        code = getattr(error, "sqlite_errorcode", 0) & 0xFF  # the rest says more than is needed here
+        if code == sqlite3.SQLITE_NOTADB:
+            raise InputError(Problem("this is not the store of a study", str(path))) from None
+        if code in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR):  # the latter of a table or column that is missing
+            raise damaged(path, str(error)) from error
+        problem = Problem(f"the store cannot be used: {error}", str(path), hint=HINTS.get(code))
+        raise StoreError(str(problem)) from error
+
+
+def open_store(path: Path) -> sqlite3.Connection:
+    """A connection to a file that is the store of a study, or empty."""
+    if path.exists() and not path.is_file():
+        what = "a folder" if path.is_dir() else "a device or a pipe"
+        raise InputError(Problem(f"this is {what}, not the store of a study", str(path)))
+    connection = sqlite3.connect(path, isolation_level=None)
+    try:
+        connection.text_factory = lambda text: text.decode(errors="replace")  # what is damaged is told by its checksum
+        connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
+        mark, version = header(connection)
+        if mark != MARK and tables(connection):
+            raise InputError(Problem("this is another database, not the store of a study", str(path)))
+        if version > VERSION:
+            hint = "upgrade rocking-cli"
+            raise InputError(Problem("this store is of a later version of rocking", str(path), hint=hint))
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def header(connection: sqlite3.Connection) -> tuple[int, int]:
+    """Mark and version in the header of a database."""
+    mark, version = (
+        connection.execute(f"PRAGMA {name}").fetchone()[0] for name in ("application_id", "user_version")
+    )  # fmt: skip
+    return mark, version
+
+
+def tables(connection: sqlite3.Connection) -> int:
+    """How many tables, views and indices a database has."""
+    return int(connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0])
+
+
+def is_beyond_reading(path: Path, error: sqlite3.DatabaseError) -> bool:
+    """Whether an error says that a file, by its first bytes a store, is damaged so that it cannot even be locked."""
+    if getattr(error, "sqlite_errorcode", 0) & 0xFF != sqlite3.SQLITE_CORRUPT:
+        return False
+    with path.open("rb") as file:
+        start = file.read(100)
+    return start.startswith(b"SQLite format 3\0") and start[68:72] == MARK.to_bytes(4, "big")
+
+
+def open_locked(path: Path) -> sqlite3.Connection:
+    """A connection to a store, made if it is not there, in a transaction that keeps others from writing."""
+    connection = open_store(path)
+    try:
+        connection.execute("PRAGMA busy_timeout = 0")
+        connection.execute("BEGIN IMMEDIATE")
+        connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
+    except sqlite3.OperationalError as error:
+        who = _at_work(connection)
+        connection.close()
+        if error.sqlite_errorcode != sqlite3.SQLITE_BUSY:
+            raise
+        hint = "wait for it to end; `rocking results` shows what is there so far"
+        raise InputError(Problem(f"another process is at work on this study{who}", str(path), hint=hint)) from None
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def this_process() -> str:
+    """What others are told of this process."""
+    return f"process {os.getpid()} on {platform.node() or 'this machine'}"
+
+
+def _at_work(connection: sqlite3.Connection) -> str:
+    """Who is at work on a store, where that can be read at this moment."""
+    with suppress(sqlite3.Error):
+        found = connection.execute("SELECT value FROM study WHERE key = ?", (AT_WORK,)).fetchone()
+        return f": {found[0]}" if found is not None else ""
+    return ""
+
+
+def new_name(path: Path, word: str) -> Iterator[Path]:
+    """Names beside a file that nothing has: study.before.db, study.before-2.db, ..."""
+    for k in count(1):
+        name = path.with_name(f"{path.stem}.{word}{f'-{k}' if k > 1 else ''}{path.suffix}")
+        # A journal that waits for its database would be played into whatever takes this name.
+        if not any(os.path.lexists(f"{name}{end}") for end in ("", "-journal", "-wal", "-shm")):
+            yield name
+
+
+def exchange(
+    path: Path, old: sqlite3.Connection, fill: Callable[[sqlite3.Connection], None], say: Callable[[str], None]
+) -> sqlite3.Connection:
+    """Put a new store in the place of an old one, which is kept under a name that is new.
+
+    Parameters
+    ----------
+    path : Path
+        The place.
+    old : sqlite3.Connection
+        To the old store, locked; it is closed.
+    fill : callable
+        Given a connection to the new store, writes what it starts with.
+    say : callable
+        Told where the old store is, before the new one takes its place.
+
+    Returns
+    -------
+    sqlite3.Connection
+        To the new store, locked.
+    """
+    fresh = _create(path)
+    try:
+        connection = sqlite3.connect(fresh, isolation_level=None)
+        try:
+            connection.execute("BEGIN IMMEDIATE")
+            fill(connection)
+            connection.execute("COMMIT")
+        finally:
+            connection.close()
+        os.chmod(fresh, path.stat().st_mode & 0o777)  # noqa: PTH101
+        if os.name == "nt":  # where an open file cannot be replaced
+            old.close()
+        aside = _keep(path)
+        say(f"the store as it was is kept as {aside}")
+        fresh.replace(path)
+    except BaseException:
+        for end in ("", "-journal"):
+            Path(f"{fresh}{end}").unlink(missing_ok=True)
+        raise
+    finally:
+        old.close()
+    return open_locked(path)
+
+
+def _create(path: Path) -> Path:
+    """A file that nobody had, for a store to come."""
+    for name in new_name(path, "new"):
+        try:
+            name.touch(exist_ok=False)
+        except FileExistsError:
+            continue
+        return name
+    raise AssertionError
+
+
+def _keep(path: Path) -> Path:
+    """Give a store a second name: as long as it has the first, nobody else can begin one there."""
+    for name in new_name(path, "before"):
+        try:
+            os.link(path, name)
+        except FileExistsError:
+            continue
+        except OSError:  # a file system without second names
+            name.touch(exist_ok=False)
+            path.replace(name)
+        # Locked, a store has no journal that matters; one that is left must not meet the new store.
+        with suppress(FileNotFoundError):
+            Path(f"{path}-journal").replace(f"{name}-journal")
+        return name
+    raise AssertionError

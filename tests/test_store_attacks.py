@@ -1,0 +1,27 @@
+"""A store under attack loses nothing, and never gives other results without a word."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.stores import RUNS, Sound, attack, race
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    return Sound(tmp_path_factory.mktemp("sound"))
+
+
+@pytest.mark.parametrize("number", range(15))  # each kind once; `make soak` tries hundreds
+def test_damage_is_told_and_mended(sound, tmp_path, number):
+    attack(sound, tmp_path / "attacked", number)
+
+
+@pytest.mark.parametrize("statement", RUNS[:42:6])
+def test_changes_by_another_program_are_told(sound, tmp_path, statement):
+    attack(sound, tmp_path / "attacked", 0, statement)
+
+
+@pytest.mark.parametrize("number", range(5))
+def test_of_three_that_begin_together_none_loses_the_store_of_another(sound, tmp_path, number):
+    race(sound, tmp_path / "raced", *(["--restart"] if number == 4 else []))
