@@ -148,17 +148,17 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
         If the system refuses: a full disk. The same holds.
     """
     check_writable(path)
-    path = Path(os.path.realpath(path))
+    shown, path = path, Path(os.path.realpath(path))
     if _is_special(path):
-        _write_into(path, write)
+        _write_into(path, shown, write)
         return
     try:
         # Within the length of a name, whatever that of the file.
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}.")
     except OSError as error:
-        raise _cannot(path, error) from error
+        raise _cannot(shown, error) from error
     try:
-        _fill(handle, path, write)
+        _fill(handle, shown, write)
         try:
             if path.exists():
                 shutil.copymode(path, name)
@@ -168,13 +168,13 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
                 os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
             os.replace(name, path)  # noqa: PTH105
         except OSError as error:
-            raise _cannot(path, error) from error
+            raise _cannot(shown, error) from error
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
 
 
-def _fill(handle: int, path: Path, write: Callable[[BinaryIO], object]) -> None:
+def _fill(handle: int, shown: Path, write: Callable[[BinaryIO], object]) -> None:
     """Write to an open file and close it; where the system refuses, that is what is said."""
     output = _Output(handle, "wb")
     try:
@@ -184,19 +184,21 @@ def _fill(handle: int, path: Path, write: Callable[[BinaryIO], object]) -> None:
         refused = error if isinstance(error, OSError) else output.refused
         if refused is None:
             raise
-        raise _cannot(path, refused) from error
+        raise _cannot(shown, refused) from error
     finally:
         output.close()
 
 
-def _write_into(path: Path, write: Callable[[BinaryIO], object]) -> None:
+def _write_into(path: Path, shown: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Write to a device or a pipe, when all of it is there."""
     try:
         # Opening a pipe that nobody reads would wait for ever.
         handle = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except OSError as error:
         if error.errno == errno.ENXIO:
-            raise InputError(Problem("nobody reads from this pipe", str(path), hint="start its reader first")) from None
-        raise _cannot(path, error) from error
+            problem = Problem("nobody reads from this pipe", str(shown), hint="start its reader first")
+            raise InputError(problem) from None
+        raise _cannot(shown, error) from error
     with tempfile.TemporaryFile() as whole:
         try:
             _fill(os.dup(whole.fileno()), Path(tempfile.gettempdir()), write)
@@ -206,10 +208,10 @@ def _write_into(path: Path, write: Callable[[BinaryIO], object]) -> None:
         whole.seek(0)
         if hasattr(os, "set_blocking"):
             os.set_blocking(handle, True)
-        _fill(handle, path, lambda file: shutil.copyfileobj(whole, file))
+        _fill(handle, shown, lambda file: shutil.copyfileobj(whole, file))
 
 
-def _cannot(path: Path, error: OSError) -> RockingError:
+def _cannot(shown: Path, error: OSError) -> RockingError:
     """What to say of a file that cannot be written."""
-    problem = Problem(f"cannot be written: {error.strerror or error}", str(path))
+    problem = Problem(f"cannot be written: {error.strerror or error}", str(shown))
     return Refused(str(problem)) if error.errno in REFUSED else InputError(problem)

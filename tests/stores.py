@@ -1,4 +1,7 @@
-"""Stores under attack: damaged in every way, and written by several processes at once. The tests try some, soak many."""
+"""Stores under attack: damaged in every way, and written by several processes at once.
+
+The tests try some of it, `make soak` hundreds.
+"""
 
 from __future__ import annotations
 
@@ -236,7 +239,8 @@ def journal(place: Path, rng: random.Random, sound: Sound) -> str:
 
 
 DAMAGES = (
-    *map(_bytes, (flips, flips, headers, pages, sectors, swapped, copied, cut, longer)), sql, sql, sql, sql, foreign, journal,
+    *map(_bytes, (flips, flips, headers, pages, sectors, swapped, copied, cut, longer)),
+    *(sql, sql, sql, sql, foreign, journal),
 )  # fmt: skip
 
 

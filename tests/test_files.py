@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import stat
 import sys
+import tempfile
+from pathlib import Path
 
 import pytest
 
@@ -93,3 +96,63 @@ class TestReadBytes:
         with pytest.raises(InputError, match=r"larger than 0\.001 MB"):
             read_bytes(tmp_path / "file", "record file", 1000)
         assert len(read_bytes(tmp_path / "file", "record file", 1001)) == 1001
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has neither there")
+class TestSpecialFiles:
+    def test_a_device_behind_a_link_is_written_to_and_stays(self, tmp_path):
+        link = tmp_path / "a.csv"
+        link.symlink_to("/dev/null")
+        before = Path("/dev/null").stat()
+        write_whole(link, lambda file: file.write(b"1\n"))
+        after = Path("/dev/null").stat()
+        assert stat.S_ISCHR(after.st_mode) and after.st_ino == before.st_ino and link.is_symlink()
+        assert list(tmp_path.iterdir()) == [link]
+
+    @pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has it")
+    def test_a_full_device_is_refused_by_the_system(self, tmp_path):
+        (tmp_path / "a.csv").symlink_to("/dev/full")
+        with pytest.raises(Refused, match=r"a\.csv: cannot be written: No space left"):
+            write_whole(tmp_path / "a.csv", lambda file: file.write(b"1\n"))
+
+    def test_a_pipe_that_is_read_gets_what_is_written(self, tmp_path):
+        pipe = tmp_path / "a.csv"
+        os.mkfifo(pipe)
+        reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+        write_whole(pipe, lambda file: (file.write(b"12345"), file.seek(0), file.write(b"0")))
+        assert os.read(reader, 100) == b"02345" and pipe.is_fifo()
+        os.close(reader)
+
+    def test_a_pipe_that_nobody_reads_is_refused_at_once(self, tmp_path):
+        os.mkfifo(tmp_path / "a.csv")
+        with pytest.raises(InputError, match="nobody reads from this pipe"):
+            write_whole(tmp_path / "a.csv", lambda file: file.write(b"1"))
+
+    def test_a_link_that_leads_back_to_itself_is_refused(self, tmp_path):
+        (tmp_path / "a.csv").symlink_to("b.csv")
+        (tmp_path / "b.csv").symlink_to("a.csv")
+        with pytest.raises(InputError, match="leads back to itself"):
+            write_whole(tmp_path / "a.csv", lambda file: file.write(b"1"))
+        assert (tmp_path / "a.csv").is_symlink()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has it")
+def test_what_the_system_refused_is_said_whatever_the_library_makes_of_it(tmp_path, monkeypatch):
+    full = os.open("/dev/full", os.O_WRONLY)
+    monkeypatch.setattr(tempfile, "mkstemp", lambda **where: (full, str(tmp_path / ".a.csv.x")))
+
+    def library(file):
+        try:
+            file.write(bytes(100_000))
+        except OSError:
+            raise ValueError("inconsistent stream state") from None
+
+    with pytest.raises(Refused, match=r"a\.csv: cannot be written: No space left"):
+        write_whole(tmp_path / "a.csv", library)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_as_long_as_a_name_may_be(tmp_path):
+    path = tmp_path / ("x" * 251 + ".csv")
+    write_whole(path, lambda file: file.write(b"1"))
+    assert path.read_bytes() == b"1"

@@ -73,6 +73,14 @@ class LazyGroup(click.Group):
             raise click.UsageError(f"No such command '{args[0]}': did you mean {close[0]}?", ctx)
         return super().resolve_command(ctx, args)
 
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """Run the program; what the system refuses ends it with a message, in help too."""
+        try:
+            return super().main(*args, **extra)  # a reader that has seen enough ends it quietly there
+        except OSError as error:
+            terminal.error(f"the system refused: {error.strerror or error}")
+            sys.exit(1)
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; a known error ends it with a message on standard error."""
         os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
@@ -94,11 +102,6 @@ class LazyGroup(click.Group):
             ctx.exit(error.exit_code)
         except MemoryError:
             terminal.error("there is not enough memory for this on this machine")
-            ctx.exit(1)
-        except BrokenPipeError:
-            raise  # the reader has seen enough: click ends quietly
-        except OSError as error:
-            terminal.error(f"the system refused: {error.strerror or error}")
             ctx.exit(1)
 
 

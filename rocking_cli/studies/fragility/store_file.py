@@ -64,8 +64,9 @@ def open_store(path: Path) -> sqlite3.Connection:
     try:
         connection.text_factory = lambda text: text.decode(errors="replace")  # what is damaged is told by its checksum
         connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
+        filled = tables(connection)  # before the mark: somebody may write both between two looks
         mark, version = header(connection)
-        if mark != MARK and tables(connection):
+        if filled and mark != MARK:
             raise InputError(Problem("this is another database, not the store of a study", str(path)))
         if version > VERSION:
             hint = "upgrade rocking-cli"

@@ -1,0 +1,187 @@
+"""The file of a store: what is kept, under which name, and what is never touched."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import sys
+from contextlib import closing
+
+import pytest
+
+from rocking_cli.errors import InputError
+from rocking_cli.studies.fragility.store import Store
+from rocking_cli.studies.fragility.store_file import new_name, this_process
+from tests.stores import Sound, command, shown
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    return Sound(tmp_path_factory.mktemp("sound"))
+
+
+@pytest.fixture
+def place(sound, tmp_path):
+    path = tmp_path / "study.db"
+    path.write_bytes(sound.store.read_bytes())
+    return path
+
+
+def names(folder):
+    return sorted(each.name for each in folder.iterdir())
+
+
+def test_a_new_name_has_no_journal_that_waits_for_it(tmp_path):
+    (tmp_path / "study.before.db-journal").touch()
+    (tmp_path / "study.before-2.db").symlink_to("nowhere")
+    assert next(new_name(tmp_path / "study.db", "before")).name == "study.before-3.db"
+
+
+def test_restart_leaves_files_of_others_alone(sound, place):
+    theirs = place.with_name("study.before.db"), place.with_name("study.db.before")
+    for each in theirs:
+        each.write_text("precious", encoding="utf-8")
+    old = place.read_bytes()
+    result = command("fragility", sound.study, "--store", place, "--restart")
+    assert result.exit_code == 0
+    assert f"the store as it was is kept as {place.with_name('study.before-2.db')}" in result.stderr
+    assert all(each.read_text(encoding="utf-8") == "precious" for each in theirs)
+    assert place.with_name("study.before-2.db").read_bytes() == old
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_restart_goes_through_a_link(sound, place, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    target = place.rename(tmp_path / "elsewhere" / "far.db")
+    place.symlink_to(target)
+    old = target.read_bytes()
+    assert command("fragility", sound.study, "--store", place, "--restart").exit_code == 0
+    assert place.is_symlink() and place.resolve() == target
+    assert names(target.parent) == ["far.before.db", "far.db"]
+    assert target.with_name("far.before.db").read_bytes() == old
+
+
+def test_a_file_system_without_second_names(sound, place, monkeypatch):
+    def refuse(*names):
+        raise PermissionError("not here")
+
+    monkeypatch.setattr(os, "link", refuse)
+    old = place.read_bytes()
+    result = command("fragility", sound.study, "--store", place, "--restart", "--json")
+    assert shown(result.stdout) == sound.shown
+    assert names(place.parent) == ["study.before.db", "study.db"]
+    assert place.with_name("study.before.db").read_bytes() == old
+
+
+def test_ended_before_the_first_run_it_has_said_where_the_old_store_is(sound, place, monkeypatch):
+    def end(*arguments):
+        raise KeyboardInterrupt
+
+    old = place.read_bytes()
+    with monkeypatch.context() as patch:
+        patch.setattr("rocking_cli.studies.fragility.campaign.run", end)
+        result = command("fragility", sound.study, "--store", place, "--restart")
+    assert result.exit_code == 130
+    aside = place.with_name("study.before.db")
+    assert str(aside) in result.stderr and aside.read_bytes() == old
+    again = command("fragility", sound.study, "--store", place, "--json")
+    assert shown(again.stdout) == sound.shown
+    assert names(place.parent) == ["study.before.db", "study.db"]
+
+
+def test_the_old_store_stays_where_the_new_one_cannot_be_made(sound, place, monkeypatch):
+    def full(*arguments):
+        error = sqlite3.OperationalError("database or disk is full")
+        error.sqlite_errorcode = sqlite3.SQLITE_FULL
+        raise error
+
+    old = place.read_bytes()
+    monkeypatch.setattr(Store, "_fill", full)
+    result = command("fragility", sound.study, "--store", place, "--restart")
+    assert result.exit_code == 1 and "full" in result.stderr
+    assert place.read_bytes() == old and names(place.parent) == ["study.db"]
+
+
+def test_a_store_without_checksums_is_read_with_a_word_and_taken_over(sound, place):
+    with closing(sqlite3.connect(place, isolation_level=None)) as connection:
+        connection.executescript(
+            "ALTER TABLE run DROP COLUMN checksum; DELETE FROM study WHERE key = 'seal'; PRAGMA user_version = 1"
+        )
+    old = place.read_bytes()
+    looked = command("results", place, "--json")
+    assert looked.exit_code == 0 and shown(looked.stdout) == sound.shown
+    assert "without checksums: damage to its runs would not show" in looked.stderr
+    run = command("fragility", sound.study, "--store", place, "--json")
+    assert shown(run.stdout) == sound.shown and "240 of 240 runs are in the store already" in run.stderr
+    assert place.with_name("study.before.db").read_bytes() == old
+    after = command("results", place, "--json")
+    assert after.exit_code == 0 and not after.stderr
+
+
+def test_a_store_without_checksums_may_be_broken_too(sound, place):
+    with closing(sqlite3.connect(place, isolation_level=None)) as connection:
+        connection.executescript(
+            "ALTER TABLE run DROP COLUMN checksum; PRAGMA user_version = 1; UPDATE sample SET p = 'wide' WHERE id = 2;"
+            "UPDATE run SET outcome = 'fell' WHERE id = 3; UPDATE run SET outcome = 9 WHERE id = 4"
+        )
+    for arguments in (["results", place], ["fragility", sound.study, "--store", place]):
+        result = command(*arguments)
+        assert result.exit_code == 2 and "damaged" in result.stderr
+    with closing(sqlite3.connect(place, isolation_level=None)) as connection:
+        connection.execute("UPDATE sample SET p = 2.0 WHERE id = 2")
+    result = command("results", place)
+    assert result.exit_code == 5 and "2 runs are damaged and left out: run 3 (" in result.stderr
+
+
+def test_a_damaged_run_is_named_and_run_again(sound, place):
+    with closing(sqlite3.connect(place, isolation_level=None)) as connection:
+        connection.execute("UPDATE run SET peak_ratio = 0.1 WHERE id = 53")
+    old = place.read_bytes()
+    named = "1 run is damaged and left out: run 53 (uncertain, sample 0, sine:0.6g:0.8s, level 0.3, polarity -1)"
+    looked = command("results", place, "--json")
+    assert looked.exit_code == 5 and named in looked.stderr and "takes over what is sound" in looked.stderr
+    assert shown(looked.stdout)["finished"] == 239
+    run = command("fragility", sound.study, "--store", place, "--json")
+    assert run.exit_code == 0 and named in run.stderr and "239 of 240 runs are in the store already" in run.stderr
+    assert shown(run.stdout) == sound.shown
+    assert place.with_name("study.before.db").read_bytes() == old
+
+
+def test_who_is_at_work_is_named_while_he_is(sound, place):
+    with Store.writing(place):
+        other = command("fragility", sound.study, "--store", place)
+        assert other.exit_code == 2 and f"another process is at work on this study: {this_process()}" in other.stderr
+        assert "--restart" not in other.stderr
+        anew = command("fragility", sound.study, "--store", place, "--restart")
+        assert anew.exit_code == 2 and "another process is at work" in anew.stderr
+    with closing(sqlite3.connect(place)) as connection:
+        assert not connection.execute("SELECT * FROM study WHERE key = 'at work'").fetchall()
+    assert names(place.parent) == ["study.db"]
+
+
+def test_a_study_that_another_process_begins_meanwhile_is_left_to_it(sound, tmp_path):
+    from rocking_cli.studies.fragility.campaign import prepare
+    from rocking_cli.studies.fragility.study import load_study
+
+    place, study = tmp_path / "study.db", load_study(sound.study)
+    with Store.writing(place) as late, Store.writing(place) as first:
+        assert late.empty and first.empty and not place.exists()
+        prepare(study, first)
+        with pytest.raises(InputError, match="another process is at work"):
+            prepare(study, late)
+    with Store.writing(tmp_path / "other.db") as late:
+        with Store.writing(tmp_path / "other.db") as first:
+            prepare(study, first)
+        with pytest.raises(InputError, match="has begun this study at the same moment"):
+            prepare(study, late)
+    with Store.reading(tmp_path / "other.db") as kept:
+        assert kept.count() == (0, 0)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has neither there")
+def test_a_store_is_no_pipe_and_no_device(sound, tmp_path):
+    os.mkfifo(tmp_path / "pipe.db")
+    for place in (tmp_path / "pipe.db", "/dev/null"):
+        result = command("fragility", sound.study, "--store", place)
+        assert result.exit_code == 2 and "this is a device or a pipe" in result.stderr
+        assert "this is a device or a pipe" in command("results", place).stderr
