@@ -18,7 +18,7 @@ In the tests of a plugin::
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from inspect import cleandoc
@@ -58,7 +58,7 @@ CELLS = 4096  # between rest and there, in each of which a jump would be seen
 ALIKE = 1e-9  # of its size: how near a value must come to what the bodies say
 DRAWN = 2e-3  # how near, over the size of a body, its outlines with their straight sides must come to its inertia
 A_LITTLE = 0.25  # of the critical rotation, in which nothing may go through the ground
-FLUSH = 1e-6  # of the size of the structure: how near to the ground counts as on it
+FLUSH = 1e-8  # of the size of the structure: how near to the ground counts as on it
 GIVEN = 0.625  # a coefficient of restitution that no structure has by itself
 
 
@@ -413,48 +413,33 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
     if not known:
         return
     size = abs(drawn.extent[1] - drawn.extent[0])
-    level = not structure.sketch().ground
-    bodies = structure.bodies()
+    flush = FLUSH * size
+    bodies, level = structure.bodies(), not structure.sketch().ground
     for direction in Direction:
         phi = np.linspace(0.0, A_LITTLE, 9) * _phi_cr(structure, direction)
         motions = structure.motion(phi, direction)
         as_one = _moving_as_one(motions, size)
-        touching: dict[tuple[int, complex], list[Reals]] = {}  # what moves as one, and which copy of it
+        within = f"within {phi[-1]:.4g} rad of the {direction.label} direction: it must turn about the edge of its base"
+        feet: dict[tuple[int, complex], list[Reals]] = {}  # of what moves as one, and of which copy of it
         for part in known:
-            at_rest = np.concatenate(part.outlines)
-            moved = np.array([motions[part.body].carry(corner - part.shift)[0] + part.shift for corner in at_rest])
-            for line in drawn.ground:
-                for start, end in pairwise(line):
-                    place = (moved - start) * abs(end - start) / (end - start)  # along the line, and above it
-                    over = (-FLUSH * size <= place[:, 0].real) & (place[:, 0].real <= abs(end - start) + FLUSH * size)
-                    above = place[over].imag
-                    if level:
-                        lowest = above[:, 0].min(initial=0.0)
-                        _demand(
-                            lowest >= -FLUSH * size,
-                            f"{part.name} reaches {-lowest:.4g} m below the pivot of the {direction.label} direction: "
-                            "it must turn about the edge of its base, or the sketch say where the ground is",
-                        )
-                    above = above[above[:, 0] >= -FLUSH * size]
-                    deep = above.min(initial=0.0)
-                    _demand(
-                        deep >= -FLUSH * size,
-                        f"{part.name} goes {-deep:.4g} m through the ground within {phi[-1]:.4g} rad of the "
-                        f"{direction.label} direction: it must turn about the edge of its base",
-                    )
-                    feet = list(above[above[:, 0] <= FLUSH * size])
-                    touching.setdefault((as_one[part.body], part.shift), []).extend(feet)
-        for (one, _), feet in touching.items():
-            # A base of unknown shape may be wider than what is known; a point is none.
-            wider = any(
-                part.assumed and as_one[part.body] == one and bodies[part.body].inertia > 0 for part in drawn.parts
-            )
-            lift = np.min(feet, axis=0).max() if feet and not wider else 0.0
-            _demand(
-                lift <= FLUSH * size,
-                f"all of the base of {bodies[one].name} leaves the ground, by {lift:.4g} m within {phi[-1]:.4g} rad of "
-                f"the {direction.label} direction: it must turn about the edge of its base",
-            )
+            corners = np.concatenate(part.outlines) - part.shift
+            moved = np.array([motions[part.body].carry(corner)[0] for corner in corners]) + part.shift
+            for above in _heights(moved, drawn.ground, flush):
+                lowest = above[:, 0].min(initial=0.0)
+                _demand(
+                    lowest >= -flush or not level,
+                    f"{part.name} reaches {-lowest:.4g} m below the pivot of the {direction.label} direction: it must "
+                    "turn about the edge of its base, or the sketch say where the ground is",
+                )
+                above = above[above[:, 0] >= -flush]
+                deep = above.min(initial=0.0)
+                _demand(deep >= -flush, f"{part.name} goes {-deep:.4g} m through the ground {within}")
+                feet.setdefault((as_one[part.body], part.shift), []).extend(above[above[:, 0] <= flush])
+        # A base of unknown shape may be wider than what is known; a point is none.
+        wider = {as_one[part.body] for part in drawn.parts if part.assumed and bodies[part.body].inertia > 0}
+        for (one, _), heights in feet.items():
+            lift = np.min(heights, axis=0).max() if heights and one not in wider else 0.0
+            _demand(lift <= flush, f"all of the base of {bodies[one].name} leaves the ground, by {lift:.4g} m {within}")
 
 
 CHECKS: tuple[Callable[[Mechanism], None], ...] = (
@@ -546,6 +531,15 @@ def _size(structure: Mechanism) -> float:
         for direction in Direction
         for body, motion in zip(structure.bodies(), structure.motion(np.zeros(1), direction), strict=True)
     )
+
+
+def _heights(corners: Points, ground: Sequence[Points], flush: float) -> Iterator[Reals]:
+    """Of each straight piece of the ground, the heights above it [m] of the corners that are over it at first."""
+    for line in ground:
+        for start, end in pairwise(line):
+            length = abs(end - start)
+            place = (corners - start) * length / (end - start)  # along the ground, and above it
+            yield place[(-flush <= place[:, 0].real) & (place[:, 0].real <= length + flush)].imag
 
 
 def _moving_as_one(motions: Sequence[RigidMotion], size: float) -> list[int]:
