@@ -218,7 +218,8 @@ def _meet(a: Points, b: Points, c: Points, d: Points) -> Bools:
 
     def side(p: Points, q: Points, r: Points) -> Reals:
         u, v = q - p, r - p
-        return np.sign(u.real * v.imag - u.imag * v.real)
+        turns: Reals = np.sign(u.real * v.imag - u.imag * v.real)
+        return turns
 
     def within(p: Points, q: Points, r: Points, where: Reals) -> Bools:
         u, v = r - p, r - q

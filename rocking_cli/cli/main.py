@@ -91,7 +91,7 @@ class LazyGroup(click.Group):
             with endings.in_order():
                 return super().invoke(ctx)
         except click.ClickException as error:
-            error.message = printable(error.message)  # it quotes what was typed
+            error.message = printable(error.message)  # type: ignore[misc]  # it quotes what was typed
             raise
         except KeyboardInterrupt as stopped:
             terminal.error("interrupted")
