@@ -193,10 +193,13 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
     except yaml.MarkedYAMLError as error:
         said = " ".join(part for part in (error.context, error.problem) if part)
         began, noticed = error.context_mark, error.problem_mark
-        # What is not closed is noticed where the file ends: what matters is where it began.
-        mark = began if began is not None and (noticed is None or not text[noticed.index :].strip()) else noticed
-        if mark is noticed and began is not None and noticed is not None and began.line < noticed.line:
-            said += f" (it begins in line {began.line + 1})"
+        if began is not None and (noticed is None or not text[noticed.index :].strip()):
+            mark: yaml.Mark | None = began  # what is not closed is noticed where the file ends
+        else:
+            mark = noticed
+            said += f" (it begins in line {began.line + 1})" if began and noticed and began.line < noticed.line else ""
+        if mark is not None and not text[mark.index :].strip():
+            raise InputError(Problem(f"not YAML: {said}", file, text.rstrip().count("\n") + 1)) from None
         raise InputError(document.problem(f"not YAML: {said}", mark)) from None
     except ReaderError as error:
         line = len(_LINE_END.findall(text, 0, error.position)) + 1

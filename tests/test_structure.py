@@ -53,7 +53,35 @@ WRONG = {
     "text for a number": ("mechanism: block\nwidth: wide\nheight: 4\n", 2, 8, "width", "must be a number in m, got the text 'wide'"),
     "quoted number": ("mechanism: block\nwidth: '1'\nheight: 4\n", 2, 8, "width", "must be a number"),
     "decimal comma": ("mechanism: block\nwidth: 0,7\nheight: 4\n", 2, 8, "width", "write a decimal point"),
-    "unit in the value": ("mechanism: block\nwidth: 0.7 m\nheight: 4\n", 2, 8, "width", "got the text '0.7 m'"),
+    "unknown unit": ("mechanism: block\nwidth: 700 mmm\nheight: 4\n", 2, 8, "width", "did you mean mm?"),
+    "unit of another kind": ("mechanism: block\nwidth: 700 kg\nheight: 4\n", 2, 8, "width", "700 kg is a mass, not a length"),
+    "unit of a pure number": (
+        "mechanism: symmetric_frame\ncolumn_width: 1\ncolumn_height: 5\nmass_ratio: 1 kg\n", 4, 13, "mass_ratio",
+        "must be a number, got the text '1 kg'",
+    ),
+    "unit in a list": (
+        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0 kg], [1, 3]]\n", 2, 23, "polygon[2][2]", "a mass, not a length",
+    ),
+    "weight for a density": (
+        "mechanism: asymmetric_frame\ncolumn_width: 1\nleft_height: 5\nright_height: 6\nspacing: 4\nbeam_depth: 1\n"
+        "density: 18 kN/m3\ndepth: 1\n", 7, 10, "density", "over 9.80665 m/s2 it is 1835.49 kg/m3",
+    ),
+    "decimal comma and unit": ("mechanism: block\nwidth: 0,7 m\nheight: 4\n", 2, 8, "width", "write a decimal point"),
+    "mapping for a number": ("mechanism: block\nwidth: {a: 1}\nheight: 4\n", 2, 8, "width", "got a mapping"),
+    "whole but beyond all numbers": (
+        f"mechanism: block\nwidth: {'9' * 400}\nheight: 4\n", 2, 8, "width", "beyond the range of numbers",
+    ),
+    "merge key": (BLOCK + "<<: {name: x}\n", 4, 1, "<<", "write the fields out"),
+    "list that is not closed": (BLOCK + "name: [1,\n  2\n", 4, 7, None, "not YAML"),
+    "list that is not closed in time": (BLOCK + "name: [1\ngravity: 9\n", 5, 8, None, "it begins in line 4"),
+    "empty name": (BLOCK + "name: ' '\n", 4, 7, "name", "is empty"),
+    "control character in a name": (BLOCK + 'name: "a\\e[31m"\n', 4, 7, "name", r"got 'a\x1b[31m'"),
+    "turned direction in a name": (BLOCK + 'name: "a\\u202eb"\n', 4, 7, "name", r"got 'a\u202eb'"),
+    "two lines in a name": (BLOCK + 'name: "a\\nb"\n', 4, 7, "name", "in one line"),
+    "feet at different heights": (
+        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0.001], [0.8, 3], [0, 3]]\n", 2, 10, "polygon",
+        "the next is 0.001 m higher",
+    ),
     "mechanism misspelt": ("mechansim: block\nwidth: 1\n", 1, 1, "mechanism", "is mechansim meant to be mechanism?"),
     "truth for a number": ("mechanism: block\nwidth: true\nheight: 4\n", 2, 8, "width", "got true"),
     "nothing for a number": ("mechanism: block\nwidth:\nheight: 4\n", 2, 7, "width", "got nothing"),
@@ -121,6 +149,9 @@ WRONG = {
     "crossing polygon": (
         "mechanism: rigid_body\npolygon: [[0, 0], [1, 3], [1, 0], [0, 3]]\n", 2, 10, "polygon", "sides cross",
     ),
+    "thin polygon": (
+        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [1, 1e-12], [0, 1e-12]]\n", 2, 10, "polygon", "same point",
+    ),
     "flat polygon": ("mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [2, 0]]\n", 2, 10, "polygon", "enclose nothing"),
     "doubled corner": (
         "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [1, 0], [0, 3]]\n", 2, 10, "polygon", "same point",
@@ -142,6 +173,7 @@ def test_a_wrong_file_gets_one_message_at_its_place(case):
     assert (problem.file, problem.line, problem.column, problem.field) == ("file.yaml", line, column, field)
     assert words in str(problem)
     assert problem.excerpt == text.splitlines()[line - 1].replace("\t", " ")
+    assert max(map(len, str(problem).splitlines())) < 200  # long lines and values are cut
 
 
 def test_all_problems_are_listed_at_once_in_the_order_of_the_file():
@@ -236,3 +268,67 @@ def test_a_changed_copy_is_a_new_structure():
     assert thick.uplift(Direction.POSITIVE) == fresh.uplift(Direction.POSITIVE)
     with pytest.raises(ValueError, match="too thin"):
         thin.model_copy(update={"thickness": 0.1})
+
+
+ALIASES = "a: &a [1,1,1,1,1,1,1,1,1,1]\n" + "".join(
+    f"{one}: &{one} [{','.join([f'*{other}'] * 10)}]\n" for other, one in zip("abcdefgh", "bcdefghi", strict=True)
+)
+
+
+def test_aliases_that_stand_for_billions_are_refused_where_they_do():
+    (problem,) = problems(BLOCK + ALIASES)
+    assert problem.field in "fghi" and problem.line == 4 + "abcdefghi".index(problem.field)
+    assert "more than 200000 values" in problem.message and "aliases" in problem.hint
+
+
+def test_an_alias_that_repeats_a_value_is_read():
+    assert parse("mechanism: block\nwidth: &w 1\nheight: *w\n") == Block(name="file", width=1.0, height=1.0)
+
+
+def test_a_control_character_in_the_file_itself_is_placed():
+    (problem,) = problems(BLOCK + "name: a\x1b[31m\n")
+    assert problem.line == 4 and r"\x1b" in problem.message
+
+
+def test_a_file_that_no_terminal_can_spell_gives_a_name_that_it_can(tmp_path):
+    path = tmp_path / "a\x1b[31m\u202e.yaml"
+    try:
+        path.write_text(BLOCK, encoding="utf-8")
+    except OSError:
+        pytest.skip("no such file name here")
+    assert load_structure(path).name == r"a\x1b[31m\u202e"
+
+
+def test_sizes_with_units_are_the_same_structure():
+    assert parse("mechanism: block\nwidth: 700 mm\nheight: 12 ft\ngravity: 981 cm/s2\n") == Block(
+        name="file", width=0.7, height=3.6576, gravity=9.81
+    )
+    assert Block(width="700 mm", height=2.0).model_dump() == Block(width=0.7, height=2.0).model_dump()
+    corners = parse("mechanism: rigid_body\npolygon: [[0, 0 mm], [1 m, 0], [80 cm, 3], [0, 3]]\n").polygon
+    assert corners == [[0.0, 0.0], [1.0, 0.0], [0.8, 3.0], [0.0, 3.0]]
+    arch = "mechanism: arch\nradius: 10\nthickness: 1.5\ninclusion_angle_deg: "
+    assert parse(arch + "157.5 deg\n") == parse(arch + "157.5\n")
+    assert parse(arch + "2.7 rad\n").inclusion_angle_deg == pytest.approx(154.6986, abs=1e-4)
+
+
+def test_a_plugin_takes_units_without_a_line_of_its_own():
+    from typing import ClassVar
+
+    from rocking_cli.core import quantity
+
+    class Sprung(Block):
+        mechanism: ClassVar[str] = "sprung"
+        strength: float = quantity("strength", unit="Pa", example=1e6)
+        moment: float = quantity("moment", unit="N m", example=1.0, default=1.0)
+        corner: tuple[float, float] = quantity("a corner", unit="m", default=(0.0, 0.0))
+
+    made = Sprung(width="1 m", height=2.0, strength="2 MPa", moment="3 N m", corner=("1 cm", 2.0))
+    assert (made.strength, made.moment, made.corner) == (2e6, 3.0, (0.01, 2.0))
+    with pytest.raises(ValueError, match="3 kN is a force, not a pressure"):
+        Sprung(width=1.0, height=2.0, strength="3 kN")
+
+
+@pytest.mark.parametrize(("text", "line"), [("name: [1,\n  2,\n\n", 5), ("name: {", 4), ("name: 'x\n y\n", 4)])
+def test_a_file_that_ends_too_early_has_a_line(text, line):
+    (problem,) = problems(BLOCK + text)
+    assert problem.line == line and "not YAML" in problem.message

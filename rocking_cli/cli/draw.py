@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from rocking_cli.studies.picture import Picture
 
 
-def _ratio(ctx: click.Context, param: click.Parameter, value: float) -> float:
-    if not value > 0:
+def _ratio(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not value > 0:
         raise click.BadParameter(f"{value:g} is not a multiple of phi_cr above 0.", ctx, param)
     return value
 
@@ -24,12 +24,12 @@ def _ratio(ctx: click.Context, param: click.Parameter, value: float) -> float:
 @click.command(short_help="The structure at rest and displaced, with hinges and dimensions.")
 @click.argument("file", required=False, type=click.Path())
 @click.option(
-    "--at", "ratio", type=options.Finite(), default=1.0, show_default=True, metavar="RATIO", callback=_ratio,
-    help="How far it is displaced, as a multiple of phi_cr.",
+    "--at", "ratio", type=options.Finite(), metavar="RATIO", callback=_ratio,
+    help="How far it is displaced, as a multiple of phi_cr.  [default: 1]",
 )  # fmt: skip
 @options.plot("Where to", "[default: FILE with .png, in this folder; none with --json]")
 @options.as_json
-def command(file: str | None, ratio: float, plot: Path | None, as_json: bool) -> None:
+def command(file: str | None, ratio: float | None, plot: Path | None, as_json: bool) -> None:
     """Draw a structure at rest with its dimensions, and displaced in both directions, to scale.
 
     Look at it before you trust a number: is this the mechanism you mean, and were your dimensions read right? Bodies,
@@ -54,6 +54,8 @@ def command(file: str | None, ratio: float, plot: Path | None, as_json: bool) ->
     mechanism = structures.load([file] if file else [])[0]
     shown = _picture(mechanism)
     furthest = min(shown.limit[each] / phi_cr for each, phi_cr in shown.phi_cr.items())
+    if ratio is None:
+        ratio = min(1.0, furthest)  # a stocky body lies on its side before it is there
     if ratio > furthest:
         hint = f"at most {furthest:.4g} times phi_cr"
         raise InputError(Problem(f"{ratio:g} times phi_cr is beyond the end of the mechanism", field="--at", hint=hint))

@@ -82,6 +82,7 @@ def fields(cls: type[Mechanism]) -> list[dict[str, Any]]:
     from pydantic_core import PydanticUndefined
 
     from rocking_cli.core import Mechanism
+    from rocking_cli.units import units_of
 
     found = []
     for key, info in cls.model_fields.items():
@@ -96,6 +97,7 @@ def fields(cls: type[Mechanism]) -> list[dict[str, Any]]:
             {
                 "field": key,
                 "unit": extra.get("unit", ""),
+                "units": list(units_of(extra.get("unit", ""))),
                 "symbol": extra.get("symbol", ""),
                 "bounds": ", ".join(bounds),
                 "required": info.is_required(),
@@ -138,6 +140,9 @@ def _one(cls: type[Mechanism], package: str, as_json: bool) -> None:
         cells,
         explained=True,
     )
+    kinds = dict.fromkeys(tuple(row["units"]) for row in rows if len(row["units"]) > 1)
+    taken = "; ".join(", ".join(units) for units in kinds)
+    terminal.result(f"A bare number is in the unit of its field; taken with their unit, as in 800 mm: {taken}.")
     terminal.result(f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'by nobody yet'}")
     if cls.caution:
         terminal.result(f"caution:  {cls.caution}")

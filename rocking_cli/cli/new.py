@@ -8,6 +8,8 @@ import click
 
 from rocking_cli.cli import options, terminal
 
+UNITS = "A bare number is in the unit in brackets; others go with the number, such as 800 mm, 12 ft or 2.1 t/m3."
+
 
 @click.command(short_help="Print a commented structure file that works as it is.")
 @click.argument("name")
@@ -55,7 +57,7 @@ def template(cls: Any) -> str:
     """
     from rocking_cli.cli.mechanisms import fields
 
-    lines = [f"# {cls.title}", f"# {cls.source}", f"mechanism: {cls.mechanism}"]
+    lines = [f"# {cls.title}", f"# {cls.source}", f"# {UNITS}", f"mechanism: {cls.mechanism}"]
     missing = []
     for row in fields(cls):
         unit = f" [{row['unit']}]" if row["unit"] else ""

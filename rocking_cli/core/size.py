@@ -49,7 +49,7 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
         elif size < SMALLEST and 0 < length < SMALLEST:
             odd.append((says, f"{1000 * length:g} m"))
     if not odd:
-        return f"it is {size:.3g} m large: are the units right? A bare number is in m"
+        return f"it is {size:.3g} m large: are the units right?"
     return (
         f"{', '.join(says for says, _ in odd)}: {'was' if len(odd) == 1 else 'were'} "
         f"{' and '.join(meant for _, meant in odd)} meant?"

@@ -103,7 +103,7 @@ def doubts(content: Content) -> list[str]:
         said.append(content.mechanism.caution)
     size = doubtful_size(content.mechanism)
     if size is not None:
-        said.append(f"The sizes look wrong. {size[0].upper()}{size[1:]}{'' if size.endswith('?') else '.'}")
+        said.append(f"Check the sizes and their units: {size}{'' if size.endswith('?') else '.'}")
     etas = [content.equivalence[direction].eta for direction in Direction]
     if min(etas) <= 0:
         said.append(

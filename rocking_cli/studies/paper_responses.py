@@ -42,7 +42,8 @@ def record_response(motion: GroundMotion) -> PaperFigure:
     alone = fit.alone(motion)
     time = np.arange(motion.npts, dtype=np.float64) * motion.dt
     ground = Panel("ground motion", "time [s]", r"$\ddot u_g$ [g]")
-    ground.curves.append(Curve(motion.name, time, motion.acceleration / STANDARD_GRAVITY, thin=True))
+    called = motion.name.replace("$", r"\$")  # labels and captions hold mathematics: a $ in a name is a $
+    ground.curves.append(Curve(called, time, motion.acceleration / STANDARD_GRAVITY, thin=True))
     ground.curves.append(Curve("sine pulse in it", time, alone.acceleration / STANDARD_GRAVITY))
     panels = [[ground]]
     for what, shaking in (("the record", motion), ("the pulse alone", alone)):
@@ -52,7 +53,7 @@ def record_response(motion: GroundMotion) -> PaperFigure:
         panels.append([panel])
     caption = (
         f"An asymmetric frame with the paper's uplift accelerations (0.197 g positive, 0.241 g negative) under "
-        f"{motion.name}, and under its sine pulse of {fit.pulse.amplitude / STANDARD_GRAVITY:.3g} g and "
+        f"{called}, and under its sine pulse of {fit.pulse.amplitude / STANDARD_GRAVITY:.3g} g and "
         f"{fit.pulse.period:.3g} s alone, which captures {fit.captured:.0%} of the record's energy. The rest of the "
         "geometry is ours: left column 9 m, right 15.91 m high, 2.606 m wide, axes 5.4 m apart, beam 4.5 m deep."
     )
