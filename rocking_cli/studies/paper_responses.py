@@ -12,6 +12,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import fit_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.studies.paper_figures import Curve, Panel, PaperFigure, Reals, make
+from rocking_cli.text import printable
 
 A, OMEGA, ETA = 2.0, 5.0, 0.9  # of the pulse of Figure 15, and the restitution that all its structures are given
 OVER = r"$\phi/\phi_{cr}$"
@@ -42,7 +43,7 @@ def record_response(motion: GroundMotion) -> PaperFigure:
     alone = fit.alone(motion)
     time = np.arange(motion.npts, dtype=np.float64) * motion.dt
     ground = Panel("ground motion", "time [s]", r"$\ddot u_g$ [g]")
-    called = motion.name.replace("$", r"\$")  # labels and captions hold mathematics: a $ in a name is a $
+    called = printable(motion.name).replace("$", r"\$")  # labels and captions hold mathematics: a $ in a name is a $
     ground.curves.append(Curve(called, time, motion.acceleration / STANDARD_GRAVITY, thin=True))
     ground.curves.append(Curve("sine pulse in it", time, alone.acceleration / STANDARD_GRAVITY))
     panels = [[ground]]
