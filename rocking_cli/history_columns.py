@@ -39,7 +39,7 @@ def blocks(histories: Mapping[str, History], motion: GroundMotion | None, rows: 
     """
     runs = list(histories.values())
     longest = max(runs, key=lambda run: run.time.size)
-    shaken = motion.acceleration if motion is not None else np.zeros(0)
+    shaken = motion.kept.acceleration if motion is not None else np.zeros(0)
     for start in range(0, longest.time.size, rows):
         part = slice(start, min(start + rows, longest.time.size))
         columns = [longest.time[part], _padded(shaken, part, 0.0) / STANDARD_GRAVITY]

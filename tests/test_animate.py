@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +30,7 @@ ACCEL = EXAMPLES / "accel.csv"
 
 def film(amplitude, model="nonlinear", name="sine"):
     motion = parse_pulse(f"sine:{amplitude}g:0.9s").sampled()
-    motion = GroundMotion(name, motion.dt, motion.acceleration)
+    motion = replace(motion, name=name)
     return Film(picture(BLOCK), respond(BLOCK, motion, models=(model,))[model], motion)
 
 

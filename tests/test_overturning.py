@@ -23,6 +23,7 @@ from rocking_cli.dynamics.model import build_models
 from rocking_cli.dynamics.pulse_response import closed_form, exact_pulse
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.pulses import COARSE
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
 from rocking_cli.structure import load_structure
 from rocking_cli.studies.boundaries import boundaries
@@ -88,7 +89,7 @@ class TestMap:
         found = overturning_map(structure, SINE, np.array([3.0, 6.0]), np.array([0.8, 2.0, 4.0, 9.0]))
         for row, ag in enumerate(found.accelerations * STANDARD_GRAVITY):
             for column, period in enumerate(found.periods):
-                motion = replace(SINE, amplitude=float(ag), period=float(period)).sampled()
+                motion = replace(SINE, amplitude=float(ag), period=float(period)).sampled(COARSE)
                 alone = respond(BLOCK, motion, models=("nonlinear",))["nonlinear"]
                 assert (found.impacts[row, column] >= 0) == alone.overturned
                 if alone.overturned:

@@ -149,8 +149,7 @@ class TestEvery:
         assert not segments or ends[-1] == pulse.duration
 
     @each
-    def test_samples_are_the_pulse_and_chords_converge_at_second_order(self, pulse):
-        errors = []
+    def test_samples_are_the_pulse_to_second_order(self, pulse):
         for count in (50, 100, 200):
             motion = pulse.sampled(count)
             assert motion.duration == pytest.approx(pulse.duration, rel=1e-14)
@@ -159,11 +158,10 @@ class TestEvery:
             assert motion.acceleration[0] == pulse.acceleration(np.array(0.0))
             assert motion.acceleration[-1] == pulse.acceleration(np.array(pulse.duration))
             chords = np.interp(here, motion.dt * np.arange(motion.npts), motion.acceleration)
-            errors.append(np.abs(chords - pulse.acceleration(here)).max() / A)
-        if pulse.name == "rectangular":
-            assert errors == [0, 0, 0]
-        else:
-            assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(2, abs=0.1)
+            off = np.abs(chords - pulse.acceleration(here)).max()
+            bend = np.abs(np.diff(pulse.acceleration(motion.dt * np.arange(motion.npts)), 2)).max()
+            # A chord is off by an eighth of it, samples by a twelfth, and by half of that more beside a peak.
+            assert bend / 20 <= off <= bend / 6
         assert (motion.format, motion.name, motion.unit) == ("pulse", str(pulse), "g")
 
     @each

@@ -42,7 +42,7 @@ class History:
     outcome : Outcome
         How the motion ended.
     time : ndarray, shape (n,)
-        Times of the samples [s].
+        Times of the samples [s]: those of the ground motion, or every so many-th of them, see its `every`.
     phi, rate : ndarray, shape (n,)
         Signed rotation [rad] and its rate [rad/s]; NaN after overturning.
     ratio : ndarray, shape (n,)
@@ -184,17 +184,19 @@ def follow(
     """
     from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
 
-    dt = motion.dt if motion is not None else RELEASE_DT
+    every = motion.every if motion is not None else 1
+    dt = every * motion.dt if motion is not None else RELEASE_DT  # between the samples that are kept
     npts = _samples(motion) if motion is not None else 0
-    samples = max(npts, 1) + round(tail / dt)
+    samples = max(npts, 1) + round(min(tail / dt, 2.0 * MOST_SAMPLES))
     if samples > MOST_SAMPLES:
-        raise InputError(f"dt = {dt:g} s makes {samples:,} samples with a tail of {tail:g} s: is dt in seconds?")
+        many = f"{samples:,}" if samples < MOST_SAMPLES + npts else f"more than {MOST_SAMPLES:,}"
+        raise InputError(f"dt = {dt:g} s makes {many} samples with a tail of {tail:g} s: is dt in seconds?")
     phi, rate, impacts = np.empty(samples), np.empty(samples), np.empty((most_kept, 3))
     runs, marks = np.zeros((1, kernels.RUN_COLUMNS)), np.empty((1, kernels.MARKS))
     runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE]] = 1.0
     runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = np.nan
     runs[0, kernels.START] = model.q(release)
-    lay_out([model], [motion]).run(runs, marks, rtol=rtol, phi=phi, rate=rate, impacts=impacts)
+    lay_out([model], [motion]).run(runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
     (mark,) = marks
     status, ended = int(mark[kernels.STATUS]), float(mark[kernels.ENDED])
     if status == kernels.STALLED:
@@ -230,6 +232,6 @@ def follow(
 
 
 def _samples(motion: GroundMotion) -> int:
-    """Samples of the horizontal component that cover both."""
+    """Samples of the horizontal component that are kept and cover both components."""
     longest = motion.vertical.duration if motion.vertical is not None else 0.0
-    return max(motion.npts, ceil(longest / motion.dt) + 1)
+    return (max(motion.npts, ceil(longest / motion.dt) + 1) - 1) // motion.every + 1

@@ -482,6 +482,7 @@ def follow(
     start,
     rtol,
     most_impacts,
+    every,
     phi_out,
     rate_out,
     impacts,
@@ -502,6 +503,7 @@ def follow(
     exact = linear and v.size == 0
     slow_dt = SLOW / max(numbers[0, P], numbers[1, P])
     last, v_last = u.size - 1, v.size - 1
+    out_dt = every * dt
 
     d = 1 if start < 0 else 0
     s = 1.0 - 2.0 * d
@@ -520,14 +522,16 @@ def follow(
     while True:
         if resting and v.size == 0:  # quiet: on to the last sample before the ground lifts it
             while k < last and stays(numbers, u[k] * factor) and stays(numbers, u[k + 1] * factor):
-                if k < phi_out.size:
-                    phi_out[k] = rate_out[k] = 0.0
+                if k < every * phi_out.size and k % every == 0:
+                    phi_out[k // every] = rate_out[k // every] = 0.0
+                    drawn = k // every + 1
                 k += 1
             t = k * dt
-        if shaken and k < phi_out.size:  # t is the time of sample k
+        if shaken and k < every * phi_out.size and k % every == 0:  # t is the time of sample k
             phi, speed = (q, 1.0) if linear else angle(angles, numbers, d, q)
-            phi_out[k], rate_out[k] = s * phi, s * w * speed
-            drawn = k + 1
+            drawn = k // every
+            phi_out[drawn], rate_out[drawn] = s * phi, s * w * speed
+            drawn += 1
         shaken = k < last or j < v_last
         if resting and not shaken:
             phi_out[drawn:] = rate_out[drawn:] = 0.0
@@ -591,7 +595,7 @@ def follow(
                 ground = Ground(s * u0, s * ramp, g, grade)
                 began, state, step = tau, State(q, w, f), h
                 event, tau, (q, w, f), h = fly(forces, law, ground, t, tau, end, state, h, rtol, marks)
-                if not shaken and drawn * dt <= t + tau and drawn < phi_out.size:
+                if not shaken and drawn * out_dt <= t + tau and drawn < phi_out.size:
                     drawn = draw(
                         linear,
                         numbers,
@@ -605,7 +609,7 @@ def follow(
                         state,
                         step,
                         rtol,
-                        dt,
+                        out_dt,
                         drawn,
                         phi_out,
                         rate_out,
@@ -668,6 +672,7 @@ def run(
     v_ahead,
     rtol,
     most_impacts,
+    every,
     phi_out,
     rate_out,
     impacts,
@@ -703,8 +708,10 @@ def run(
         Relative local error of a step.
     most_impacts : int
         When to give up after the end of the record.
+    every : int
+        Of how many samples of the ground motion one is kept of the history.
     phi_out, rate_out : ndarray, shape (samples,)
-        Signed rotation [rad] and rate [rad/s] of the last history at its samples, to be filled; NaN after
+        Signed rotation [rad] and rate [rad/s] of the last history at the samples kept, to be filled; NaN after
         overturning.
     impacts : ndarray, shape (most, 3)
         Time [s], sign of the direction that ends and rate before [rad/s] of its first impacts, to be filled.
@@ -751,6 +758,7 @@ def run(
             what[START],
             rtol,
             most_impacts,
+            every,
             phi_out,
             rate_out,
             impacts,

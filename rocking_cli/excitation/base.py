@@ -33,11 +33,13 @@ class GroundMotion:
     points : ndarray of int, optional
         Indexes of the samples that were recorded, where the others lie on straight lines between these; without it
         all were.
+    every : int
+        Of how many samples a history keeps one: a pulse is sampled more finely than its history need be shown.
 
     Raises
     ------
     InputError
-        If there are fewer than two samples, a sample or dt is not finite, or dt is not positive.
+        If there are fewer than two samples, a sample or dt is not finite, dt is not positive, or `every` is below 1.
     """
 
     name: str
@@ -47,6 +49,7 @@ class GroundMotion:
     format: str = "array"
     vertical: GroundMotion | None = None
     points: NDArray[np.intp] | None = None
+    every: int = 1
 
     def __post_init__(self) -> None:
         samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)
@@ -56,6 +59,8 @@ class GroundMotion:
             raise InputError(f"{self.name}: sample {int(np.flatnonzero(~np.isfinite(samples))[0]) + 1} is not a number")
         if not (np.isfinite(self.dt) and self.dt > 0):
             raise InputError(f"{self.name}: the sample interval must be positive, got {self.dt} s")
+        if self.every < 1:
+            raise InputError(f"{self.name}: a history keeps one of at least 1 sample, got {self.every}")
         object.__setattr__(self, "acceleration", samples)
 
     @property
@@ -72,6 +77,13 @@ class GroundMotion:
     def pga(self) -> float:
         """Peak ground acceleration, in units of standard gravity."""
         return float(np.abs(self.acceleration).max() / STANDARD_GRAVITY)
+
+    @property
+    def kept(self) -> GroundMotion:
+        """The motion at the samples that a history keeps, to be shown beside it."""
+        if self.every == 1:
+            return self
+        return replace(self, dt=self.every * self.dt, acceleration=self.acceleration[:: self.every], every=1)
 
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion with every acceleration multiplied by `factor`, named so.

@@ -221,6 +221,7 @@ def ratio_trace(film: Film) -> tuple[Reals, Reals]:
 
 def ground_trace(motion: GroundMotion) -> tuple[Reals, Reals]:
     """Times [s] and accelerations [g] of a ground motion, as many as can be seen."""
+    motion = motion.kept
     shown = visible(motion.acceleration)
     return shown.astype(np.float64) * motion.dt, motion.acceleration[shown] / STANDARD_GRAVITY
 

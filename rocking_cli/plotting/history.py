@@ -80,6 +80,7 @@ def draw_history(
 
 def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit | None) -> None:
     """Draw what there is of the record up to the end of the picture [s], and the pulse over it."""
+    motion = motion.kept
     ground = motion.acceleration[: int(min(end, motion.duration) / motion.dt) + 2] / STANDARD_GRAVITY
     shown = visible(ground)
     color = style.INK if pulse is None else style.RECORD

@@ -85,6 +85,7 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dic
 
 def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BINS) -> dict[str, Any]:
     """The ground acceleration over time [g], and the pulses in it."""
+    motion = motion.kept
     ground = motion.acceleration / STANDARD_GRAVITY
     shown = visible(ground, bins)
     look = "record" if fits else "trace"

@@ -170,7 +170,7 @@ def equivalent(
         )
         peak = answer.peak_ratio
     longest = max(len(run.time) for run in [history, *(each.history for each in members)])
-    tau = ground.dt * block.p * np.arange(longest, dtype=np.float64)
+    tau = ground.kept.dt * block.p * np.arange(longest, dtype=np.float64)
     return EquivalentResponses(tuple(members), a, omega, kappa, polarity, direction, peak, history, tau)
 
 

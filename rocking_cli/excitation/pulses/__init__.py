@@ -9,11 +9,11 @@ from dataclasses import fields
 from rocking_cli import plugins
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.pulses.base import Pulse, Segment
+from rocking_cli.excitation.pulses.base import COARSE, Pulse, Segment
 from rocking_cli.excitation.records.units import UNITS
 from rocking_cli.plugins import did_you_mean
 
-__all__ = ["Pulse", "PulseShapes", "Segment", "parse_pulse"]
+__all__ = ["COARSE", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 
 GROUP = "rocking.pulses"
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?", re.ASCII)

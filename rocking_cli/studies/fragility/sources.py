@@ -12,7 +12,7 @@ from rocking_cli.errors import InputError, Problem, renamed
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
-from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.excitation.pulses import COARSE, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.studies.fragility.definition import RecordEntry
 
@@ -58,7 +58,7 @@ class Source:
         """The motion, unscaled. Raises `InputError` if it cannot be read."""
         if self.path is None:
             assert self.entry.pulse is not None
-            return parse_pulse(self.entry.pulse).sampled()
+            return parse_pulse(self.entry.pulse).sampled(COARSE)
         asked = self.entry
         try:
             motion = read_record(self.path, dt=asked.dt, units=asked.units, channel=asked.channel)
