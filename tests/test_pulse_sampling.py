@@ -46,18 +46,12 @@ def peak_by_formula(pulse: Pulse) -> float:
     t, y, s, peak, end = 0.0, None, 1, 0.0, pulse.duration
     while True:
         if y is None:  # at rest: on to where the ground lifts it
-            later = grid[grid > t]
-            lifting = [
-                (
-                    brentq(beyond, max(a, t), b, args=(sign,), xtol=1e-15)
-                    if beyond(max(a, t), sign) < 0
-                    else max(a, t),
-                    sign,
-                )
-                for sign in (1, -1)
-                for b in later[(-sign * ground[grid > t] > 9.81 * tan(ALPHA))][:1]
-                for a in [b - grid[1]]
-            ]
+            lifting = []
+            for sign in (1, -1):
+                for b in grid[(grid > t) & (-sign * ground > 9.81 * tan(ALPHA))][:1]:
+                    a = max(b - grid[1], t)
+                    at = a if beyond(a, sign) >= 0 else brentq(beyond, a, b, args=(sign,), xtol=1e-15)
+                    lifting.append((at, sign))
             if not lifting:
                 return peak
             t, s = min(lifting)
@@ -80,8 +74,15 @@ def peak_by_formula(pulse: Pulse) -> float:
         turns.direction = -1
         stop = end if t < end else t + 60 / P
         found = solve_ivp(
-            slopes, (t, stop), y, "DOP853", rtol=1e-12, atol=1e-16, events=(lands, turns, falls), max_step=(stop - t) / 50,
-        )  # fmt: skip
+            slopes,
+            (t, stop),
+            y,
+            "DOP853",
+            rtol=1e-12,
+            atol=1e-16,
+            events=(lands, turns, falls),
+            max_step=(stop - t) / 50,
+        )
         peak = max([peak, *(z[0] / ALPHA for z in found.y_events[1]), found.y[0, -1] / ALPHA])
         if found.t_events[2].size:
             return float("inf")

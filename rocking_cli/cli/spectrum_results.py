@@ -96,6 +96,8 @@ def _columns(results: Results) -> dict[str, Sequence[object]]:
         add("2 pi/p [s]", each.periods.tolist())
         add("scale", nothing if blocks else each.scales.tolist())
         add("R of the block [m]", each.scales.tolist() if blocks else nothing)
+        if any(other.shape.own is not None for other in results.spectra):
+            add("lambda", each.uplifts.tolist())
         if not results.one:
             add("motions", each.followed.tolist())
             add("overturned share", each.share.tolist())
@@ -130,6 +132,8 @@ def _spectrum_json(results: Results, each: Spectrum) -> dict[str, Any]:
         "p": None if blocks else structure.p,
         "lambda": structure.lambda_,
         "eta": structure.eta,
+        "alike": each.shape.own is None,
+        "lambdas": each.uplifts.tolist() if each.shape.own is not None else None,
         "size": each.periods.tolist(),
         "scale": None if blocks else each.scales.tolist(),
         "R": each.scales.tolist() if blocks else None,
@@ -176,6 +180,12 @@ def _print_table(results: Results, each: Spectrum) -> None:
         f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
         f"{structure.eta:.4g}{'' if structure.eta_given else FROM_KINEMATICS}, under {results.shaking}"
     )
+    if each.shape.own is not None:
+        ends = (f"at {each.uplifts[k]:.4g} g at scale {each.scales[k]:.3g}" for k in (0, -1))
+        terminal.result(
+            "Masses or loads that do not grow with it change how it rocks: every size was built and followed by itself."
+            f" Uplift is {' and '.join(ends)}."
+        )
     if not results.one:
         terminal.result("Median and fractiles of the peak phi/phi_cr; overturning counts as larger than any.")
     terminal.table("", heads, rows, numbers=range(len(heads)))

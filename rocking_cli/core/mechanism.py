@@ -39,6 +39,7 @@ ANSWERS = (
     "critical_rotation", "restitution_from_kinematics", "eta",
 )  # fmt: skip
 """The methods of `Mechanism` in which a plugin says or overrides what its mechanics is."""
+POWERS = {"m": 1, "m2": 2, "m3": 3}  # of a length, by the unit of a field
 
 
 def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
@@ -114,6 +115,13 @@ def in_unit(value: Any, unit: str) -> Any:
     if wrong:
         raise ValidationError.from_exception_data("quantity", wrong)
     return found
+
+
+def _multiplied(value: Any, factor: float) -> Any:
+    """A number, or every number of a list, times a factor; what is no number stays."""
+    if isinstance(value, (list, tuple)):
+        return type(value)(_multiplied(each, factor) for each in value)
+    return value * factor if isinstance(value, float) else value
 
 
 class DirectionalRestitution(BaseModel):
@@ -202,6 +210,32 @@ class Mechanism(BaseModel, ABC):
         """What a subclass says of its own mechanics is guarded: whatever fails there is an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
         guard(cls, ANSWERS, _failed)
+
+    def enlarged(self, factor: float) -> Self:
+        """A structure of another size: every field in m, m2 or m3 is multiplied, all else stays.
+
+        Parameters
+        ----------
+        factor : float
+            On every length, > 0.
+
+        Returns
+        -------
+        Mechanism
+            Masses and loads that are given as such do not grow with it, so that it need not behave alike.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            If a field is then out of its bounds.
+        """
+        changed = {}
+        for key, field in type(self).model_fields.items():
+            unit = field.json_schema_extra.get("unit") if isinstance(field.json_schema_extra, dict) else None
+            power = POWERS.get(str(unit))
+            if power is not None:
+                changed[key] = _multiplied(getattr(self, key), factor**power)
+        return self.model_copy(update=changed)
 
     @abstractmethod
     def bodies(self) -> Sequence[Body]:

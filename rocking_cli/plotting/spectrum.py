@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from textwrap import shorten
 from typing import Any
 
@@ -142,14 +142,31 @@ def _log_ticks(axis: Axis, ratio: float) -> None:
 
 def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
     """Above, the scale of the structure if there is only one, or R of the blocks if there are only these."""
-    own = [each.shape for each in spectra if each.shape.slenderness is None]
+    own = [each for each in spectra if each.shape.slenderness is None]
     if len(own) > 1:
         return
-    shape = own[0] if own else spectra[0].shape
-    above = axes.secondary_xaxis("top", functions=(shape.scales, shape.periods))  # type: ignore[arg-type]
+    of = own[0] if own else spectra[0]
+    both: tuple[Callable[[Reals], Reals], ...] = (of.shape.scales, of.shape.periods)
+    if of.shape.own is not None:  # known at the sizes that were built
+        both = _between(of.periods, of.scales, 2.0), _between(of.scales, of.periods, 0.5)
+    above = axes.secondary_xaxis("top", functions=both)  # type: ignore[arg-type]
     above.set_xlabel("scale (1: as given)" if own else "size R of the blocks [m]", fontsize=style.LABEL)
     _log_ticks(above.xaxis, spectra[0].scales[-1] / spectra[0].scales[0])
     above.tick_params(labelsize=8, colors=style.INK)
+
+
+def _between(x: Reals, y: Reals, power: float) -> Callable[[Reals], Reals]:
+    """y of x between points of a curve, straight in logarithms; beyond them as this power of x."""
+    known = np.log(x)
+
+    def at(values: Reals) -> Reals:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            place = np.log(values)
+        inside = np.clip(place, known[0], known[-1])
+        result: Reals = np.exp(np.interp(inside, known, np.log(y)) + power * (place - inside))
+        return result
+
+    return at
 
 
 def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None) -> list[Line2D | Patch]:

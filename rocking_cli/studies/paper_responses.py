@@ -92,9 +92,9 @@ def equivalent_vulnerability() -> PaperFigure:
         block = equivalent_block(structure).positive
         pulse = Sine(A * block.lambda_ * structure.gravity, 2 * pi / (OMEGA * block.p))
         motion = pulse.sampled()
-        shown = motion.kept
-        time = np.arange(shown.npts, dtype=np.float64) * shown.dt
-        pulses.curves.append(Curve(name, time, shown.acceleration / STANDARD_GRAVITY))
+        drawn = motion.kept
+        time = np.arange(drawn.npts, dtype=np.float64) * drawn.dt
+        pulses.curves.append(Curve(name, time, drawn.acceleration / STANDARD_GRAVITY))
         run = respond(structure, motion, models=("nonlinear",), tail=SHOWN / block.p)["nonlinear"]
         curve = _followed(name, run, block.p)
         shown = curve.x <= SHOWN

@@ -10,13 +10,15 @@ import numpy as np
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.registry import Registry
-from rocking_cli.studies.shaken import Integers, Progress, Reals, Shaken, parse_shape, shaken
+from rocking_cli.studies.shaken import Integers, Progress, Reals, Shaken, parse_shape, shaken, uplift
+from rocking_cli.studies.sizes import Sizes
 
 SAME = 1e-9  # relative difference below which a size is that of the structure as given
+TOGETHER = 50  # sizes of their own in one call: their tables are in memory at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,10 +31,14 @@ class Shape:
         At scale 1; its direction is the one with the smaller uplift acceleration, whose p measures sizes.
     slenderness : float, optional
         alpha [rad] of a block whose R is 1 m at scale 1, so that its scale is R in m; None for a structure as given.
+    own : Sizes, optional
+        The structures of other sizes, where loads that do not grow with them make them rock otherwise; None where shape
+        alone decides.
     """
 
     structure: Shaken
     slenderness: float | None = None
+    own: Sizes | None = None
 
     @property
     def period(self) -> float:
@@ -40,11 +46,15 @@ class Shape:
         return 2 * pi / self.structure.p
 
     def scales(self, periods: Reals) -> Reals:
-        """The factors on every length that give 2 pi/p these values [s]: p^2 goes as one over a length."""
+        """The factors on every length that give 2 pi/p these values [s]: with shape alone p^2 goes as one over it."""
+        if self.own is not None:
+            return np.array([self.own.scale(period) for period in periods.tolist()])
         return np.square(periods / self.period)
 
     def periods(self, scales: Reals) -> Reals:
         """2 pi/p at these scales [s]."""
+        if self.own is not None:
+            return np.array([self.own.period(scale) for scale in scales.tolist()])
         return self.period * np.sqrt(scales)
 
 
@@ -58,7 +68,7 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None) -
     model : {"nonlinear", "linear1", "linear2"}
         Its equation of motion.
     eta : float, optional
-        Coefficient of restitution of every impact; without it the structure's own, which does not change with size.
+        Coefficient of restitution of every impact; without it the structure's own.
 
     Raises
     ------
@@ -66,7 +76,10 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None) -
         If the structure does not stand, or its restitution is not known.
     """
     # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
-    return Shape(shaken(mechanism, model, parse_shape("sine"), eta=eta))
+    found = shaken(mechanism, model, parse_shape("sine"), eta=eta)
+    given = mechanism if eta is None else mechanism.model_copy(update={"restitution": eta})
+    sizes = Sizes(given, model, found.direction)
+    return Shape(found, own=None if sizes.are_alike() else sizes)
 
 
 def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> Shape:
@@ -111,6 +124,14 @@ class Spectrum:
     def periods(self) -> Reals:
         """2 pi/p of the sizes [s]."""
         return self.shape.periods(self.scales)
+
+    @property
+    def uplifts(self) -> Reals:
+        """Uplift acceleration over g of the sizes, in the direction that measures them, shape (n,)."""
+        own, model = self.shape.own, self.shape.structure.model.name
+        if own is None:
+            return np.full(self.scales.size, self.shape.structure.lambda_)
+        return np.array([uplift(own.block(scale), model) for scale in self.scales.tolist()])
 
     @property
     def given(self) -> int | None:
@@ -199,21 +220,61 @@ def spectra(
     Notes
     -----
     Every length of the structure is multiplied by the scale: slenderness, uplift, critical rotation and restitution
-    stay, and p goes as one over the square root of the scale. Makris and Konstantinidis (2003) draw the spectrum of a
-    block of given slenderness over 2 pi/p.
+    stay, and p goes as one over the square root of the scale. Where they do not stay, because masses or loads are given
+    that do not grow with it, every size is built and followed as a structure of its own. Makris and Konstantinidis
+    (2003) draw the spectrum of a block of given slenderness over 2 pi/p.
     """
     if not motions:
         raise InputError("there is no ground motion")
     found = []
     for shape in shapes:
         scales, signs = _scales(shape, periods), _signs(shape, polarities)
-        runs = Runs.every(1, len(motions), polarities=signs, sizes=scales.tolist())
-        answer = respond_many(
-            [shape.structure.model], motions, runs, threads=threads, only_peaks=True, progress=progress
-        )
-        peaks = np.where(answer.failed, np.nan, np.where(answer.overturned, inf, answer.peak_ratio))
-        found.append(Spectrum(shape, scales, peaks.reshape(len(motions), len(signs), scales.size).max(axis=1)))
+        follow = _of_one_shape if shape.own is None else _each_its_own
+        found.append(Spectrum(shape, scales, follow(shape, scales, motions, signs, threads, progress).max(axis=1)))
     return found
+
+
+def _of_one_shape(
+    shape: Shape,
+    scales: Reals,
+    motions: Sequence[GroundMotion],
+    signs: Sequence[int],
+    threads: int | None,
+    progress: Progress | None,
+) -> Reals:
+    """Peaks under every motion, polarity and scale: one model, whose motion at another size is that at another pace."""
+    runs = Runs.every(1, len(motions), polarities=signs, sizes=scales.tolist())
+    return _peaks([shape.structure.model], motions, runs, threads, progress).reshape(-1, len(signs), scales.size)
+
+
+def _each_its_own(
+    shape: Shape,
+    scales: Reals,
+    motions: Sequence[GroundMotion],
+    signs: Sequence[int],
+    threads: int | None,
+    progress: Progress | None,
+) -> Reals:
+    """Likewise, with a model for every scale."""
+    assert shape.own is not None
+    parts = []
+    for start in range(0, scales.size, TOGETHER):
+        models = [shape.own.build(scale) for scale in scales[start : start + TOGETHER].tolist()]
+        runs = Runs.every(len(models), len(motions), polarities=signs)
+        peaks = _peaks(models, motions, runs, threads, progress).reshape(len(models), -1, len(signs))
+        parts.append(np.moveaxis(peaks, 0, -1))
+    return np.concatenate(parts, axis=-1)
+
+
+def _peaks(
+    models: Sequence[Model],
+    motions: Sequence[GroundMotion],
+    runs: Runs,
+    threads: int | None,
+    progress: Progress | None,
+) -> Reals:
+    answer = respond_many(models, motions, runs, threads=threads, only_peaks=True, progress=progress)
+    return np.where(answer.failed, np.nan, np.where(answer.overturned, inf, answer.peak_ratio))
 
 
 def work(shapes: Sequence[Shape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:
@@ -225,7 +286,8 @@ def _scales(shape: Shape, periods: Reals) -> Reals:
     scales = np.sort(shape.scales(periods))
     if shape.slenderness is not None:
         return scales
-    return np.union1d([scale for scale in scales if not isclose(scale, 1.0, rel_tol=SAME)], 1.0)
+    near = SAME if shape.own is None else 10 * SAME  # a scale that is sought is right to less
+    return np.union1d([scale for scale in scales if not isclose(scale, 1.0, rel_tol=near)], 1.0)
 
 
 def _signs(shape: Shape, polarities: Sequence[int]) -> Sequence[int]:

@@ -1,0 +1,106 @@
+"""A structure at other sizes: whether shape alone decides how it rocks, and each of them where it does not."""
+
+from __future__ import annotations
+
+from math import exp, isclose, log, pi
+
+from pydantic import ValidationError
+
+from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.dynamics.model import Model, ModelName, build_model
+from rocking_cli.errors import InputError, MechanismError, Problem
+
+ALIKE = 1e-7  # relative difference, of what shape alone decides where it does, that solvers and rounding may make
+TRIED = ((0.1, 0.5, 0.9), (10.0, 2.0, 1.1))  # scales at which that is looked at: of each row the first that there is
+CLOSE = 1e-10  # relative error of 2 pi/p where a size is sought
+STEPS = 50  # of the search
+
+
+class Sizes:
+    """The sizes of a structure.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure at scale 1, with the restitution that holds.
+    model : {"nonlinear", "linear1", "linear2"}
+        Its equation of motion.
+    direction : Direction
+        The one whose p measures sizes.
+    """
+
+    def __init__(self, mechanism: Mechanism, model: ModelName, direction: Direction) -> None:
+        self.mechanism, self.model, self.direction = mechanism, model, direction
+        self._known: dict[float, Equivalence] = {}
+
+    def at(self, scale: float) -> Mechanism:
+        """The structure with every length multiplied. Raises `InputError` if there is none."""
+        try:
+            return self.mechanism.enlarged(scale)
+        except ValidationError as error:
+            first = error.errors()[0]
+            field = ".".join(str(part) for part in first["loc"])
+            message = f"{self._named(scale)} cannot be built: {field}: {first['msg']}"
+            raise InputError(Problem(message, hint="ask for other sizes")) from None
+
+    def equivalence(self, scale: float) -> Equivalence:
+        """Its equivalent blocks at a scale. Raises as `at`, or `MechanismError` if it does not stand."""
+        if scale not in self._known:
+            try:
+                self._known[scale] = equivalent_block(self.at(scale))
+            except MechanismError as error:
+                raise MechanismError(f"{self._named(scale)}: {error}") from error
+        return self._known[scale]
+
+    def block(self, scale: float) -> EquivalentBlock:
+        """The equivalent block of the direction that measures sizes, at a scale. Raises as `equivalence`."""
+        return self.equivalence(scale)[self.direction]
+
+    def build(self, scale: float) -> Model:
+        """Its model at a scale. Raises as `equivalence`, or if its restitution is not known."""
+        mechanism = self.at(scale)
+        return build_model(mechanism.model_copy(update={"name": self._named(scale)}), self.model)
+
+    def period(self, scale: float) -> float:
+        """2 pi/p at a scale [s]."""
+        return 2 * pi / self.block(scale).p
+
+    def scale(self, period: float) -> float:
+        """The scale at which 2 pi/p has a value [s]. Raises as `equivalence`, or if there is none."""
+        one, off = 0.0, log(period / self.period(1.0))  # in logarithms, where 2 pi/p grows about half as the scale
+        two = 2 * off
+        for _ in range(STEPS):
+            missing = log(period / self.period(exp(two)))
+            if abs(missing) < CLOSE:
+                return exp(two)
+            slope = (off - missing) / (two - one) if two != one else 0.5
+            one, off, two = two, missing, two + missing / (slope if 0.1 < slope < 2 else 0.5)
+        raise InputError(f"{self.mechanism.name}: no size of it was found with 2 pi/p = {period:.4g} s")
+
+    def are_alike(self) -> bool:
+        """Whether every size rocks as this one, but for the time it takes: no load or mass is given that stays."""
+        own = _shape_of(self.equivalence(1.0), 1.0)
+        for scales in TRIED:
+            for scale in scales:
+                try:
+                    other = _shape_of(self.equivalence(scale), scale)
+                except InputError:  # out of the bounds of its fields
+                    continue
+                except MechanismError:
+                    return False
+                if not all(isclose(a, b, rel_tol=ALIKE) for a, b in zip(own, other, strict=True)):
+                    return False
+                break
+        return True
+
+    def _named(self, scale: float) -> str:
+        return f"{self.mechanism.name or self.mechanism.mechanism} at scale {scale:.4g}"
+
+
+def _shape_of(equivalence: Equivalence, scale: float) -> list[float]:
+    """What does not change with size where shape alone decides."""
+    return [
+        value
+        for block in (equivalence[direction] for direction in Direction)
+        for value in (block.lambda_, block.phi_cr, block.lambda_lin, block.eta, block.p * scale**0.5)
+    ]
