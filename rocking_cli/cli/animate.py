@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import click
 
 from rocking_cli.cli import motions, options, shaking, terminal
+from rocking_cli.errors import INCOMPLETE, InputError, Problem, RockingError
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
@@ -27,7 +28,7 @@ def _fps(ctx: click.Context, param: click.Parameter, value: float) -> float:
 
 
 @click.command(short_help="The mechanism moving under a ground motion: GIF or page.")
-@click.argument("file", required=False, type=click.Path())
+@click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @options.shaking
 @options.reading
 @options.scaling("1", "-1")
@@ -45,10 +46,12 @@ def _fps(ctx: click.Context, param: click.Parameter, value: float) -> float:
     help="Frames a second of a GIF.",
 )  # fmt: skip
 @options.as_json
+@click.pass_context
 def command(
-    file: str | None,
-    record: str | None,
-    pulse: str | None,
+    ctx: click.Context,
+    files: tuple[str, ...],
+    records: tuple[str, ...],
+    pulses: tuple[str, ...],
     units: str | None,
     dt: float | None,
     channel: str | None,
@@ -68,6 +71,9 @@ def command(
     slider, works without a network, and shows all of the motion. Bodies move as they are, not enlarged; what is shown
     is their motion relative to the ground.
 
+    Several motions get a file each, with the motion in its name, a row each, and with --json an object a line. One that
+    cannot be used is reported, the others are shown, and the exit code is 5.
+
     Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
 
     \b
@@ -75,68 +81,99 @@ def command(
       rocking animate frame.yaml --record accel.csv --out frame.html
       rocking animate arch.yaml --pulse sine:0.5g:1.2s --out arch.gif --speed 0.5
     """
-    if (record is None) == (pulse is None):
+    if bool(records) == bool(pulses):
         raise click.UsageError("Give --record FILE or --pulse PULSE, and not both.")
-    if record is None and any(value is not None for value in (units, dt, channel)):
+    if not records and any(value is not None for value in (units, dt, channel)):
         raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
     motions.check_scaling(scale, target_pga, target_pgv)
+    paths, missing = motions.find(records)
+    several = len(paths) + missing + len(pulses) > 1
+    if not paths and not pulses:
+        ctx.exit(InputError.exit_code)
     from rocking_cli.cli import responses, structures
-    from rocking_cli.files import keep_apart, write_whole
+    from rocking_cli.cli.work import say_if_compiling
+    from rocking_cli.dynamics.history import RTOL, TAIL
+    from rocking_cli.files import keep_apart
     from rocking_cli.studies.film import Film
     from rocking_cli.studies.picture import picture
 
-    keep_apart([("--out", out)], [file, record])
-    mechanism = structures.load([file] if file else [])[0]
+    inputs = [*files, *(str(path) for path in paths)]
+    keep_apart([("--out", out)], inputs)
+    mechanism = shaking.structure(files, records)[1]
     blocks = shaking.equivalence(mechanism)
-    if record is not None:
-        motion = shaking.read("record", record, dt, units, channel)
-    else:
-        assert pulse is not None
-        motion = shaking.make(pulse)[1]
-    motion = motion.scaled(int(polarity) * shaking.judge(motion, blocks, scale, target_pga, target_pgv))
-    name = cast("ModelName", model)
-    history = shaking.respond(mechanism, motion, (name,), None, 10.0, 1e-9)[name]
-    film = Film(picture(mechanism), history, motion)
-    title = structures.label(mechanism)
+    given, refused = shaking.gather(
+        paths, pulses, (dt, units, channel), (scale, target_pga, target_pgv), blocks, several=several
+    )
+    if not given:
+        ctx.exit(InputError.exit_code)
+    places = motions.separate(out, given, several=several)
+    keep_apart([("--out", place) for place in places], inputs)
+    say_if_compiling()
+    models, drawn = shaking.prepare(mechanism, (cast("ModelName", model),)), picture(mechanism)
+    rows = []
+    for each, place in zip(given, places, strict=True):
+        assert place is not None
+        motion = each.motion.scaled(int(polarity) * each.factor)
+        try:
+            (history,) = shaking.respond(models, motion, None, TAIL, RTOL).values()
+            film = Film(drawn, history, motion)
+            found = _write(place, film, structures.label(mechanism), speed, fps)
+        except RockingError as error:
+            if not several:
+                raise
+            terminal.error(f"{motion.name}: {error}")
+            refused += 1
+            continue
+        rows.append([motion.name, film.verdict])
+        if as_json:
+            terminal.print_json(
+                {
+                    "mechanism": mechanism.mechanism,
+                    "name": mechanism.name,
+                    "record": motion.name,
+                    "model": model,
+                    "outcome": history.outcome.name.lower(),
+                    "peak_ratio": history.peak_ratio,
+                    "restitution": responses.restitution_json(mechanism, blocks),
+                    "verdict": film.verdict,
+                    "start": film.start,
+                    "end": film.end,
+                    **found,
+                    "file": str(place),
+                }
+            )
+        elif not several:
+            terminal.result(film.verdict)
+    if several and not as_json:
+        terminal.table(structures.label(mechanism), ["under", model], rows)
+    if rows and not as_json:
+        terminal.result(responses.restitution_used(mechanism, blocks))
+    if missing or refused:
+        ctx.exit(INCOMPLETE)
+
+
+def _write(out: Path, film: Film, title: str, speed: float | None, fps: float) -> dict[str, float | int | None]:
+    """Write the page or the GIF; how fast it shows the motion, and the number of frames of a GIF."""
+    from rocking_cli.files import write_whole
+
+    frames = None
     if out.suffix.lower() == ".html":
         from rocking_cli.plotting.animation import animation_page
 
         speed = speed or 1.0
         page = animation_page(film, title, speed)
         write_whole(out, lambda stream: stream.write(page.encode()))
-        frames = None
     else:
         speed = speed or max(1.0, (film.end - film.start) / LONGEST)
-        frames = _write_gif(out, film, f"{title}, under {motion.name}", speed, fps)
+        frames = _write_gif(out, film, f"{title}, under {film.motion.name}", speed, fps)
     terminal.note(f"wrote {out}")
-    if as_json:
-        terminal.print_json(
-            {
-                "mechanism": mechanism.mechanism,
-                "name": mechanism.name,
-                "record": motion.name,
-                "model": model,
-                "outcome": history.outcome.name.lower(),
-                "peak_ratio": history.peak_ratio,
-                "restitution": responses.restitution_json(mechanism, blocks),
-                "verdict": film.verdict,
-                "start": film.start,
-                "end": film.end,
-                "speed": speed,
-                "frames": frames,
-                "file": str(out),
-            }
-        )
-        return
-    terminal.result(film.verdict)
-    terminal.result(responses.restitution_used(mechanism, blocks))
+    return {"speed": speed, "frames": frames}
 
 
 def _write_gif(out: Path, film: Film, title: str, speed: float, fps: float) -> int:
     """Write the GIF; its number of frames."""
     import numpy as np
 
-    from rocking_cli.errors import InputError, Problem
     from rocking_cli.files import write_whole
     from rocking_cli.plotting.animation import frame_time, write_gif
 

@@ -20,7 +20,12 @@ NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
 @click.command(short_help="The paper's figures, computed anew: picture and data.")
 @click.argument("number", type=click.Choice([*NUMBERS, "all"]))
 @click.option(
-    "--record", type=click.Path(), metavar="FILE", help="For Figure 14; else the shipped example, a synthetic motion."
+    "--record",
+    "records",
+    multiple=True,
+    type=click.Path(),
+    metavar="FILE",
+    help="For Figure 14; else the shipped example, a synthetic motion.",
 )
 @options.reading
 @click.option("--folder", type=click.Path(file_okay=False), default=".", show_default="this one", help="Where to.")
@@ -35,7 +40,7 @@ NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
 @options.as_json
 def command(
     number: str,
-    record: str | None,
+    records: tuple[str, ...],
     units: str | None,
     dt: float | None,
     channel: str | None,
@@ -53,8 +58,11 @@ def command(
 
     Source: DeJong and Dimitrakopoulos (2014). Geometries that the scan has lost are our choice; the captions say so.
     """
-    if number not in ("14", "all") and record is not None:
+    if number not in ("14", "all") and records:
         raise click.UsageError("--record is for Figure 14.")
+    if len(records) > 1:
+        raise click.UsageError(f"Figure 14 is of one record, and {len(records)} are given: {', '.join(records)}.")
+    record = records[0] if records else None
     motion = _motion(record, dt, units, channel) if number in ("14", "all") else None
     wanted = [int(each) for each in (NUMBERS if number == "all" else [number])]
     place = Path(folder)

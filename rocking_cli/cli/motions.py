@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.doubts import Doubt
     from rocking_cli.excitation.measures import Measures
+    from rocking_cli.excitation.pulses import Pulse
 
 FEW = 3  # motions of which each gets its own lines; of more there is a summary
 
@@ -65,10 +67,23 @@ def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
 
 
 class Scaled(NamedTuple):
-    """A ground motion as read, and the factor on it."""
+    """A ground motion as read, the factor on it, and the pulse or the file that it comes from."""
 
     motion: GroundMotion
     factor: float
+    pulse: Pulse | None = None
+    file: Path | None = None
+
+
+def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
+    """Refuse records in the place of a structure: the shell puts the files there that a bare pattern stands for."""
+    endings = {Path(place).suffix.lower() for place in records} - {"", ".yaml", ".yml"}
+    strays = [file for file in files if Path(file).suffix.lower() in endings]
+    if strays:
+        raise click.UsageError(
+            f"{strays[0]} stands where a structure is expected: is it a record? Give --record before each, or a "
+            f"pattern in quotes: --record '*{Path(strays[0]).suffix}'."
+        )
 
 
 def find(places: Sequence[str]) -> tuple[list[Path], int]:
@@ -92,6 +107,7 @@ def gather(
     reading: tuple[float | None, str | None, str | None],
     asked: tuple[float | None, float | None, float | None],
     p: float,
+    whom: str = "the smallest size",
 ) -> tuple[list[Scaled], int]:
     """Read records and make pulses; say what is doubtful about them, and report those that cannot be used.
 
@@ -107,6 +123,8 @@ def gather(
         `scale`, `target_pga` and `target_pgv` of `factor`.
     p : float
         Frequency parameter of the smallest structure that they shake [rad/s].
+    whom : str
+        What to call that structure.
 
     Returns
     -------
@@ -125,24 +143,27 @@ def gather(
     from rocking_cli.excitation.pulses import parse_pulse
     from rocking_cli.excitation.records import read_record
 
-    made = [pulse.sampled() for pulse in dict.fromkeys(parse_pulse(text) for text in pulses)]
-    sources: list[Path | GroundMotion] = [*paths, *made]
+    sources: list[Path | Pulse] = [*paths, *dict.fromkeys(parse_pulse(text) for text in pulses)]
     dt, units, channel = reading
     found: list[Scaled] = []
     doubtful: list[tuple[GroundMotion, list[Doubt]]] = []
     for source in sources:
         try:
-            motion = read_record(source, dt=dt, units=units, channel=channel) if isinstance(source, Path) else source
+            if isinstance(source, Path):
+                each = Scaled(read_record(source, dt=dt, units=units, channel=channel), 1.0, file=source)
+            else:
+                each = Scaled(source.sampled(), 1.0, pulse=source)
+            motion = each.motion
             measured = measure(motion)
-            each = Scaled(motion, factor(motion, measured, *asked))
+            each = each._replace(factor=factor(motion, measured, *asked))
         except InputError as error:
             terminal.error(str(error))
             terminal.plugin_traceback(error)
             continue
         if isinstance(source, Path):
             if any(motion.name == other.motion.name for other in found):
-                each = Scaled(replace(motion, name=f"{motion.name} ({source.parent})"), each.factor)
-            doubtful.append((each.motion, doubts(motion, measured) + coarse_for(motion, p, "the smallest size")))
+                each = each._replace(motion=replace(motion, name=f"{motion.name} ({source.parent})"))
+            doubtful.append((each.motion, doubts(motion, measured) + coarse_for(motion, p, whom)))
         found.append(each)
     _introduce(found)
     _warn_of([each for each in doubtful if each[1]])
@@ -152,15 +173,15 @@ def gather(
 def _introduce(found: Sequence[Scaled]) -> None:
     """Say which ground motions these are."""
     if len(found) <= FEW:
-        for motion, by in found:
+        for motion, by, *_ in found:
             scaled = f", scaled by {by:.6g}: PGA = {abs(by) * motion.pga:.4g} g" if by != 1 else ""
             terminal.note(
                 f"motion: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:.6g} s, "
                 f"PGA = {motion.pga:.4g} g{scaled}"
             )
         return
-    pga = [abs(by) * motion.pga for motion, by in found]
-    scaled = " as scaled" if any(by != 1 for _, by in found) else ""
+    pga = [abs(each.factor) * each.motion.pga for each in found]
+    scaled = " as scaled" if any(each.factor != 1 for each in found) else ""
     terminal.note(f"motions: {len(found)}, PGA from {min(pga):.3g} to {max(pga):.3g} g{scaled}")
 
 
@@ -174,3 +195,19 @@ def _warn_of(doubtful: Sequence[tuple[GroundMotion, list[Doubt]]]) -> None:
     said = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
     names = shorten(", ".join(motion.name for motion, _ in doubtful), 200, placeholder=" ...")
     terminal.warning(f"{len(doubtful)} records are doubtful: {said}; `rocking record` says why: {names}")
+
+
+def separate(path: Path | None, chosen: Sequence[Scaled | None], *, several: bool) -> Sequence[Path | None]:
+    """Where the file of each motion goes: of several beside the one asked for, `out-accel.csv` for `out.csv`."""
+    if path is None or not several:
+        return [path] * len(chosen)
+    taken: dict[str, Path] = {}
+    for each in chosen:
+        assert each is not None
+        name = each.motion.name if each.file is None else each.motion.name.replace(each.file.name, each.file.stem, 1)
+        word = "-".join(re.findall(r"[\w.+]+", name)) or "motion"
+        count = 1
+        while (place := f"{path.stem}-{word}{f'-{count}' if count > 1 else ''}{path.suffix}").casefold() in taken:
+            count += 1
+        taken[place.casefold()] = path.with_name(place)
+    return list(taken.values())

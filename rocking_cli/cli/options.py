@@ -97,14 +97,15 @@ def _in_order(*decorators: Decorator) -> Decorator:
 
 shaking: Decorator = _in_order(
     click.option(
-        "--record",
-        type=click.Path(),
-        metavar="FILE",
-        help="Ground motion: text, or a data centre's format; - is standard input.",
+        "--record", "records", multiple=True, metavar="PLACE",
+        help="A ground motion, - for standard input, or a pattern in quotes: 'records/*.AT2'. May be repeated.",
     ),
-    click.option("--pulse", metavar="PULSE", help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD."),
-)
-"""One ground motion: `record` or `pulse`."""
+    click.option(
+        "--pulse", "pulses", multiple=True, metavar="PULSE",
+        help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD. May be repeated.",
+    ),
+)  # fmt: skip
+"""Ground motions, one or several: `records` or `pulses`."""
 
 reading: Decorator = _in_order(
     click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import motions, options, shaking, terminal
+from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
     from rocking_cli.core import Equivalence, Mechanism
@@ -19,10 +20,11 @@ POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 
 
 @click.command(short_help="A document to hand over: one page with all that there is to say.")
-@click.argument("file", required=False, type=click.Path())
+@click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @click.option(
-    "--record", "records", multiple=True, type=click.Path(), metavar="FILE", help="Ground motion; may be repeated."
-)
+    "--record", "records", multiple=True, metavar="PLACE",
+    help="A ground motion, or a pattern in quotes for several: 'records/*.AT2'. May be repeated.",
+)  # fmt: skip
 @click.option(
     "--pulse", "pulses", multiple=True, metavar="PULSE", help="A pulse, such as sine:0.6g:0.8s; may be repeated."
 )
@@ -36,7 +38,7 @@ POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 @click.pass_context
 def command(
     ctx: click.Context,
-    file: str | None,
+    files: tuple[str, ...],
     records: tuple[str, ...],
     pulses: tuple[str, ...],
     units: str | None,
@@ -55,7 +57,8 @@ def command(
     the drawing, the parameters, the response to each ground motion, the pulses and the overturning map, the error of
     the equivalent block, and the inputs and versions to compute it again. Without a ground motion, what needs none.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m. A record that cannot be used is
+    reported, the others are in the report, and the exit code is 5.
 
     \b
     Example:
@@ -74,14 +77,23 @@ def command(
     from rocking_cli.report.content import gather, steps
 
     if out is None and not as_json:
-        out = Path(f"{Path(file).stem if file else 'rocking'}.html")
+        out = Path(f"{Path(files[0]).stem if files else 'rocking'}.html")
         check_writable(out)
-    keep_apart([("--out", out)], [file, *records])
-    mechanism, source = _structure(file)
+    paths, bad = motions.find(records)
+    keep_apart([("--out", out)], [*files, *(str(path) for path in paths)])
+    mechanism, source = _structure(files, records)
     blocks = shaking.equivalence(mechanism)
     asked = scale, target_pga, target_pgv
-    given = [_record(each, blocks, (dt, units, channel), asked) for each in records]
+    given = []
+    for path in paths:
+        try:
+            given.append(_record(str(path), blocks, (dt, units, channel), asked))
+        except InputError as error:
+            terminal.error(str(error))
+            bad += 1
     given += [_pulse(each, blocks, asked) for each in pulses]
+    if bad and not given:
+        ctx.exit(InputError.exit_code)
     say_if_compiling()
     with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
@@ -96,17 +108,19 @@ def command(
         terminal.note(f"wrote {out} ({len(page) / 1e6:.2g} MB)")
     if as_json:
         terminal.print_json(_as_json(content))
-        return
-    from rocking_cli.report.words import in_a_sentence
+    else:
+        from rocking_cli.report.words import in_a_sentence
 
-    terminal.result(in_a_sentence(content))
+        terminal.result(in_a_sentence(content))
+    if bad:
+        ctx.exit(INCOMPLETE)
 
 
-def _structure(file: str | None) -> tuple[Mechanism, File]:
+def _structure(files: tuple[str, ...], records: tuple[str, ...]) -> tuple[Mechanism, File]:
     from rocking_cli.cli import structures
     from rocking_cli.report.content import File
 
-    mechanism = structures.load([file] if file else [])[0]
+    file, mechanism = shaking.structure(files, records)
     path = Path(file or structures.HERE)
     if file is None and not path.exists():
         return mechanism, File("default block", structures.DEFAULT.encode())

@@ -1,8 +1,10 @@
-"""A structure and the ground motion that shakes it: read or made, judged, scaled, and responded to."""
+"""A structure and the ground motions that shake it: read or made, judged, scaled, and responded to."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import motions, terminal
@@ -10,10 +12,27 @@ from rocking_cli.cli import motions, terminal
 if TYPE_CHECKING:
     from rocking_cli.core import Equivalence, Mechanism
     from rocking_cli.dynamics.history import History
-    from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.dynamics.model import Model, ModelName
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulses import Pulse
+
+
+def structure(files: Sequence[str], records: Sequence[str]) -> tuple[str | None, Mechanism]:
+    """The one structure that a command is of, and its file; None for that of this folder or the default."""
+    import click
+
+    from rocking_cli.cli import structures
+    from rocking_cli.errors import InputError
+
+    if len(files) > 1:
+        motions.check_strays(files, records)
+        raise click.UsageError(f"This is of one structure, and {len(files)} are given: {', '.join(files)}.")
+    try:
+        return (files[0] if files else None), structures.load(files)[0]
+    except InputError:
+        motions.check_strays(files, records)
+        raise
 
 
 def equivalence(mechanism: Mechanism) -> Equivalence:
@@ -27,7 +46,7 @@ def equivalence(mechanism: Mechanism) -> Equivalence:
         raise MechanismError(f"{mechanism.name}: {error}") from error
 
 
-def read(what: str, file: str, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
+def read(what: str, file: str | Path, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
     """Read a motion and say what was read; `what` it is to be called."""
     from rocking_cli.excitation.records import read_record
 
@@ -100,21 +119,52 @@ def _warn(motion: GroundMotion, measured: Measures, blocks: Equivalence) -> None
     motions.warn(motion, doubts(motion, measured) + coarse_for(motion, p))
 
 
-def respond(
-    mechanism: Mechanism,
-    motion: GroundMotion | None,
-    models: tuple[ModelName, ...],
-    release: float | None,
-    tail: float,
-    rtol: float,
-) -> dict[ModelName, History]:
-    """The histories of a structure; an error names it."""
-    from rocking_cli.cli.work import say_if_compiling
-    from rocking_cli.dynamics import history
+def gather(
+    paths: Sequence[Path],
+    pulses: Sequence[str],
+    reading: tuple[float | None, str | None, str | None],
+    asked: tuple[float | None, float | None, float | None],
+    blocks: Equivalence,
+    *,
+    several: bool,
+    vertical: tuple[str, float | None, str | None] | None = None,
+) -> tuple[list[motions.Scaled], int]:
+    """The motions that shake a structure, and how many of those asked for cannot be used.
+
+    A single one is introduced in full, and an error in it ends the command. Of `several` each is reported by itself.
+    `vertical` is the file of the vertical component of a single one, with its own interval and channel.
+    """
+    if several:
+        p = max(blocks.positive.p, blocks.negative.p)
+        return motions.gather(paths, pulses, reading, asked, p, "this structure")
+    dt, units, channel = reading
+    pulse, file = None, None
+    if pulses:
+        pulse, motion = make(pulses[0])
+    else:
+        file = paths[0]
+        motion = read("record", file, dt, units, channel)
+    if vertical is not None:
+        place, own, part = vertical
+        motion = replace(motion, vertical=read_vertical(place, dt, own, units, part))
+    return [motions.Scaled(motion, judge(motion, blocks, *asked), pulse, file)], 0
+
+
+def prepare(mechanism: Mechanism, names: tuple[ModelName, ...]) -> list[Model]:
+    """The models of a structure, to be followed under any number of motions; an error names it."""
+    from rocking_cli.dynamics.model import build_models
     from rocking_cli.errors import MechanismError
 
-    say_if_compiling()
     try:
-        return history.respond(mechanism, motion, models=models, release=release, tail=tail, rtol=rtol)
+        return build_models(mechanism, names)
     except MechanismError as error:
         raise MechanismError(f"{mechanism.name}: {error}") from error
+
+
+def respond(
+    models: Sequence[Model], motion: GroundMotion | None, release: float | None, tail: float, rtol: float
+) -> dict[ModelName, History]:
+    """The histories of the models under one motion."""
+    from rocking_cli.dynamics.history import follow
+
+    return {model.name: follow(model, motion, release=release or 0.0, tail=tail, rtol=rtol) for model in models}

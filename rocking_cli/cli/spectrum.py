@@ -188,13 +188,7 @@ def _check(
         )
     if not records and any(value is not None for value in reading):
         raise click.UsageError("--units, --dt and --channel describe records: give --record PLACE.")
-    endings = {Path(place).suffix.lower() for place in records} - {"", ".yaml", ".yml"}
-    strays = [file for file in files if Path(file).suffix.lower() in endings]
-    if strays:  # the shell has put the files in the place of a pattern
-        raise click.UsageError(
-            f"{strays[0]} stands where a structure is expected: is it a record? Give --record before each, or a "
-            f"pattern in quotes: --record '*{Path(strays[0]).suffix}'."
-        )
+    motions.check_strays(files, records)
 
 
 def _shapes(files: tuple[str, ...], slenderness: tuple[float, ...], model: ModelName, eta: float | None) -> list[Shape]:

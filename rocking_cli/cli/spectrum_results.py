@@ -103,8 +103,8 @@ def _columns(results: Results) -> dict[str, Sequence[object]]:
             add("overturned share", each.share.tolist())
             for q in results.fractiles:
                 add(f"{q:g}-fractile of peak phi/phi_cr", each.fractile(q).tolist())
-        for peaks, (motion, _) in zip(each.peak_ratio, results.motions, strict=True):
-            add(f"peak phi/phi_cr under {motion.name}", peaks.tolist())
+        for peaks, under in zip(each.peak_ratio, results.motions, strict=True):
+            add(f"peak phi/phi_cr under {under.motion.name}", peaks.tolist())
     return columns  # type: ignore[return-value]
 
 
@@ -117,7 +117,7 @@ def _json(results: Results) -> dict[str, Any]:
         "motions": [
             {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt, "pga": motion.pga}
             | {"scale": factor}
-            for motion, factor in results.motions
+            for motion, factor, *_ in results.motions
         ],
         "spectra": [_spectrum_json(results, each) for each in results.spectra],
     }

@@ -1,0 +1,178 @@
+"""Several ground motions in one call of `respond`, `animate` and `report`."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from rocking_cli.cli.main import main
+from rocking_cli.excitation.records import read_record
+from tests.conftest import EXAMPLES
+
+FRAME = str(EXAMPLES / "frame.yaml")
+ACCEL = EXAMPLES / "accel.csv"
+BLOCK = str(EXAMPLES / "block.yaml")
+
+
+def run(*arguments, code=0):
+    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    assert "Traceback" not in result.stderr
+    return result
+
+
+def lines(*arguments, code=0):
+    return [json.loads(line) for line in run(*arguments, "--json", code=code).stdout.splitlines()]
+
+
+@pytest.fixture
+def records(tmp_path):
+    """Three records in a folder, a pattern for them, and a bad file beside it."""
+    motion = read_record(ACCEL)
+    (tmp_path / "r").mkdir()
+    for name, factor in (("east", 0.1), ("north", 1.0), ("west", 6.0)):
+        rows = (f"{motion.dt * i!r},{a!r}" for i, a in enumerate((factor * motion.acceleration).tolist()))
+        (tmp_path / "r" / f"{name}.csv").write_text("t,a [m/s2]\n" + "\n".join(rows), encoding="utf-8")
+    (tmp_path / "bad.csv").write_text("t,accel_g\n0,0\n0.01,x\n", encoding="utf-8")
+    return "r/*.csv"
+
+
+class TestRespond:
+    def test_every_record_is_answered_with_the_object_it_has_alone(self, records):
+        asked = ("respond", FRAME, "--polarity", "both", "--target-pga", "0.3", "--impacts")
+        together = lines(*asked, "--record", records)
+        alone = [lines(*asked, "--record", f"r/{name}.csv")[0] for name in ("east", "north", "west")]
+        assert together == alone
+        assert lines(*asked, *(word for each in ("east", "west") for word in ("--record", f"r/{each}.csv"))) == [
+            alone[0],
+            alone[2],
+        ]
+
+    def test_a_row_each_and_how_many_overturn_it(self, records):
+        text = run("respond", BLOCK, "--record", records, "--model", "linear2,nonlinear").stdout
+        rows = {line.split()[0]: line.split()[1:] for line in text.splitlines() if ".csv" in line}
+        objects = {each["record"]["name"]: each for each in lines("respond", BLOCK, "--record", records)}
+        assert list(rows) == list(objects) == ["east.csv", "north.csv", "west.csv"]
+        for name, (pga, *cells) in rows.items():
+            assert pga == f"{objects[name]['record']['pga']:.4g}"
+            for model, cell in zip(
+                ("linear2", "nonlinear"), " ".join(cells).replace("no uplift", "-").split(), strict=True
+            ):
+                found = objects[name]["responses"][model]
+                if found["overturned"]:
+                    assert cell == "overturns"
+                else:
+                    assert cell == ("-" if found["uplift_time"] is None else f"{found['peak_ratio']:.4g}")
+        assert {cell for row in rows.values() for cell in row[1:]} >= {"overturns", "uplift"}
+        assert "By the nonlinear model 1 of 3 motions overturn it." in text
+        assert (
+            "none of 2 motions overturns it"
+            in run("respond", FRAME, "--pulse", "sine:0.1g:1s", "--pulse", "ricker:0.1g:1s").stdout
+        )
+
+    def test_both_polarities_and_the_pulses_in_them_have_rows_of_their_own(self, records):
+        both = run("respond", FRAME, "--record", records, "--polarity", "both").stdout
+        assert both.count(".csv, reversed") == 3 and both.count(".csv") == 6
+        pulses = run("respond", FRAME, "--record", records, "--with-pulse", "sine", "--target-pga", "0.3").stdout
+        assert pulses.count("its sine pulse alone") == 3
+
+    def test_a_file_for_each(self, records, tmp_path):
+        asked = ("respond", FRAME, "--record", records, "--model", "linear1")
+        run(*asked, "--out", "o.csv", "--plot", "p.png")
+        run("respond", FRAME, "--record", "r/north.csv", "--model", "linear1", "--out", "alone.csv")
+        names = {each.name for each in tmp_path.iterdir()} - {"r", "bad.csv", "alone.csv"}
+        assert names == {
+            f"{stem}-{each}.{end}" for stem, end in (("o", "csv"), ("p", "png")) for each in ("east", "north", "west")
+        }
+        assert (tmp_path / "o-north.csv").read_bytes() == (tmp_path / "alone.csv").read_bytes()
+        with (tmp_path / "o-east.csv").open(encoding="utf-8", newline="") as stream:
+            assert {float(row["linear1 phi [rad]"]) for row in csv.DictReader(stream)} == {0.0}
+
+    def test_names_that_meet_are_told_apart_and_no_input_is_replaced(self, records, tmp_path):
+        (tmp_path / "s").mkdir()
+        (tmp_path / "s" / "east.csv").write_bytes((tmp_path / "r" / "east.csv").read_bytes())
+        (tmp_path / "o-east-r.csv").write_bytes((tmp_path / "r" / "east.csv").read_bytes())
+        run("respond", "--record", "?/east.csv", "--out", "x.csv", "--model", "linear2")
+        assert {each.name for each in tmp_path.glob("x*")} == {"x-east.csv", "x-east-s.csv"}
+        before = (tmp_path / "o-east-r.csv").read_bytes()
+        (tmp_path / "east-r.csv").write_bytes(before)
+        asked = ("respond", "--record", "east-r.csv", "--record", "o-east-r.csv", "--out", "o.csv")
+        assert "would overwrite what is read" in run(*asked, code=2).stderr
+        assert (tmp_path / "o-east-r.csv").read_bytes() == before
+
+    def test_a_bad_one_is_reported_and_the_others_are_shown(self, records):
+        result = run(
+            "respond", FRAME, "--record", "bad.csv", "--record", records, "--record", "no.csv", "--json", code=5
+        )
+        assert [json.loads(line)["record"]["name"] for line in result.stdout.splitlines()] == [
+            "east.csv",
+            "north.csv",
+            "west.csv",
+        ]
+        assert "bad.csv:3" in result.stderr and "no.csv: no such file" in result.stderr
+        assert (
+            "none of 1 motions" in run("respond", FRAME, "--record", "bad.csv", "--record", "r/east.csv", code=5).stdout
+        )
+        assert run("respond", FRAME, "--record", "bad.csv", "--record", "no.csv", code=2).stdout == ""
+
+    def test_one_that_cannot_be_followed_is_left_out(self, records, monkeypatch):
+        from rocking_cli.cli import shaking
+        from rocking_cli.errors import SolverError
+
+        whole = shaking.respond
+
+        def some_fail(models, motion, *more):
+            if "north" in motion.name:
+                raise SolverError("too small steps")
+            return whole(models, motion, *more)
+
+        monkeypatch.setattr(shaking, "respond", some_fail)
+        for command in (("respond",), ("animate", "--out", "m.html")):
+            result = run(*command, BLOCK, "--record", records, "--json", code=5)
+            assert len(result.stdout.splitlines()) == 2 and "north.csv: too small steps" in result.stderr
+        run("respond", BLOCK, "--record", "r/north.csv", code=4)
+
+    @pytest.mark.parametrize(
+        ("options", "said"),
+        [
+            (("--record", "r/*.csv", "--vertical", "r/east.csv"), "that of one motion"),
+            (("--record", "r/east.csv", "--pulse", "sine:0.3g:1s"), "exclude each other"),
+            (("--record", "r/east.csv", "r/north.csv"), "pattern in quotes: --record '*.csv'"),
+            (("--record", "r/east.csv", "r/north.csv", "r/west.csv"), "pattern in quotes: --record '*.csv'"),
+            ((BLOCK, BLOCK, "--record", "r/east.csv"), "of one structure, and 2 are given"),
+        ],
+    )
+    def test_what_does_not_go_together(self, records, options, said):
+        result = run("respond", *options, code=2)
+        assert said in result.stderr and result.stdout == ""
+
+
+class TestAnimate:
+    def test_a_page_each_a_row_each_and_a_line_each(self, records, tmp_path):
+        asked = ("animate", BLOCK, "--record", records, "--record", "bad.csv", "--out", "m.html")
+        found = lines(*asked, code=5)
+        assert [each["file"] for each in found] == ["m-east.html", "m-north.html", "m-west.html"]
+        assert all(Path(each["file"]).read_text(encoding="utf-8").startswith("<!") for each in found)
+        alone = lines("animate", BLOCK, "--record", "r/west.csv", "--out", "m-west.html")
+        assert alone == found[2:]
+        text = run(*asked, code=5).stdout
+        assert [name for name in ("east", "north", "west") if f"{name}.csv" in text] == ["east", "north", "west"]
+        assert "does not uplift" in text and "overturns" in text
+
+
+class TestOthers:
+    def test_a_report_takes_a_pattern_and_leaves_bad_ones_out(self, records):
+        found = lines("report", BLOCK, "--record", records, "--record", "bad.csv", "--polarity", "1", code=5)
+        assert [each["name"] for each in found[0]["motions"]] == ["east.csv", "north.csv", "west.csv"]
+        assert run("report", BLOCK, "--record", "no*.csv", "-o", "r.html", code=2).stdout == ""
+        assert not Path("r.html").exists()
+
+    def test_figure_14_is_of_one_record(self, records):
+        assert (
+            "of one record, and 2 are given"
+            in run("figure", "14", "--record", "r/east.csv", "--record", "r/west.csv", code=2).stderr
+        )
