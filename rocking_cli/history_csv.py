@@ -34,6 +34,6 @@ def write_history_csv(stream: BinaryIO, histories: Mapping[str, History], motion
     stream.write((",".join(header) + "\n").encode())
     line = ",".join(["%.9g"] * len(header)) + "\n"
     for columns in history_columns.blocks(histories, motion, ROWS):
-        values = np.column_stack(columns)
+        values = np.column_stack(columns) + 0.0  # no -0
         text = line * len(values) % tuple(values.ravel().tolist())
         stream.write(text.replace("nan", "").encode())

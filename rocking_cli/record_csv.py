@@ -32,7 +32,7 @@ def write_record_csv(stream: BinaryIO, motion: GroundMotion) -> None:
     stream.write(HEADER.encode())
     last = motion.npts - 1
     for start in range(0, motion.npts, BLOCK):
-        values = motion.acceleration[start : start + BLOCK].tolist()
+        values = (motion.acceleration[start : start + BLOCK] + 0.0).tolist()  # no -0
         times = [f"{(start + k) * motion.dt:.12g}" for k in range(len(values))]
         if start + len(values) > last:
             times[-1] = _last_time(motion.dt, last)

@@ -39,4 +39,4 @@ def _field(value: object) -> object:
         return printable(value)  # a name may hold what no text file can
     if not isinstance(value, float):
         return value
-    return "" if value != value else f"{value:.9g}"
+    return "" if value != value else f"{value + 0.0:.9g}"  # no -0

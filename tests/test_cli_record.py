@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 
@@ -151,8 +152,20 @@ class TestScaling:
         (tmp_path / "zero.txt").write_text("accel_g\n0\n0\n0\n", encoding="utf-8")
         assert "zero throughout" in run("record", "zero.txt", "--dt", "1", "--target-pga", "1", code=2).stderr
 
-    def test_both_polarities_are_for_responses(self):
-        assert "'1', '-1'" in run("record", ACCEL, "--polarity", "both", code=2).stderr
+    def test_both_polarities_stand_side_by_side(self, tmp_path):
+        lines = [json.loads(line) for line in run("record", ACCEL, "--polarity", "both", "--json").stdout.splitlines()]
+        assert lines == [run_json("record", ACCEL), run_json("record", ACCEL, "--polarity", "-1")]
+        text = " ".join(run("record", ACCEL, "--polarity", "both").stdout.split())
+        assert "accel.csv, accel.csv reversed" in text and "scaled by 1 -1" in text
+        assert "one polarity" in run("record", ACCEL, "--polarity", "both", "--plot", "r.png", code=2).stderr
+        shutil.copy(ACCEL, tmp_path / "a.AT2")
+        run("record", "a.AT2", "--polarity", "both", "--to", "csv")
+        one, other = (read_record(tmp_path / f"{name}.csv").acceleration for name in ("a", "a-reversed"))
+        assert (one == -other).all() and one.any()
+
+    def test_a_negative_scale_says_what_it_does(self):
+        assert "reverses the motion, as --polarity -1 does" in run("record", ACCEL, "--scale", "-2").stderr
+        assert "reverses" not in run("record", ACCEL, "--scale", "2").stderr
 
 
 class TestBadFiles:

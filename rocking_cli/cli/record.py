@@ -22,12 +22,17 @@ if TYPE_CHECKING:
 HEADING = 14  # characters of a record's name in a line above its column
 LEFT = 26  # characters that labels and units take of a table
 BESIDE = 3  # blanks between columns
+POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 
 
 class Shown(NamedTuple):
-    """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses."""
+    """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses.
+
+    `label` is what to call it: of both polarities the reversed one says so.
+    """
 
     file: str
+    label: str
     motion: GroundMotion
     factor: float
     measures: Measures
@@ -39,7 +44,7 @@ class Shown(NamedTuple):
 @click.command(short_help="What records are, how strong, and what is doubtful about them.")
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path())
 @options.reading
-@options.scaling("1", "-1")
+@options.scaling("1", "-1", "both", both="each after the other")
 @click.option(
     "--structure", type=click.Path(), metavar="FILE.yaml", help="Check the sample interval against this structure."
 )
@@ -72,8 +77,8 @@ def command(
 
     The measures are those of the scaled record, exact for straight lines between its samples. A drift, an offset,
     clipped peaks, a coarse interval and an odd unit are warned of, with the number that shows it. With --json,
-    several files give one object a line. A file that cannot be used is reported, the others are shown, and the exit
-    code is 5.
+    several files give one object a line, as do both polarities. A file that cannot be used is reported, the others
+    are shown, and the exit code is 5.
 
     FILE may be delimited text or a data centre's format, in a gzip file or zip archive too; - is standard input. Of
     several columns, channels or files of an archive --channel chooses one; without it they are listed.
@@ -87,52 +92,61 @@ def command(
       rocking record accel.csv --pulse --plot pulse.png
     """
     motions.check_scaling(scale, target_pga, target_pgv)
-    if plot is not None and len(files) > 1:
-        raise click.UsageError("--plot draws one record: give one FILE.")
+    if plot is not None and (len(files) > 1 or polarity == "both"):
+        raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
     from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.files import keep_apart
 
-    clean = _clean_paths(files, channel) if to else {}
+    signs = POLARITIES[polarity]
+    clean = _clean_paths(files, channel, signs) if to else {}
     keep_apart([("--plot", plot), *((f"--to {to}", path) for path in clean.values())], [*files, structure])
     _spare_others(clean.values())
     p = _frequency(structure) if structure is not None else None
 
-    shown = []
+    shown: list[Shown] = []
     for file in files:
+        found: list[Shown] = []
         try:
             from rocking_cli.excitation.records import read_record
 
             motion = read_record(file, dt=dt, units=units, channel=channel)
-            one, scaled = _examine(name_of(file), motion, (scale, target_pga, target_pgv), int(polarity), p, pulse)
-            if to:
-                _write(clean[file], scaled)
-            if plot is not None:
-                _draw(plot, scaled, one)
+            for sign in signs:
+                one, scaled = _examine(name_of(file), motion, (scale, target_pga, target_pgv), sign, p, pulse)
+                if len(signs) > 1 and sign < 0:
+                    one = one._replace(label=f"{one.label}, reversed")
+                if to:
+                    _write(clean[file, sign], scaled)
+                if plot is not None:
+                    _draw(plot, scaled, one)
+                found.append(one)
         except InputError as error:
             terminal.error(str(error))
             terminal.plugin_traceback(error)
             continue
-        shown.append(one)
+        shown += found
         if as_json:
-            terminal.print_json(_as_json(one))
-        motions.warn(motion, one.doubts)
+            for one in found:
+                terminal.print_json(_as_json(one))
+        motions.warn(motion, found[0].doubts)
     if shown and not as_json:
         _print_tables(shown)
-    if len(shown) < len(files):
+    if len(shown) < len(files) * len(signs):
         ctx.exit(INCOMPLETE if shown else InputError.exit_code)
 
 
-def _clean_paths(files: Sequence[str], channel: str | None) -> dict[str, Path]:
+def _clean_paths(files: Sequence[str], channel: str | None, signs: Sequence[int]) -> dict[tuple[str, int], Path]:
     """Where the clean file of each record goes: into this folder, named after the record and the channel asked for."""
     from rocking_cli.excitation.records.opening import name_of
 
     suffix = "-" + re.sub(r"\W+", "-", channel.strip()) if channel is not None else ""
-    paths: dict[str, Path] = {}
+    paths: dict[tuple[str, int], Path] = {}
     for file in files:
-        path = Path(f"{Path(name_of(file)).stem}{suffix}.csv")
-        if path in paths.values():
-            raise InputError(Problem("two records would be written there", str(path), hint="write them one by one"))
-        paths[file] = path
+        for sign in signs:
+            turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
+            path = Path(f"{Path(name_of(file)).stem}{suffix}{turned}.csv")
+            if path in paths.values():
+                raise InputError(Problem("two records would be written there", str(path), hint="write them one by one"))
+            paths[file, sign] = path
     return paths
 
 
@@ -176,7 +190,8 @@ def _examine(
         from rocking_cli.cli import pulse_fits
 
         fits = pulse_fits.find(scaled)
-    return Shown(file, motion, factor, measure(scaled), found, p * motion.dt if p is not None else None, fits), scaled
+    p_dt = p * motion.dt if p is not None else None
+    return Shown(file, motion.name, motion, factor, measure(scaled), found, p_dt, fits), scaled
 
 
 def _write(path: Path, motion: GroundMotion) -> None:
@@ -272,7 +287,7 @@ def _rows(records: Sequence[Shown]) -> list[list[str]]:
 
 def _print_tables(records: Sequence[Shown]) -> None:
     """A column for each record, in as many tables below one another as the terminal needs."""
-    names = [record.motion.name if len(records) == 1 else _folded(record.motion.name) for record in records]
+    names = [record.label if len(records) == 1 else _folded(record.label) for record in records]
     rows = _rows(records)
     fitting = max((terminal.width() - LEFT) // (HEADING + BESIDE), 1)
     for start in range(0, len(records), fitting):
@@ -284,7 +299,7 @@ def _print_tables(records: Sequence[Shown]) -> None:
         if record.pulses:
             from rocking_cli.cli import pulse_fits
 
-            pulse_fits.print_tables(record.motion.name, record.pulses)
+            pulse_fits.print_tables(record.label, record.pulses)
 
 
 def _folded(name: str) -> str:

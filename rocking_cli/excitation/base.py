@@ -76,7 +76,8 @@ class GroundMotion:
     @property
     def pga(self) -> float:
         """Peak ground acceleration, in units of standard gravity."""
-        return float(np.abs(self.acceleration).max() / STANDARD_GRAVITY)
+        # To 15 digits: the way through m/s2 and back has changed the last bit of what a record in g says.
+        return float(f"{np.abs(self.acceleration).max() / STANDARD_GRAVITY:.15g}")
 
     @property
     def kept(self) -> GroundMotion:
