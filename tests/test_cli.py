@@ -36,6 +36,14 @@ def run(*arguments, code=0):
     return result
 
 
+def some(*arguments):
+    """Of a command that does its work in part."""
+    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    assert result.exit_code == 5, result.output
+    assert "Traceback" not in result.stderr
+    return result
+
+
 def run_json(*arguments):
     result = run(*arguments, "--json")
     (line,) = result.stdout.splitlines()
@@ -132,12 +140,16 @@ class TestEquiv:
         assert "disregard kappa1" in run("equiv", EXAMPLES / "arch.yaml").stdout
         assert run_json("equiv", EXAMPLES / "arch.yaml")["directions"]["positive"]["prefer"] == "kappa2"
 
-    def test_problems_of_all_files_come_before_any_result(self, tmp_path):
+    def test_bad_files_are_reported_with_all_their_problems_and_the_good_ones_shown(self, tmp_path):
         one, two = tmp_path / "one.yaml", tmp_path / "two.yaml"
         one.write_text("mechanism: block\nwidth: 1\n", encoding="utf-8")
         two.write_text("mechanism: block\nwidth: -1\nheight: 2\n", encoding="utf-8")
-        text = run("equiv", FRAME, one, two, code=2).stderr
-        assert "one.yaml:1:1: height: is missing" in text and "two.yaml:2:8: width: must be more than 0" in text
+        for text in (run("equiv", one, two, code=2).stderr, (mixed := some("equiv", FRAME, one, two)).stderr):
+            assert "one.yaml:1:1: height: is missing" in text and "two.yaml:2:8: width: must be more than 0" in text
+        assert mixed.stdout == run("equiv", FRAME).stdout
+        assert [json.loads(line)["name"] for line in some("equiv", one, FRAME, "--json").stdout.splitlines()] == [
+            "valley bridge"
+        ]
 
     def test_a_stocky_block_is_shown_with_a_warning(self, tmp_path):
         (tmp_path / "slab.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")

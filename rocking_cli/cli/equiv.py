@@ -33,11 +33,13 @@ PER_MASS = {"kg m2": "m2", "kg m": "m"}  # of a structure whose file gives no ma
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @options.as_json
 @click.option("--csv", "as_csv", is_flag=True, help="Print comma-separated values, a line for each direction.")
-def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
+@click.pass_context
+def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
     """Parameters of the single rocking block that a structure is equivalent to.
 
     One column where the two directions agree, two where they differ; positive is clockwise. With --json, several
-    files give one object a line. Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    files give one object a line. A file that cannot be used is reported, the others are shown, and the exit code is 5.
+    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
@@ -50,14 +52,21 @@ def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
         raise click.UsageError("--json and --csv exclude each other.")
     from rocking_cli.cli import structures
     from rocking_cli.core import equivalent_block
-    from rocking_cli.errors import MechanismError
+    from rocking_cli.errors import INCOMPLETE, MechanismError
 
+    mechanisms, _, bad = structures.load_each(files)
     found = []
-    for mechanism in structures.load(files):
+    for mechanism in mechanisms:
         try:
             found.append((mechanism, equivalent_block(mechanism)))
         except MechanismError as error:
-            raise MechanismError(f"{mechanism.name}: {error}") from error
+            named = MechanismError(f"{mechanism.name}: {error}")
+            if len(mechanisms) == 1:
+                raise named from error
+            terminal.error(str(named))
+            bad += 1
+    if not found:
+        ctx.exit(MechanismError.exit_code)
     if as_csv:
         _print_csv(found)
     for mechanism, equivalence in found:
@@ -66,6 +75,8 @@ def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
         elif not as_csv:
             _print_table(mechanism, equivalence)
         _warn(mechanism, equivalence)
+    if bad:
+        ctx.exit(INCOMPLETE)
 
 
 def _as_json(mechanism: Mechanism, equivalence: Equivalence) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from rocking_cli import names
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Quantity
+from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
     from rocking_cli.studies.equivalent import EquivalentResponses
@@ -47,7 +48,9 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
 @click.option("--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the responses over p t.")
 @options.plot("Draw them")
 @options.as_json
+@click.pass_context
 def command(
+    ctx: click.Context,
     files: tuple[str, ...],
     ag: float,
     period: float,
@@ -65,7 +68,8 @@ def command(
     omega = omega_g/p, and the nonlinear responses are compared in phi/phi_cr over p t: how equal are they?
 
     Restitution must be the same for that; unless --eta says otherwise all get that of the first FILE. Of a structure
-    with two different directions p and lambda are those of the direction that the pulse lifts first.
+    with two different directions p and lambda are those of the direction that the pulse lifts first. A FILE that cannot
+    be used is reported, the others are compared, and the exit code is 5.
 
     \b
     Example:
@@ -86,7 +90,10 @@ def command(
 
     keep_apart([("--out", out), ("--plot", plot)], files)
     given = replace(parse_shape(pulse), amplitude=ag * STANDARD_GRAVITY, period=period)
-    mechanisms = structures.told_apart(structures.load(files), files)
+    loaded, good, bad = structures.load_each(files)
+    if files[0] not in good or len(good) < 2:
+        raise InputError("the first FILE and one more are needed: the pulse is for the first")
+    mechanisms = structures.told_apart(loaded, good)
     work.say_if_compiling()
     found = equivalent(mechanisms, given, polarity=int(polarity), kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
     if out is not None:
@@ -99,7 +106,13 @@ def command(
         write_picture(plot, draw_equivalent(found, title))
     if as_json:
         terminal.print_json(_as_json(found, judge(found)))
-        return
+    else:
+        _print(found, title, judge(found))
+    if bad:
+        ctx.exit(INCOMPLETE)
+
+
+def _print(found: EquivalentResponses, title: str, verdict: list[str]) -> None:
     rows = [
         [
             each.name,
@@ -112,7 +125,7 @@ def command(
     ]
     rows.append(["linear block", "", "", f"{found.members[0].eta:.4g}", _peak(found.linear_peak)])
     terminal.table(title, ["", "a_g [g]", "T [s]", "eta", "peak / phi_cr"], rows, numbers=(1, 2, 3, 4))
-    terminal.result(" ".join(judge(found)))
+    terminal.result(" ".join(verdict))
 
 
 def _peak(ratio: float | None) -> str:

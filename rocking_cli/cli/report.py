@@ -72,6 +72,7 @@ def command(
         raise click.UsageError(
             "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
         )
+    from rocking_cli.cli import structures
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.files import check_writable, keep_apart, write_whole
     from rocking_cli.report.content import gather, steps
@@ -95,7 +96,8 @@ def command(
     if bad and not given:
         ctx.exit(InputError.exit_code)
     say_if_compiling()
-    with terminal.progress(steps(given), "parts of the report") as advance:
+    file = files[0] if files else None
+    with structures.of_file(file), terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
             mechanism, source, given, POLARITIES[polarity],
             command=_command_line(ctx), date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"), progress=advance,

@@ -14,10 +14,11 @@ from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
 
-# The names of the models and of the pulses that are fitted stand here again so that `--help` needs no numpy.
+# The models, the pulses that are fitted and the least tolerance stand here again so that `--help` needs no numpy.
 NAMES = ("nonlinear", "linear1", "linear2")
 FITTED = ("sine", "ricker", "mavroeidis")
 BEST = "best"
+FINEST_RTOL = 1e-14
 
 
 def _models(ctx: click.Context, param: click.Parameter, value: str) -> tuple[str, ...]:
@@ -43,8 +44,12 @@ def _tail(ctx: click.Context, param: click.Parameter, value: float) -> float:
 
 
 def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
-    if not value < 1:
-        raise click.BadParameter(f"{value:g} is not a number between 0 and 1.", ctx, param)
+    if not FINEST_RTOL <= value < 1:
+        raise click.BadParameter(
+            f"{value:g} is not a number between 0 and 1 that is at least {FINEST_RTOL:g}: rounding allows no less.",
+            ctx,
+            param,
+        )
     return value
 
 
@@ -191,7 +196,7 @@ def command(
         from rocking_cli.history_parquet import check_parquet
 
         check_parquet(out)
-    mechanism = shaking.structure(files, records)[1]
+    file, mechanism = shaking.structure(files, records)
     equivalence = shaking.equivalence(mechanism)
     given: Sequence[motions.Scaled | None] = [None]  # a free release
     refused = 0
@@ -213,7 +218,7 @@ def command(
         keep_apart([*(("--out", each) for each in outs), *(("--plot", each) for each in plots)], inputs)
     chosen = cast("tuple[ModelName, ...]", models)
     say_if_compiling()
-    built = shaking.prepare(mechanism, chosen)
+    built = shaking.prepare(mechanism, chosen, file)
     asked = Question((1, -1) if polarity == "both" else (int(polarity),), release, tail, rtol, with_pulse)
     table = results.Several(mechanism, equivalence, chosen)
     with terminal.progress(len(outs), "motions") as advance:

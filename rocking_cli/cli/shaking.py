@@ -150,13 +150,15 @@ def gather(
     return [motions.Scaled(motion, judge(motion, blocks, *asked), pulse, file)], 0
 
 
-def prepare(mechanism: Mechanism, names: tuple[ModelName, ...]) -> list[Model]:
-    """The models of a structure, to be followed under any number of motions; an error names it."""
+def prepare(mechanism: Mechanism, names: tuple[ModelName, ...], file: str | None) -> list[Model]:
+    """The models of a structure, to be followed under any number of motions; an error names it and its file."""
+    from rocking_cli.cli import structures
     from rocking_cli.dynamics.model import build_models
     from rocking_cli.errors import MechanismError
 
     try:
-        return build_models(mechanism, names)
+        with structures.of_file(file):
+            return build_models(mechanism, names)
     except MechanismError as error:
         raise MechanismError(f"{mechanism.name}: {error}") from error
 

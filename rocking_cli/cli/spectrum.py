@@ -96,7 +96,7 @@ def _numbers(low: float, high: float, what: str) -> Any:
     callback=_numbers(0, 1, "no fractile between 0 and 1"),
     help="Beside the median, of several motions.",
 )
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processors to use.  [default: all]")
+@click.option("--jobs", type=click.IntRange(1, 1024), metavar="N", help="Processors to use.  [default: all]")
 @click.option(
     "--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the curves, with every motion's."
 )
@@ -131,8 +131,8 @@ def command(
     of each slenderness. Sizes are 2 pi/p: it goes as the square root of the scale. FILE itself is marked. Of
     several motions it gives median, fractiles and the share that overturns.
 
-    Without FILE and --slenderness it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m. A motion that
-    cannot be used is reported, the others are run, and the exit code is 5.
+    Without FILE and --slenderness it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m. A motion or a
+    FILE that cannot be used is reported, the others are run, and the exit code is 5.
 
     \b
     Example:
@@ -152,7 +152,7 @@ def command(
 
     paths, missing = motions.find(records)
     keep_apart([("--out", out), ("--plot", plot)], [*files, *(str(path) for path in paths)])
-    shapes = _shapes(files, slenderness, cast("ModelName", model), eta)
+    shapes, bad = _shapes(files, slenderness, cast("ModelName", model), eta)
     periods = _sizes(shapes, sizes)
     smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])
     asked = scale, target_pga, target_pgv
@@ -171,7 +171,7 @@ def command(
         )
     lost = results.report_lost(found, chosen)
     results.give(results.Results(found, chosen, tuple(sorted({*fractiles, 0.5})), polarity), out, plot, as_json=as_json)
-    if missing or refused or lost:
+    if missing or refused or lost or bad:
         ctx.exit(INCOMPLETE)
 
 
@@ -191,16 +191,21 @@ def _check(
     motions.check_strays(files, records)
 
 
-def _shapes(files: tuple[str, ...], slenderness: tuple[float, ...], model: ModelName, eta: float | None) -> list[Shape]:
-    """What there is a curve of: the structures, then the blocks."""
+def _shapes(
+    files: tuple[str, ...], slenderness: tuple[float, ...], model: ModelName, eta: float | None
+) -> tuple[list[Shape], int]:
+    """What there is a curve of, the structures, then the blocks; and how many files cannot be used."""
     from rocking_cli.cli import structures
     from rocking_cli.studies.spectrum import blocks_of, shape_of
 
-    mechanisms = structures.load(files) if files or not slenderness else []
+    mechanisms, good, bad = structures.load_each(files) if files or not slenderness else ([], [], 0)
     if files:
-        mechanisms = structures.told_apart(mechanisms, files)
-    own = [shape_of(each, model, eta) for each in mechanisms]
-    return own + [blocks_of(alpha, model, eta) for alpha in slenderness]
+        mechanisms = structures.told_apart(mechanisms, good)
+    found = []
+    for k, each in enumerate(mechanisms):
+        with structures.of_file(good[k] if good else None):
+            found.append(shape_of(each, model, eta))
+    return found + [blocks_of(alpha, model, eta) for alpha in slenderness], bad
 
 
 def _sizes(shapes: list[Shape], asked: tuple[float, float, int] | None) -> Reals:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from rocking_cli.cli import terminal
 from rocking_cli.core import Mechanism
 from rocking_cli.core.size import doubtful_size
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
 from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.text import printable
 
@@ -52,6 +54,45 @@ def doubts(mechanism: Mechanism) -> list[str]:
     """What is doubtful about the sizes that were read."""
     doubt = doubtful_size(mechanism)
     return [f"{mechanism.name}: {doubt}"] if doubt is not None else []
+
+
+def load_each(files: Sequence[str]) -> tuple[list[Mechanism], list[str], int]:
+    """The structures of several files, those files, and how many others were reported and left out.
+
+    Raises
+    ------
+    InputError, MechanismError
+        As `load`, if none of them can be used.
+    """
+    found: list[Mechanism] = []
+    good: list[str] = []
+    errors: list[RockingError] = []
+    for file in files:
+        try:
+            found += load([file])
+            good.append(file)
+        except (InputError, MechanismError) as error:
+            errors.append(error)
+    if not found:
+        return load(files), list(files), 0
+    for each in errors:
+        terminal.error(str(each))
+    return found, good, len(errors)
+
+
+@contextmanager
+def of_file(file: str | None) -> Iterator[None]:
+    """Give what is wrong with a field of a structure, found once it is used, the file that it stands in."""
+    place = file if file is not None else HERE if Path(HERE).exists() else None
+    try:
+        yield
+    except InputError as error:
+        lost = [each.field is not None and each.file is None for each in error.problems]
+        if place is None or not any(lost):
+            raise
+        raise InputError(
+            *(replace(each, file=place) if of else each for each, of in zip(error.problems, lost, strict=True))
+        ) from None
 
 
 def _unnamed() -> Mechanism:
