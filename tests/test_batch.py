@@ -260,7 +260,7 @@ def test_no_threads_are_refused(threads):
         respond_many(models("block"), motions(), Runs.of(0, 0), threads=threads)
 
 
-@pytest.mark.parametrize("rtol", [0.0, 1.0, np.nan])
+@pytest.mark.parametrize("rtol", [0.0, 9e-15, 1.0, np.nan])
 def test_a_tolerance_outside_its_range_is_refused(rtol):
     with pytest.raises(InputError, match="rtol"):
         respond_many(models("block"), motions(), Runs.of(0, 0), rtol=rtol)

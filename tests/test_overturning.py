@@ -266,10 +266,16 @@ class TestCompare:
                     assert outcomes(structure, SINE, np.array([period]), above).impacts[0] >= 0
 
     def test_the_first_is_the_one_with_the_least(self, curves):
-        for k, first in enumerate(curves.first):
-            column = curves.least[:, k]
-            assert first == (-1 if np.isnan(column).all() else np.nanargmin(column))
-        assert len(set(curves.first)) > 1
+        for goes, column in zip(curves.firsts.T, curves.least.T, strict=True):
+            assert np.flatnonzero(goes).tolist() == ([] if np.isnan(column).all() else [np.nanargmin(column)])
+        assert (curves.firsts.sum(axis=1) > 0).sum() > 1
+
+    def test_equal_least_amplitudes_are_a_tie(self):
+        one, other, heavy = (shaken(Block(width=0.7 * k, height=2.8), "linear2", SINE) for k in (1.0, 1.0, 1.5))
+        found = compare([one, heavy, other], SINE, np.array([0.5, 0.8]), 4.0)
+        assert found.firsts.tolist() == [[True, True], [False, False], [True, True]]
+        apart = replace(found, least=found.least * np.array([[1.0], [1.0], [1 + 1e-4]]))
+        assert apart.firsts.tolist() == [[True, True], [False, False], [False, False]]
 
     def test_a_similar_block_overturns_at_the_same_amplitude_of_a_longer_pulse(self):
         small, large = (shaken(Block(width=0.7 * k, height=2.8 * k), "nonlinear", SINE) for k in (1.0, 4.0))
@@ -349,13 +355,39 @@ class TestCommand:
             "c.csv", "--json",
         )  # fmt: skip
         data = json.loads(result.stdout)
-        assert set(data) == {"pulse", "model", "polarity", "largest_tried", "period", "structures", "first"}
+        assert set(data) == {"pulse", "model", "polarity", "largest_tried", "period", "structures", "first", "tied"}
         assert [each["mechanism"] for each in data["structures"]] == ["block", "asymmetric_frame", "wall"]
         with Path("c.csv").open(encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        assert [row["first"] or None for row in rows] == data["first"]
+        assert [row["first"] or None for row in rows] == data["first"] and data["tied"] == [None] * 8
         text = run("overturning", "--compare", *FILES, "--points", 8, "--model", "linear2").stdout
         assert "goes first" in text and "Goes first" in text
+
+    def test_a_tie_is_said_so(self, tmp_path):
+        for name in ("one", "two"):
+            (tmp_path / f"{name}.yaml").write_text("mechanism: block\nwidth: 1\nheight: 4\n", encoding="utf-8")
+        asked = ("overturning", "--compare", "one.yaml", "two.yaml", "--points", 4, "--model", "linear2")
+        data = json.loads(run(*asked, "--json", "--out", "c.csv").stdout)
+        tied = [each is not None for each in data["tied"]]
+        assert any(tied) and data["first"] == [None] * 4 and ["one", "two"] in data["tied"]
+        text = " ".join(run(*asked).stdout.split())
+        assert "a tie" in text and f"one and two together at {100 * sum(tied) / 4:.0f} %" in text
+        assert '"tie: one, two"' in Path("c.csv").read_text(encoding="utf-8")
+
+    def test_a_bad_file_is_reported_and_the_others_are_compared(self):
+        asked = ("overturning", "--compare", *FILES[:2], "no.yaml", "--points", 4, "--model", "linear2", "--json")
+        result = CliRunner().invoke(main, [str(each) for each in asked])
+        assert result.exit_code == 5 and "no.yaml: no such file" in result.stderr
+        assert len(json.loads(result.stdout)["structures"]) == 2
+        assert "only one of the FILEs" in run("overturning", "--compare", FILES[0], "no.yaml", code=2).stderr
+
+    def test_pulses_beyond_sense_are_refused_with_the_numbers(self):
+        structure = shaken(BLOCK, "linear2", SINE)
+        for omega, a in ((1e-7, 2.0), (1e7, 2.0), (1.0, 1e7)):
+            with pytest.raises(InputError, match="it must be"):
+                overturning_map(structure, SINE, np.array([omega]), np.array([a]))
+        with pytest.raises(InputError, match="it must be from"):
+            compare([structure], SINE, np.array([1e8]), 4.0)
 
     def test_structures_of_one_name_are_told_apart(self, tmp_path):
         for name in ("one", "two"):

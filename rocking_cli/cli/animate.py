@@ -27,6 +27,12 @@ def _fps(ctx: click.Context, param: click.Parameter, value: float) -> float:
     return value
 
 
+def _speed(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not 1e-3 <= value <= 1e3:
+        raise click.BadParameter(f"{value:g} is not between 0.001 and 1000 s of motion a second.", ctx, param)
+    return value
+
+
 @click.command(short_help="The mechanism moving under a ground motion: GIF or page.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @options.shaking
@@ -38,7 +44,7 @@ def _fps(ctx: click.Context, param: click.Parameter, value: float) -> float:
     help="Where to: an animated GIF, or a page of its own with a slider (.html).",
 )  # fmt: skip
 @click.option(
-    "--speed", type=options.Finite(positive=True), metavar="TIMES",
+    "--speed", type=options.Finite(positive=True), callback=_speed, metavar="TIMES",
     help="Seconds of motion a second.  [default: 1; a GIF faster, so as to last 20 s at most]",
 )  # fmt: skip
 @click.option(
@@ -99,7 +105,7 @@ def command(
 
     inputs = [*files, *(str(path) for path in paths)]
     keep_apart([("--out", out)], inputs)
-    mechanism = shaking.structure(files, records)[1]
+    file, mechanism = shaking.structure(files, records)
     blocks = shaking.equivalence(mechanism)
     given, refused = shaking.gather(
         paths, pulses, (dt, units, channel), (scale, target_pga, target_pgv), blocks, several=several
@@ -109,7 +115,7 @@ def command(
     places = motions.separate(out, given, several=several)
     keep_apart([("--out", place) for place in places], inputs)
     say_if_compiling()
-    models, drawn = shaking.prepare(mechanism, (cast("ModelName", model),)), picture(mechanism)
+    models, drawn = shaking.prepare(mechanism, (cast("ModelName", model),), file), picture(mechanism)
     rows = []
     for each, place in zip(given, places, strict=True):
         assert place is not None

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulses import Pulse
 
+MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and past following in a reasonable time
 FEW = 3  # motions of which each gets its own lines; of more there is a summary
 
 
@@ -28,6 +29,8 @@ def check_scaling(scale: float | None, target_pga: float | None, target_pgv: flo
     """Refuse more than one way of scaling, before anything is read."""
     if sum(value is not None for value in (scale, target_pga, target_pgv)) > 1:
         raise click.UsageError("--scale, --target-pga and --target-pgv exclude each other.")
+    if scale is not None and scale < 0:
+        terminal.note(f"--scale {scale:g} is negative: it reverses the motion, as --polarity -1 does")
 
 
 def factor(
@@ -50,14 +53,27 @@ def factor(
     -------
     float
         1 if nothing is asked for.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to scale, or what results is beyond any ground motion.
     """
     if target_pga is None and target_pgv is None:
-        return 1.0 if scale is None else scale
-    wanted, own = (target_pga, measured.pga) if target_pga is not None else (target_pgv, measured.pgv)
-    assert wanted is not None
-    if own == 0:
-        raise InputError(Problem("the record is zero throughout, and cannot be scaled to a peak", motion.name))
-    return wanted / own
+        by = 1.0 if scale is None else scale
+    else:
+        wanted, own = (target_pga, measured.pga) if target_pga is not None else (target_pgv, measured.pgv)
+        assert wanted is not None
+        if own == 0:
+            raise InputError(Problem("the record is zero throughout, and cannot be scaled to a peak", motion.name))
+        by = wanted / own
+    pga, pgv = abs(by) * measured.pga, abs(by) * measured.pgv
+    if not (pga <= MOST_PGA and pgv <= MOST_PGV):
+        scaled = f" scaled by {by:.4g}" if by != 1 else ""
+        problem = f"PGA = {pga:.4g} g and PGV = {pgv:.4g} m/s{scaled} are no ground motion"
+        hint = f"at most {MOST_PGA:g} g and {MOST_PGV:g} m/s: are unit, interval and factor right?"
+        raise InputError(Problem(problem, motion.name, hint=hint))
+    return by
 
 
 def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import click
 
 from rocking_cli.cli import options
 from rocking_cli.cli.quantities import Range
+from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
+    from rocking_cli.dynamics.model import ModelName
     from rocking_cli.studies.shaken import Reals, Shaken
 
 MODELS = ("linear2", "linear1", "nonlinear")
@@ -58,7 +60,9 @@ SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
 )
 @options.plot("Draw it")
 @options.as_json
+@click.pass_context
 def command(
+    ctx: click.Context,
     files: tuple[str, ...],
     compare: bool,
     pulse: str,
@@ -80,7 +84,8 @@ def command(
     Each point of the map is a motion followed until it is decided: no uplift, rocking, or overturning after some
     impacts or without any. Without FILE it is that of the linear block over omega = omega_g/p and a = a_g/(g lambda).
 
-    With --compare, the least amplitude that overturns each FILE, over the period: which of them goes first.
+    With --compare, the least amplitude that overturns each FILE, over the period: which of them goes first. A FILE that
+    cannot be used is reported, the others are compared, and the exit code is 5.
 
     \b
     Example:
@@ -101,8 +106,14 @@ def command(
     keep_apart([("--out", out), ("--plot", plot)], files)
     shape, polarities = parse_shape(pulse), POLARITIES[polarity]
     chosen = model or ("nonlinear" if compare else "linear2")
-    mechanisms = structures.told_apart(structures.load(files), files) if files else []
-    subjects = [shaken(each, chosen, shape, polarities, eta) for each in mechanisms]  # type: ignore[arg-type]
+    loaded, good, bad = structures.load_each(files) if files else ([], [], 0)
+    if compare and len(loaded) < 2:
+        raise InputError("only one of the FILEs can be used: --compare needs two or more")
+    mechanisms = structures.told_apart(loaded, good)
+    subjects = []
+    for each, file in zip(mechanisms, good, strict=True):
+        with structures.of_file(file):
+            subjects.append(shaken(each, cast("ModelName", chosen), shape, polarities, eta))
     exact = chosen != "nonlinear" and bool(shape.segments())
     if compare:
         spread, top = _curves(subjects, points or CURVE, periods, accelerations)
@@ -110,6 +121,8 @@ def command(
         with work.histories(study.work(subjects, pulses, polarities), exact=exact) as progress:
             compared = study.compare(subjects, shape, spread, top, polarities=polarities, progress=progress)
         results.give_comparison(compared, mechanisms, out, plot, as_json=as_json)
+        if bad:
+            ctx.exit(INCOMPLETE)
         return
     subject = subjects[0] if subjects else linear_block(ETA if eta is None else eta)
     dimensionless = dimensionless or not files

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -168,13 +169,18 @@ def give_comparison(
         _print_comparison(found, title)
 
 
-def _firsts(found: Comparison) -> list[str | None]:
-    return [None if k < 0 else found.structures[k].name for k in found.first.tolist()]
+def _firsts(found: Comparison) -> list[list[str]]:
+    """The names of those that go first at each period: none, one, or several that are tied."""
+    return [
+        [each.name for each, goes in zip(found.structures, column, strict=True) if goes]
+        for column in found.firsts.T.tolist()
+    ]
 
 
 def _comparison_columns(found: Comparison) -> dict[str, Sequence[object]]:
     curves = {f"{each.name} [g]": least.tolist() for each, least in zip(found.structures, found.least, strict=True)}
-    return {"period [s]": found.periods.tolist(), **curves, "first": [name or "" for name in _firsts(found)]}
+    firsts = [f"tie: {', '.join(names)}" if len(names) > 1 else "".join(names) for names in _firsts(found)]
+    return {"period [s]": found.periods.tolist(), **curves, "first": firsts}
 
 
 def _comparison_json(found: Comparison, mechanisms: Sequence[Mechanism]) -> dict[str, Any]:
@@ -189,22 +195,34 @@ def _comparison_json(found: Comparison, mechanisms: Sequence[Mechanism]) -> dict
             {**structure_json(shaken, mechanism), "eta": shaken.eta, "least": numbers(least)}
             for shaken, mechanism, least in each
         ],
-        "first": _firsts(found),
+        "first": [names[0] if len(names) == 1 else None for names in _firsts(found)],
+        "tied": [names if len(names) > 1 else None for names in _firsts(found)],
     }
+
+
+def _together(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{' and '.join(names)} together"
+
+
+def _goes_first(names: Sequence[str]) -> str:
+    return (names[0] if len(names) == 1 else "a tie") if names else terminal.ABSENT
 
 
 def _print_comparison(found: Comparison, title: str) -> None:
     firsts = _firsts(found)
     rows = [
-        [f"{found.periods[k]:.3g}", *(_cell(least[k]) for least in found.least), firsts[k] or terminal.ABSENT]
+        [f"{found.periods[k]:.3g}", *(_cell(least[k]) for least in found.least), _goes_first(firsts[k])]
         for k in _some(found.periods.size)
     ]
     heads = [each.name.replace(" ", "\n") for each in found.structures]
     terminal.result(f"Least a_g [g] that overturns: {title}")
     terminal.table("", ["T [s]", *heads, "goes first"], rows, numbers=range(1, len(heads) + 1))
-    counts = {name: firsts.count(name) for name in dict.fromkeys(firsts) if name is not None}
+    counts = Counter(tuple(together) for together in firsts if together)
     if counts:
-        said = ", ".join(f"{name} at {100 * count / len(firsts):.0f} %" for name, count in counts.items())
+        said = ", ".join(
+            f"{_together(tied)} at {100 * counts[tied] / len(firsts):.0f} %"
+            for tied in sorted(counts, key=lambda tied: len(tied) > 1)
+        )
         terminal.result(f"Goes first, of the periods: {said}.")
     if np.isnan(found.least).any():
         terminal.result(f"{terminal.ABSENT}: none up to {found.top:.4g} g {names.OVERTURNS} it.")

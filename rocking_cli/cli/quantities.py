@@ -12,6 +12,8 @@ from rocking_cli.cli.options import UNITS
 Kind = Literal["acceleration", "period", "number"]
 _FORM = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z%].*)?", re.ASCII)
 _EXAMPLES = {"acceleration": "0.6g", "period": "0.8", "number": "4"}
+# Least and largest, in g, s or none: past these a motion would be followed for hours, or is none.
+_BOUNDS = {"acceleration": (1e-9, 1e6, " g"), "period": (1e-6, 1e6, " s"), "number": (1e-6, 1e6, "")}
 _RANGES = {"acceleration": "0.1g:2g", "period": "0.2:4", "number": "0.5:10"}
 
 
@@ -22,6 +24,7 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # gene
 
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
+        self.bounds = _BOUNDS[kind]
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Turn a text into the number, or fail naming the option and what would be right."""
@@ -47,6 +50,9 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # gene
             self.fail(f"{text!r}: {takes}, such as {example}.", param, ctx)
         if not 0 < number < float("inf"):
             self.fail(f"{text!r} is not positive: give such as {example}.", param, ctx)
+        low, high, unit = self.bounds
+        if not low <= number <= high:
+            self.fail(f"{text!r} is beyond what is followed: {low:g} to {high:g}{unit}.", param, ctx)
         return number
 
 
@@ -76,6 +82,7 @@ class Sizes(Range):
 
     def __init__(self, count: int, most: int) -> None:
         super().__init__("period")
+        self.bounds = (1e-3, 1e4, " s")  # blocks of 0.2 um to 19,000 km
         self.count, self.most = count, most
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:

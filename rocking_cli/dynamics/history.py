@@ -18,6 +18,7 @@ from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
 
 Reals = NDArray[np.float64]
+FINEST_RTOL = 1e-14  # below it rounding refuses steps
 RTOL = 1e-9  # local error of a step, of the lower order of the pair: peaks are then right to 1e-11
 TAIL = 10.0  # s of motion kept after the record
 MOST_SAMPLES = 20_000_000
@@ -165,8 +166,8 @@ def respond(
 
 def check_rtol(rtol: float) -> None:
     """Refuse a relative local error that is none."""
-    if not 0 < rtol < 1:
-        raise InputError(f"rtol must be between 0 and 1, got {rtol:g}")
+    if not FINEST_RTOL <= rtol < 1:
+        raise InputError(f"rtol must be at least {FINEST_RTOL:g} and below 1, got {rtol:g}: rounding allows no less")
 
 
 def follow(
@@ -190,7 +191,8 @@ def follow(
     samples = max(npts, 1) + round(min(tail / dt, 2.0 * MOST_SAMPLES))
     if samples > MOST_SAMPLES:
         many = f"{samples:,}" if samples < MOST_SAMPLES + npts else f"more than {MOST_SAMPLES:,}"
-        raise InputError(f"dt = {dt:g} s makes {many} samples with a tail of {tail:g} s: is dt in seconds?")
+        what = "the period" if motion is not None and motion.format == "pulse" else "dt"
+        raise InputError(f"dt = {dt:g} s makes {many} samples with a tail of {tail:g} s: is {what} in seconds?")
     phi, rate, impacts = np.empty(samples), np.empty(samples), np.empty((most_kept, 3))
     runs, marks = np.zeros((1, kernels.RUN_COLUMNS)), np.empty((1, kernels.MARKS))
     runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE]] = 1.0

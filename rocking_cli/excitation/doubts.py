@@ -64,7 +64,7 @@ def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> 
         return []
     text = (
         f"dt = {motion.dt:g} s is coarse for {what}: p dt = {product:.2g}, so that near overturning its "
-        f"motion grows by {100 * np.expm1(product):.2g} % from sample to sample"
+        f"motion grows by {100 * np.expm1(min(product, 700.0)):.2g} % from sample to sample"
     )
     return [Doubt("p_dt", product, text)]
 

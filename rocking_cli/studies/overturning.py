@@ -8,6 +8,7 @@ from enum import IntEnum
 from itertools import count
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.errors import InputError
@@ -21,6 +22,8 @@ NEAREST = 1e-3  # a - 1 of the first of them
 BELOW = 4  # from this part of the least a - 1 on they are tried anew: islands crowd just below it
 HALVINGS = 25  # of the interval that the scan leaves, some thousandths of a - 1
 PASSES = 2  # of the scan, in most cases
+TIE = 1e-6  # relative difference of least amplitudes below which structures go together
+LARGEST = 1e6  # a or omega, and 1/omega: slower pulses would be followed for ever
 
 
 class Region(IntEnum):
@@ -147,6 +150,7 @@ def overturning_map(
     """
     if not ((omega > 0).all() and (a > 0).all()):
         raise InputError("omega and a must be positive")
+    _check_range(structure, structure.period(omega), float(a.max()))
     periods, amplitudes = (each.ravel() for each in np.meshgrid(structure.period(omega), a * structure.unit))
     found = outcomes(structure, shape, periods, amplitudes, polarities=polarities, progress=progress)
     plane = a.size, omega.size
@@ -159,6 +163,19 @@ def overturning_map(
         found.peak_ratio.reshape(plane),
         found.impacts.reshape(plane),
     )
+
+
+def _check_range(structure: Shaken, periods: Reals, a: float) -> None:
+    """Refuse pulses beyond all sense."""
+    low, high = (structure.period(np.array(omega)).item() for omega in (LARGEST, 1 / LARGEST))
+    if not (low <= periods.min() and periods.max() <= high):
+        raise InputError(
+            f"{structure.name}: pulses from {periods.min():.4g} to {periods.max():.4g} s have omega = omega_g/p from "
+            f"{structure.period(periods.max()):.4g} to {structure.period(periods.min()):.4g}: it must be from "
+            f"{1 / LARGEST:g} to {LARGEST:g}, periods from {low:.4g} to {high:.4g} s"
+        )
+    if a > LARGEST:
+        raise InputError(f"{structure.name}: a = a_g/(g lambda) up to {a:.4g}: it must be at most {LARGEST:g}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,10 +206,12 @@ class Comparison:
     top: float
 
     @property
-    def first(self) -> Integers:
-        """For each period the place of the structure that goes first; -1 if none overturns."""
+    def firsts(self) -> NDArray[np.bool_]:
+        """Whether a structure goes first at a period, shape (k, n): several whose least amplitudes are equal do so."""
         least = np.where(np.isnan(self.least), np.inf, self.least)
-        return np.where(np.isinf(least.min(axis=0)), -1, least.argmin(axis=0))
+        lowest = least.min(axis=0)
+        first: NDArray[np.bool_] = np.isfinite(least) & (least <= lowest * (1 + TIE))
+        return first
 
 
 def compare(
@@ -227,6 +246,8 @@ def compare(
     overturns, until nothing lower is found; the interval that is left is halved. An island of overturning narrower
     than a step, 0.7 % of a - 1, may be missed.
     """
+    for each in structures:
+        _check_range(each, periods, top * STANDARD_GRAVITY / each.unit)
     least = np.array([_least(each, shape, periods, top, polarities, progress) for each in structures])
     return Comparison(tuple(structures), shape, tuple(polarities), periods, least / STANDARD_GRAVITY, top)
 
