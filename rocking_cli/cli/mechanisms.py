@@ -97,7 +97,7 @@ def fields(cls: type[Mechanism]) -> list[dict[str, Any]]:
             {
                 "field": key,
                 "unit": extra.get("unit", ""),
-                "units": list(units_of(extra.get("unit", ""))),
+                "units": list(units_of(str(extra.get("unit", "")))),
                 "symbol": extra.get("symbol", ""),
                 "bounds": ", ".join(bounds),
                 "required": info.is_required(),
