@@ -308,3 +308,11 @@ def test_levels_that_only_rounding_tells_apart(tmp_path, levels, said):
 def test_a_distribution_that_is_nothing_is_none(tmp_path):
     (found,) = problems(tmp_path, GOOD.replace("{normal: {mean: 0.7, deviation: 0.05}}", "{normal: null}"))
     assert found.field == "structures[2].vary.width" and "give one distribution" in found.message
+
+
+@pytest.mark.parametrize(
+    "given", ["triangular: {low: 1, mode: 2, high: 1.0e+308}", "lognormal: {median: 1.0e+308, dispersion: 9}"]
+)
+def test_draws_beyond_all_numbers_are_samples_that_cannot_be_built(tmp_path, given):
+    (found,) = problems(tmp_path, GOOD.replace("normal: {mean: 0.7, deviation: 0.05}", given))
+    assert found.field == "structures[2].vary" and "samples cannot be built" in found.message

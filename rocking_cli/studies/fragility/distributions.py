@@ -174,4 +174,5 @@ def draw(
     uniform = rng.random(count)
     if method == "latin hypercube":
         uniform = (rng.permutation(count) + uniform) / count
-    return distribution.quantile(np.clip(uniform, LEAST, 1 - 2 * LEAST))
+    with np.errstate(over="ignore"):  # what is beyond all numbers is infinite, and no structure can be built of it
+        return distribution.quantile(np.clip(uniform, LEAST, 1 - 2 * LEAST))
