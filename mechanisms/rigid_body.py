@@ -223,8 +223,7 @@ def _meet(a: Points, b: Points, c: Points, d: Points) -> Bools:
 
     def within(p: Points, q: Points, r: Points, where: Reals) -> Bools:
         u, v = r - p, r - q
-        between: Bools = (where == 0) & (u.real * v.real + u.imag * v.imag <= 0)
-        return between
+        return np.asarray((where == 0) & (u.real * v.real + u.imag * v.imag <= 0))
 
     of_c, of_d, of_a, of_b = side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)
     touch = within(a, b, c, of_c) | within(a, b, d, of_d) | within(c, d, a, of_a) | within(c, d, b, of_b)

@@ -8,7 +8,7 @@ import click
 
 from rocking_cli.cli import options, terminal
 
-UNITS = "A bare number is in the unit in brackets; others go with the number, such as 800 mm, 12 ft or 2.1 t/m3."
+UNITS = "A bare number is in the unit in brackets; 800 mm or 12 ft are read too."
 
 
 @click.command(short_help="Print a commented structure file that works as it is.")
