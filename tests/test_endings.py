@@ -41,6 +41,7 @@ def test_who_ignores_a_signal_goes_on_ignoring_it():
     try:
         with endings.in_order():
             os.kill(os.getpid(), signal.SIGHUP)
+            assert signal.getsignal(signal.SIGTERM) != signal.SIG_DFL  # else the next lines would end the tests
             with pytest.raises(endings.Stopped):
                 os.kill(os.getpid(), signal.SIGTERM)
                 time.sleep(1)
@@ -48,6 +49,21 @@ def test_who_ignores_a_signal_goes_on_ignoring_it():
         assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signals to send to one process")
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_signal_that_comes_where_python_drops_exceptions_is_not_lost(number):
+    class Deleted:
+        def __del__(self):
+            os.kill(os.getpid(), number)
+            time.sleep(0.01)
+
+    with pytest.raises(KeyboardInterrupt) as caught, endings.in_order():
+        assert signal.getsignal(number) != signal.SIG_DFL
+        Deleted()
+        time.sleep(60)
+    assert endings.exit_code(caught.value) == 128 + number
 
 
 def test_an_interrupt_ends_any_command_with_130(monkeypatch):

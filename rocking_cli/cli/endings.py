@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,6 +11,7 @@ from types import FrameType
 from typing import NoReturn
 
 ASKED = ("SIGTERM", "SIGHUP")  # `kill`, and a terminal that is closed; Windows has not the second
+AGAIN = 0.05  # s after which a signal that was lost is given again
 
 
 class Stopped(KeyboardInterrupt):
@@ -22,13 +24,26 @@ class Stopped(KeyboardInterrupt):
 
 def exit_code(stopped: KeyboardInterrupt) -> int:
     """The exit code that shells give a program that a signal ended: 130 for Ctrl-C."""
-    return 128 + (stopped.number if isinstance(stopped, Stopped) else signal.SIGINT)
+    return 128 + _number(stopped)
+
+
+def _number(stopped: BaseException | None) -> int:
+    return stopped.number if isinstance(stopped, Stopped) else signal.SIGINT
 
 
 @contextmanager
 def in_order() -> Iterator[None]:
     """Make of the signals that ask for an end a `Stopped`; not of those that somebody ignores, as `nohup` does."""
-    kept = {}
+    kept, unraisable = {}, sys.unraisablehook
+
+    def not_lost(what: sys.UnraisableHookArgs) -> None:
+        """Give a signal again that came where Python drops exceptions, such as while an object is deleted."""
+        if isinstance(what.exc_value, KeyboardInterrupt):
+            threading.Timer(AGAIN, signal.raise_signal, [_number(what.exc_value)]).start()
+        else:
+            unraisable(what)
+
+    sys.unraisablehook = not_lost
     if threading.current_thread() is threading.main_thread():  # nobody else may
         for number in (getattr(signal, name) for name in ASKED if hasattr(signal, name)):
             if signal.getsignal(number) == signal.SIG_DFL:
@@ -36,6 +51,7 @@ def in_order() -> Iterator[None]:
     try:
         yield
     finally:
+        sys.unraisablehook = unraisable
         for number, handler in kept.items():
             signal.signal(number, handler)
 
