@@ -10,7 +10,7 @@ import stat
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import IO, Any, BinaryIO
 
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
 
@@ -46,7 +46,7 @@ def read_bytes(
                 raise IsADirectoryError
             if not stat.S_ISREG(kind):
                 raise InputError(Problem(f"this is a device or a pipe, not a {what}", shown, hint=if_pipe))
-            content = file.read(most + 1)
+            content = read_at_most(file, most)
     except FileNotFoundError:
         raise InputError(Problem("no such file", shown, hint="check the path")) from None
     except IsADirectoryError:
@@ -56,9 +56,23 @@ def read_bytes(
         if Path(shown.replace("\0", "")).is_dir():  # Windows does not open folders at all
             reason = "it is a folder"
         raise InputError(Problem(f"cannot be read: {reason}", shown)) from None
-    if len(content) > most:
+    if content is None:
         raise InputError(Problem(f"this is no {what}: it is larger than {most / 1e6:.4g} MB", shown))
     return content
+
+
+def read_at_most(stream: IO[bytes] | io.BufferedIOBase, most: int) -> bytes | None:
+    """All that a stream gives, or None if it is more than `most` bytes.
+
+    It is asked a piece at a time: asked for `most` bytes at once, it would set aside memory for as many.
+    """
+    pieces, size = [], 0
+    while piece := stream.read(1 << 20):
+        pieces.append(piece)
+        size += len(piece)
+        if size > most:
+            return None
+    return b"".join(pieces)
 
 
 def check_writable(path: Path) -> None:

@@ -8,11 +8,11 @@ import sys
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.files import read_bytes
+from rocking_cli.files import read_at_most, read_bytes
 
 STANDARD_INPUT = "-"
 LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB
@@ -112,14 +112,14 @@ def _bytes(path: str | Path) -> bytes:
 def _from_standard_input() -> bytes:
     """All that standard input gives, once."""
     file = name_of(STANDARD_INPUT)
-    stream = sys.stdin
+    stream: Any = sys.stdin
     if stream is None:
         raise InputError(Problem("there is none", file, hint="give a file"))
     if stream in _taken:
         message = "it can be read once only, and another record has been read from it"
         raise InputError(Problem(message, file, hint="give one of them as a file"))
     try:
-        data = _at_most(getattr(stream, "buffer", stream), LARGEST)
+        data = read_at_most(getattr(stream, "buffer", stream), LARGEST)
     except (OSError, ValueError) as error:  # ValueError: it is closed
         raise InputError(Problem(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)) from None
     if data is None:
@@ -128,21 +128,10 @@ def _from_standard_input() -> bytes:
     return data
 
 
-def _at_most(stream: BinaryIO | Any, most: int) -> bytes | None:
-    """All that a stream gives; None if it is more than `most` bytes. No more is asked for than there is."""
-    parts, size = [], 0
-    while part := stream.read(1 << 20):
-        parts.append(part)
-        size += len(part)
-        if size > most:
-            return None
-    return b"".join(parts)
-
-
 def _of_gzip(data: bytes, file: str) -> bytes:
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as stream:
-            found = _at_most(stream, EXPANDED)
+            found = read_at_most(stream, EXPANDED)
     except Exception as error:  # of many kinds, without a base of their own
         raise InputError(_damaged("gzip file", error, file)) from None
     if found is None:
@@ -173,7 +162,7 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
         raise InputError(_too_large(inside))
     try:
         with archive.open(member) as stream:
-            found = _at_most(stream, EXPANDED)
+            found = read_at_most(stream, EXPANDED)
     except Exception as error:  # of many kinds, without a base of their own
         raise InputError(_damaged("zip archive", error, inside)) from None
     if found is None:
