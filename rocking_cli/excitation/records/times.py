@@ -60,14 +60,15 @@ def even_interval(time: NDArray[np.float64]) -> float:
         hint = "the first column must be the time, in seconds"
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
     usual = float(np.median(steps))
-    even = time[0] + dt * np.arange(len(time))
-    step_off, time_off = np.abs(steps - usual), np.abs(time - even)
 
     def odd(rounding: NDArray[np.float64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
         # The steps find a missing sample where it is; the distances find steps that grow bit by bit.
-        tolerance = np.maximum(0.01 * dt, 1.001 * rounding)
-        return step_off > np.maximum(tolerance[1:], tolerance[:-1]), time_off > np.maximum(tolerance, tolerance[-1])
+        of_times = of_steps = np.maximum(0.01 * dt, 1.001 * rounding)
+        if of_times.ndim:
+            of_steps = np.maximum(of_times[1:], of_times[:-1])
+            of_times = np.maximum(of_times, of_times[-1])
+        return np.abs(steps - usual) > of_steps, np.abs(time - (time[0] + dt * np.arange(len(time)))) > of_times
 
     odd_step, out_of_step = odd(_of_decimals(time, dt))
     if (odd_step.any() or out_of_step.any()) and (rounding := _of_digits(time, dt)).any():
@@ -79,17 +80,17 @@ def even_interval(time: NDArray[np.float64]) -> float:
         message = f"time is uneven: a step of {steps[row - 1]:.6g} s here, of {usual:.6g} s elsewhere"
     else:
         row = int(np.argmax(out_of_step))
-        message = f"time is uneven: {time[row]:.9g} s here, a constant interval would give {even[row]:.9g} s"
+        message = f"time is uneven: {time[row]:.9g} s here, a constant interval would give {time[0] + dt * row:.9g} s"
     hint = "resample at a constant interval; if only the printed times are rough, keep the accelerations and give --dt"
     raise UnevenTimeError(message, hint, row)
 
 
 def _of_decimals(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-    """Find the resolution times are printed with [s], if it is below a tenth of `dt` but not negligible; else 0."""
+    """Find the one resolution of all times [s], if it is below a tenth of `dt` but not negligible; else 0."""
     decimals = math.floor(-math.log10(dt / 10) + 1e-9) + 1
     resolution = 10.0**-decimals
     rounded = (np.abs(time - np.round(time, decimals)) < 1e-6 * resolution).all()
-    return np.full(time.size, resolution if rounded else 0.0)
+    return np.array(resolution if rounded else 0.0)
 
 
 def _of_digits(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
