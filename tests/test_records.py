@@ -993,6 +993,11 @@ def test_two_components_without_times(write):
     assert "does not increase" in problem(path, dt=0.01).message
 
 
+def test_accelerations_that_repeat_the_times_are_no_times(write):
+    path = write("x,y\n0,0\n0.02,0.02\n")
+    assert accelerations(read_record(path, channel="1", units="m/s2")) == [0, 0.02]
+
+
 @pytest.mark.parametrize("channel", ["1", "accel [g]", "accel"])
 def test_the_only_column_may_be_named(write, channel):
     assert read_record(write("t,accel [g]\n0,1\n0.01,2\n"), channel=channel).name == "record.txt"
@@ -1014,6 +1019,12 @@ def test_times_of_six_digits_are_even(write, dt, n):
 
 def test_times_whose_digits_no_longer_tell_samples_apart_are_refused(write):
     assert "time" in problem(times(write, *printed(1 / 800, 90000))).message
+
+
+def test_times_of_few_decimals_are_not_taken_for_times_of_few_digits(write):
+    rows = [f"{k * 0.005:.3f}" for k in range(4000)]
+    rows[3000] = "15.001"
+    assert problem(times(write, *rows)).line == 3000 + 4
 
 
 @pytest.mark.parametrize("missing", [10, 7000, 12345])

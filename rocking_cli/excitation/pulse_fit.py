@@ -80,7 +80,7 @@ class PulseFit:
         """The pulse without its record, on the samples of the record, without a vertical component."""
         name = f"{self.pulse} of {motion.name}"
         a = self.acceleration(np.arange(motion.npts, dtype=np.float64) * motion.dt)
-        return replace(motion, name=name, acceleration=a, format="pulse", vertical=None)
+        return replace(motion, name=name, acceleration=a, format="pulse", vertical=None, points=None)
 
 
 def fit_pulse(motion: GroundMotion, shape: str, criterion: Criterion) -> PulseFit:

@@ -170,7 +170,7 @@ def _times(
     called = [k for k, label in enumerate(names) if label.is_time]
     found = [k for k in called if (np.diff(table[k]) > 0).all()]
     if not found and increases(table[0]):
-        found = [k for k in range(len(table)) if np.array_equal(table[k], table[0])]
+        found = [0, *(k for k in range(1, len(table) - 1) if np.array_equal(table[k], table[0]))]
     return found or [k for k in called if not _BARE_T.fullmatch(str(names[k]))]
 
 
