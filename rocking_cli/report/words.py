@@ -228,7 +228,7 @@ def _trusted(shaking: Shaking) -> str:
         first = "The nonlinear one."
     said = [first, itself, *(text[0].upper() + text[1:] for text in bearing(runs, called))]
     if disagree(runs):
-        said.append("So near to overturning small changes of the motion decide.")
+        said.append("Vary the motion before relying on either.")
     return " ".join(said)
 
 
