@@ -285,7 +285,7 @@ class TestCompare:
 
     def test_too_small_amplitudes_overturn_nothing(self):
         found = compare([shaken(BLOCK, "linear2", SINE)], SINE, np.array([1.0]), 0.2)
-        assert np.isnan(found.least).all() and found.first.tolist() == [-1]
+        assert np.isnan(found.least).all() and found.firsts.tolist() == [[False]]
 
 
 class TestShape:
