@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from rocking_cli.text import printable, quoted_line
+from rocking_cli.text import one_line, printable, quoted_line
 
 INCOMPLETE = 5
 """Exit code of a command that did its work except for what it reports: one bad record in a hundred."""
@@ -46,7 +46,7 @@ class Problem:
     hint: str | None = None
 
     def __str__(self) -> str:
-        place = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
+        place = ":".join(one_line(str(part)) for part in (self.file, self.line, self.column) if part is not None)
         # What is quoted of a file must not command the terminal, nor fill it.
         head = ": ".join(printable(part) for part in (place, self.field, self.message) if part)
         lines = [head]

@@ -11,7 +11,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.field_problems import problems
 from rocking_cli.plugins import did_you_mean
 from rocking_cli.registry import Registry
-from rocking_cli.text import cut, printable
+from rocking_cli.text import cut, one_line
 from rocking_cli.yaml_file import Document, parse, read_text
 
 
@@ -37,7 +37,8 @@ def load_structure(path: str | Path, registry: Registry | None = None) -> Mechan
     MechanismError
         If the mechanism's plugin cannot be used.
     """
-    return parse_structure(read_text(Path(path), "structure"), str(path), printable(Path(path).stem), registry)
+    name = one_line(Path(path).stem).strip() or "structure"
+    return parse_structure(read_text(Path(path), "structure"), str(path), name, registry)
 
 
 def parse_structure(text: str, file: str, default_name: str, registry: Registry | None = None) -> Mechanism:

@@ -33,6 +33,11 @@ def _spelled(found: re.Match[str]) -> str:
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
 
 
+def one_line(text: str) -> str:
+    """A text as `printable` shows it, with its tabs and line feeds spelled out too: a file name may hold any."""
+    return printable(text).replace("\t", r"\t").replace("\n", r"\n")
+
+
 def is_one_line(text: str) -> bool:
     """Whether a text can be shown as it is, in one line."""
     return not _UNSEEN.search(text) and not {"\t", "\n"} & set(text)

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking_cli.errors import Problem
-from rocking_cli.text import cut, is_one_line, printable
+from rocking_cli.text import cut, is_one_line, one_line, printable
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 
@@ -28,8 +28,9 @@ def test_what_is_printable_harms_nothing_and_stays(text):
     assert not HARMFUL.search(shown)
     assert printable(shown) == shown
     shown.encode()
+    assert is_one_line(one_line(text))
     if is_one_line(text):
-        assert shown == text
+        assert shown == one_line(text) == text
 
 
 def test_characters_are_spelled_as_people_know_them():
@@ -164,3 +165,12 @@ def test_a_structure_file_that_a_study_does_not_find_has_a_line(tmp_path):
     assert "st.yaml:2:5: structures[1]: nosuch.yaml: no such file" in run(
         "fragility", "st.yaml", "--check", code=2
     ).stderr.replace(str(tmp_path), "").replace("/nosuch", "nosuch")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such file names here")
+@pytest.mark.parametrize("name", ["a\nerror: b\t.yaml", " .yaml", "\x1b.yaml"])
+def test_a_structure_is_called_after_any_file(name, tmp_path):
+    (tmp_path / name).write_text(BLOCK, encoding="utf-8")
+    assert len(run("equiv", name, "--csv").stdout.splitlines()) == 3
+    (tmp_path / name).write_text("mechanism: blok\n", encoding="utf-8")
+    assert run("equiv", name, code=2).stderr.startswith(f"error: {one_line(name)}:1:12: mechanism: unknown")

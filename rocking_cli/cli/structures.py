@@ -12,7 +12,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
 from rocking_cli.structure import load_structure, parse_structure
-from rocking_cli.text import printable
+from rocking_cli.text import one_line
 
 HERE = "rocking.yaml"
 DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
@@ -106,7 +106,7 @@ def _unnamed() -> Mechanism:
 def told_apart(mechanisms: Sequence[Mechanism], files: Sequence[str]) -> list[Mechanism]:
     """The structures, those that share a name called after their files too."""
     names = [each.name for each in mechanisms]
-    longer = [f"{name} ({printable(Path(file).name)})" for name, file in zip(names, files, strict=True)]
+    longer = [f"{name} ({one_line(Path(file).name)})" for name, file in zip(names, files, strict=True)]
     return [
         each.model_copy(update={"name": name}) if names.count(each.name) > 1 else each
         for each, name in zip(mechanisms, longer, strict=True)

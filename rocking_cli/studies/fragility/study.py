@@ -33,7 +33,7 @@ from rocking_cli.studies.fragility.definition import (
 from rocking_cli.studies.fragility.distributions import Distribution, draw
 from rocking_cli.studies.fragility.hazard import HazardCurve, read_hazard
 from rocking_cli.studies.fragility.sources import Source
-from rocking_cli.text import printable
+from rocking_cli.text import one_line
 from rocking_cli.yaml_file import Document, Place
 
 RESTITUTION = "restitution"
@@ -167,7 +167,7 @@ def load_study(path: str | Path) -> Study:
     document.check()
     assert definition is not None
     known = tuple(each for each in structures if each is not None)
-    return Study(definition.name or printable(path.stem), definition, known, tuple(samples), tuple(sources), hazard)
+    return Study(definition.name or one_line(path.stem), definition, known, tuple(samples), tuple(sources), hazard)
 
 
 def _structure(document: Document, place: Place, folder: Path, entry: StructureEntry) -> Mechanism | None:
@@ -241,7 +241,7 @@ def _within(document: Document, place: Place, key: str) -> Place:
 
 def _shown(path: Path, folder: Path) -> str:
     """A file as the study names it, alike on every system."""
-    return printable((path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix())
+    return one_line((path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix())
 
 
 def _refuse_repeated(document: Document, field: str, names: Sequence[str]) -> None:
