@@ -187,3 +187,15 @@ def test_a_store_is_no_pipe(sound, tmp_path):
         assert result.exit_code == 2 and "this is a device or a pipe" in result.stderr
     assert "this is a device or a pipe" in command("results", place).stderr
     assert place.is_fifo() and names(tmp_path) == ["pipe.db"]
+
+
+@pytest.mark.parametrize("place_in_header", [16, 18, 19, 21, 47, 59])
+def test_restart_puts_a_store_with_a_damaged_header_aside(sound, place, place_in_header):
+    content = bytearray(place.read_bytes())
+    content[place_in_header] = 99
+    place.write_bytes(content)
+    refused = command("fragility", sound.study, "--store", place)
+    assert refused.exit_code in (1, 2) and place.read_bytes() == content
+    result = command("fragility", sound.study, "--store", place, "--restart", "--json")
+    assert result.exit_code == 0 and shown(result.stdout) == sound.shown
+    assert place.with_name("study.before.db").read_bytes() == content

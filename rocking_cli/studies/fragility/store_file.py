@@ -30,6 +30,9 @@ HINTS = {
     sqlite3.SQLITE_READONLY: f"see to its rights, and whether somebody has moved it: {GOES_ON}",
 }
 
+# What SQLite says of a damaged header, or of pages that are not there.
+BEYOND_READING = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_READONLY)
+
 
 class StoreError(Refused):
     """A store that the system does not let us write or read."""
@@ -92,7 +95,7 @@ def tables(connection: sqlite3.Connection) -> int:
 
 def is_beyond_reading(path: Path, error: sqlite3.DatabaseError) -> bool:
     """Whether an error says that a file, by its first bytes a store, is damaged so that it cannot even be locked."""
-    if getattr(error, "sqlite_errorcode", 0) & 0xFF != sqlite3.SQLITE_CORRUPT:
+    if getattr(error, "sqlite_errorcode", 0) & 0xFF not in BEYOND_READING:
         return False
     with path.open("rb") as file:
         start = file.read(100)
