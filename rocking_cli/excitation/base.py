@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError
+
+if TYPE_CHECKING:
+    from rocking_cli.excitation.doubts import Doubt
 
 STANDARD_GRAVITY = 9.80665  # m/s2
 
@@ -35,6 +39,8 @@ class GroundMotion:
         all were.
     every : int
         Of how many samples a history keeps one: a pulse is sampled more finely than its history need be shown.
+    remarks : tuple of Doubt, optional
+        What its reader found doubtful in the file.
 
     Raises
     ------
@@ -50,6 +56,7 @@ class GroundMotion:
     vertical: GroundMotion | None = None
     points: NDArray[np.intp] | None = None
     every: int = 1
+    remarks: tuple[Doubt, ...] = ()
 
     def __post_init__(self) -> None:
         samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)

@@ -18,7 +18,13 @@ START = 0.05  # first acceleration over the peak
 FINAL_VELOCITY = 0.1  # over the peak; corrected records stay below 0.06
 FINAL_DISPLACEMENT = 0.5  # over the peak; a fling near a fault may leave as much
 CLIPPED = 3  # equal samples in a row at an extreme
+SPIKE = 8  # times what is left about a sample that would be moved; sound records stay below 5
+DROPOUT = 5  # equal samples in a row, between two jumps
+JUMP = 0.05  # over the peak
+STEP = 3  # over the usual step: in a record of few digits a step of one digit is none
+NOTICEABLE = 0.001  # of the peak: what is left about a sample is not taken for less
 GROWTH = 0.1  # p dt: how much a motion near overturning grows from one sample to the next
+_AROUND = 18  # samples on either side that must be smooth for one to stand out
 
 
 class Doubt(NamedTuple):
@@ -27,9 +33,12 @@ class Doubt(NamedTuple):
     Parameters
     ----------
     kind : str
-        A word for programs: dt, mean_period, pga, offset, start, final_velocity, final_displacement, clipped or p_dt.
+        A word for programs: dt, mean_period, pga, offset, start, final_velocity, final_displacement, clipped, spike,
+        dropout or p_dt; of what a reader found in a file, columns, digits, count, header_peak, header_time or
+        header_length.
     value : float
-        The number that raised it: in s, s, g, g, g, m/s, m, samples and 1.
+        The number that raised it: in s, s, g, g, g, m/s, m, samples, s, s and 1; rows (of free text the line), the
+        line, points, in the unit of the header, s and s.
     text : str
         A sentence for people.
     """
@@ -54,7 +63,15 @@ def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
     list of Doubt
         Empty if there is none.
     """
-    return _sampling(motion, measured) + _size(motion, measured) + _baseline(motion, measured) + _clipping(motion)
+    return [
+        *motion.remarks,
+        *_sampling(motion, measured),
+        *_size(motion, measured),
+        *_baseline(motion, measured),
+        *_clipping(motion),
+        *_spikes(motion),
+        *_dropouts(motion),
+    ]
 
 
 def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> list[Doubt]:
@@ -130,6 +147,62 @@ def _clipping(motion: GroundMotion) -> list[Doubt]:
             text = f"{run} {what} in a row stand at its extreme of {extreme / STANDARD_GRAVITY:.3g} g: clipped?"
             found.append(Doubt("clipped", float(run), text))
     return found
+
+
+def _spikes(motion: GroundMotion) -> list[Doubt]:
+    """Find samples that stand alone, as a lost sign or digit leaves them.
+
+    Off the cubic through its four neighbours a sample leaves a distance, and so do these neighbours: one wrong sample
+    leaves them in the ratio of `pattern`, and nothing else does that where all around is smooth.
+    """
+    a = motion.acceleration
+    if a.size < 2 * _AROUND:
+        return []
+    pattern = np.array([1, -4, 6, -4, 1]) / 6
+    off = np.convolve(a, pattern, "valid")  # of the samples from 2 to the last but 2
+    error = np.convolve(off, pattern[::-1], "valid") / (pattern @ pattern)
+    least = NOTICEABLE * float(np.abs(a).max())
+    found = []
+    for k in np.flatnonzero(np.abs(error) > SPIKE * least).tolist():
+        part = np.abs(off[k : k + 5] - error[k] * pattern)
+        if abs(error[k]) <= SPIKE * float(part.max()):
+            continue
+        around = np.concatenate([off[max(k - _AROUND, 0) : k], off[k + 5 : k + 5 + _AROUND]])
+        if abs(error[k]) > SPIKE * max(float(np.abs(around).max()), least):
+            found.append(k)
+    if not found:
+        return []
+    worst = max(found, key=lambda k: abs(error[k]))
+    sample, time = worst + 4, (worst + 4) * motion.dt
+    more = f", and {len(found) - 1} more like it" if len(found) > 1 else ""
+    text = (
+        f"sample {sample + 1}, at {time:.6g} s, stands alone{more}: {a[sample] / STANDARD_GRAVITY:.3g} g, where its "
+        f"neighbours make {(a[sample] - error[worst]) / STANDARD_GRAVITY:.3g} g: a damaged number?"
+    )
+    return [Doubt("spike", time, text)]
+
+
+def _dropouts(motion: GroundMotion) -> list[Doubt]:
+    """Find where the ground stands still all at once, and goes on as suddenly: values that were lost."""
+    a = motion.acceleration
+    steps = np.diff(a)
+    peak = float(np.abs(a).max())
+    changes = np.flatnonzero(steps)
+    if not changes.size:
+        return []
+    sizes = np.abs(steps[changes])
+    jumps = sizes > max(JUMP * peak, STEP * float(np.median(sizes)))
+    level = np.abs(a[changes[1:]]) < peak  # at the peak it is clipped
+    lost = np.flatnonzero((np.diff(changes) >= DROPOUT) & jumps[:-1] & jumps[1:] & level)
+    if not lost.size:
+        return []
+    start, end = (int(place) for place in changes[lost[0] : lost[0] + 2])
+    more = f", and {lost.size - 1} times more" if lost.size > 1 else ""
+    text = (
+        f"{end - start} samples from {(start + 1) * motion.dt:.6g} s on are all {a[end] / STANDARD_GRAVITY:.3g} g, "
+        f"between two jumps{more}: values that were lost?"
+    )
+    return [Doubt("dropout", (start + 1) * motion.dt, text)]
 
 
 def _longest_run(indexes: NDArray[np.intp]) -> int:
