@@ -43,9 +43,9 @@ def claims(text: str) -> list[str]:
     ]
 
 
-def columns(values, form: str, per_line: int, margin: str = "") -> str:
+def columns(values, form: str, per_line: int, margin: str = "", after: str = "") -> str:
     """Fortran's fixed-width columns."""
-    cells = [format(value, form) for value in values]
+    cells = [format(value, form) + after for value in values]
     return "".join(margin + "".join(cells[i : i + per_line]) + "\n" for i in range(0, len(cells), per_line))
 
 
@@ -140,7 +140,13 @@ def simcenter(values=VALUES, **changes) -> str:
 
 def esm(values=VALUES, count=None, unit="cm/s^2", kind="ACCELERATION") -> str:
     header = {"EVENT_NAME": "MADE UP", "SAMPLING_INTERVAL_S": "0.010000", "NDATA": count or len(values)}
-    header |= {"STREAM": "HNE", "UNITS": unit, "PGA_CM/S^2": "1.0", "DATA_TYPE": kind, "USER5": ""}
+    header |= {
+        "STREAM": "HNE",
+        "UNITS": unit,
+        "PGA_CM/S^2": f"{np.abs(values).max():.6f}",
+        "DATA_TYPE": kind,
+        "USER5": "",
+    }
     return "".join(f"{key}: {value}\n" for key, value in header.items()) + columns(values, ".6f", 1)
 
 
@@ -148,9 +154,11 @@ def geonet(values=VALUES, count=None, unit="mm/s/s", names=("S16W", "S74E", "Up"
     count = count or len(values)
     out = ""
     for factor, name in enumerate(names, start=1):
-        out += "Corrected accelerogram made up\nSite\n" + "x\n" * 7 + f"Number of points {count:5d}    Duration 1 sec\n"
+        out += "Corrected accelerogram made up\nSite\n" + "x\n" * 7
+        out += f"Number of points {count:5d}    Duration {0.01 * (len(values) - 1):.2f} sec\n"
         out += f"Instrument corrected data at 0.010 sec intervals\nx\nComponent {name}  Axis\n"
-        out += f"Acceleration:  peak    -41.6 {unit} at  43.68 sec     rms      2.2 {unit}\n"
+        peak = factor * np.abs(values).max()
+        out += f"Acceleration:  peak {peak:8.2f} {unit} at  43.68 sec     rms      2.2 {unit}\n"
         out += "Velocity:      peak     1.65 mm/s   at  43.56 sec\nDisplacement:  peak    0.131 mm\n"
         out += columns([0] * 30, "8d", 10) + f"   21200     250     250{count:8d}{count:8d}       0       0\n"
         out += columns([0.0] * 60, "8.1f", 10)
@@ -206,7 +214,7 @@ def usc(values=VALUES, times=None, count=None, unit="G/10") -> str:
     times = 0.01 * np.arange(len(values)) if times is None else times
     pairs = np.column_stack([times, values]).ravel()
     head = "FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\nMADE UP EARTHQUAKE\nCOMP N90E             9\n"
-    head += f"NO. OF POINTS =   {count or len(values)}      DURATION =  34.716 SEC       50\n"
+    head += f"NO. OF POINTS =   {count or len(values)}      DURATION = {times[-1]:7.3f} SEC       50\n"
     head += f"UNITS ARE SEC AND {unit}                    22\n"
     return head + columns([0] * 100, "5d", 16) + columns([0.0] * 50, "10.3f", 8) + columns(pairs, "7.3f", 10, " ")
 
@@ -233,9 +241,9 @@ def knet(values=VALUES, duration=11, rate="1Hz", scale="2000(gal)/1000000") -> s
     header = {"Origin Time": "2018/01/24 19:51:00", "Lat.": 41.0, "Long.": 142.5, "Depth. (km)": 30, "Mag.": 6.2}
     header |= {"Station Code": "MADE", "Station Lat.": 1, "Station Long.": 1, "Station Height(m)": 39, "Record Time": 0}
     header |= {"Sampling Freq(Hz)": rate, "Duration Time(s)": duration, "Dir.": "E-W", "Scale Factor": scale}
-    header |= {"Max. Acc. (gal)": 4.078, "Last Correction": 0, "Memo.": ""}
+    header |= {"Max. Acc. (gal)": f"{np.abs(values - values.mean()).max():.3f}", "Last Correction": 0, "Memo.": ""}
     counts = np.rint(500 * values).astype(int) - 12000
-    return "".join(f"{key:<18}{value}\n" for key, value in header.items()) + columns(counts, "9d", 8)
+    return "".join(f"{key:<18}{value}\n" for key, value in header.items()) + columns(counts, "8d", 8, after=" ")
 
 
 MADE = {
@@ -273,6 +281,7 @@ def test_made_files_are_read(name, newline, tmp_path):
     np.testing.assert_allclose(motion.acceleration, expected, rtol=1e-12, atol=1e-9)
     assert (motion.name, motion.unit, motion.format) == ("record.dat", unit, load_readers()[name].TITLE)
     assert motion.dt == pytest.approx(dt, rel=1e-12)
+    assert motion.remarks == ()
 
 
 @BY_FORMAT

@@ -249,6 +249,17 @@ def test_sac_with_a_wrong_number_of_points_is_refused(made):
     assert "the header says 99 points" in problem(patch(made("SAC", ("HNE", VALUES)), NPTS, integer(99))).message
 
 
+@pytest.mark.parametrize("offset", [4, 8])
+def test_sac_that_says_other_extremes_is_doubted(made, offset):
+    path = made("SAC", ("HNE", VALUES), byteorder="<")
+    assert read_record(path, units="g").remarks == ()
+    (doubt,) = read_record(patch(path, offset, struct.pack("<f", 0.76)), units="g").remarks
+    assert (doubt.kind, doubt.value) == ("header_peak", 1.0)
+    assert "go from -1 to 0.75" in doubt.text
+    unset = patch(path, offset, struct.pack("<f", -12345.0))
+    assert read_record(unset, units="g").remarks == ()
+
+
 def test_miniseed_3_is_recognised_though_not_read(tmp_path):
     path = tmp_path / "three"
     path.write_bytes(b"MS\x03\0" + bytes(4) + struct.pack("<HH", 2024, 60) + bytes(60))

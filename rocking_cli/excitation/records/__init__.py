@@ -14,6 +14,8 @@ from rocking_cli.excitation.records.registry import load_readers, reader_for, ta
 
 __all__ = ["read_record"]
 
+_MESSAGE, _EXCERPT = 500, 100  # characters
+
 
 def read_record(
     path: str | Path, *, dt: float | None = None, units: str | None = None, channel: str | None = None
@@ -52,10 +54,23 @@ def read_record(
     reader = reader_for(text, file, load_readers(), data)
     content = data if takes_bytes(reader) else text
     del data, text  # one of them is enough: a long record is large
-    motion = reader.read(content, file, dt=dt, units=units, channel=channel)
+    try:
+        motion = reader.read(content, file, dt=dt, units=units, channel=channel)
+    except InputError as error:
+        raise InputError(*map(_short, error.problems)) from None
     if Path(file).name == name:
         return motion
     # A file of an archive is named after the archive, and is one of its channels if there are several.
     inside = motion.name.removeprefix(Path(file).name).removeprefix(" channel ")
     said = ":".join(part for part in (member, inside) if part)
     return replace(motion, name=f"{name} channel {said}" if said else name)
+
+
+def _short(problem: Problem) -> Problem:
+    """Cut what a problem quotes of a file: a line of it may be of any length."""
+    message, excerpt = problem.message, problem.excerpt
+    if len(message) > _MESSAGE:
+        message = f"{message[: _MESSAGE * 2 // 3]} ... {message[-_MESSAGE // 3 :]}"
+    if excerpt is not None and len(excerpt) > _EXCERPT:
+        excerpt = f"{excerpt[:_EXCERPT]} ..."
+    return replace(problem, message=message, excerpt=excerpt)

@@ -10,8 +10,20 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.doubts import Doubt
+from rocking_cli.excitation.records.layout import (
+    Block,
+    Channel,
+    choose,
+    column_width,
+    fixed_width,
+    in_si,
+    lines_of,
+    stated_unit,
+    whole_number,
+)
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.excitation.records.text import numbers_in
 
 TITLE = "COSMOS"
@@ -29,9 +41,15 @@ _DATA = re.compile(
 _WIDTH = re.compile(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
 _LONG = 300  # characters; the format has 80
 _AZIMUTH = re.compile(r"Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)
+_CODE = re.compile(r"units *=[^(,]*\((\d{1,3})\)", re.I)
+_UNIT_CODES = {2: "g", 4: "cm/s2"}
 _END = re.compile(r"End-of-data for Chan *(\S+)", re.I)
 # Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
 _DT_MS, _DT_RAW = 62, 34
+_PEAK, _PEAK_TIME = 64, 65  # of the values, and when [s]
+_UNSET = -999
+_LINE = 10_000  # characters looked at of the first line
+_TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # more than any header has
 
 
 @dataclass(frozen=True)
@@ -46,14 +64,14 @@ class _Headers:
 
 def sniff(text: str) -> bool:
     """Whether the first line gives the version and the number of text lines."""
-    return _FIRST.match(text[:200].split("\n")[0]) is not None
+    return _FIRST.match(text[:_LINE].split("\n")[0]) is not None
 
 
 def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a COSMOS V1 or V2c file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = Lines(text)
+    lines = lines_of(text)
     channels: list[Channel] = []
     others: list[str] = []
     index = 0
@@ -82,7 +100,7 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
         message = "a channel must begin here, with a line that says (Format v01.20 with 13 text lines)"
         hint = "the file may have been cut or edited: download it again"
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
-    index = start + int(first[3])
+    index = start + whole_number(file, start + 1, lines[start], first[3], "number of text lines", most=_TEXT_LINES)
     azimuth = next((match[1] for line in lines[start:index] if (match := _AZIMUTH.match(line))), "")
     reals, reals_line = np.array([]), start + 1
     for kind in ("integer", "real"):
@@ -92,10 +110,13 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
             hint = "the number of text lines may be wrong: download the file again"
             raise InputError(Problem(message, file, min(index + 1, len(lines)), hint=hint))
         reals_line = index + 1
-        block = Block(index + 1, int(match[1]), _width(file, reals_line, match[3]), reals_line)
-        reals, index = fixed_width(file, lines, block, last=False)
+        line = lines[index]
+        count = whole_number(file, reals_line, line, match[1], f"number of {kind} values", most=_HEADER_VALUES)
+        block = Block(reals_line, count, _width(file, reals_line, match[3]), reals_line)
+        reals, index, _ = fixed_width(file, lines, block, last=False)
     if index < len(lines) and (match := _COMMENTS.match(lines[index])):
-        index += 1 + int(match[1])
+        what = "number of comment lines"
+        index += 1 + whole_number(file, index + 1, lines[index], match[1], what, least=0, most=_COMMENT_LINES)
     return _Headers(azimuth, reals, reals_line, index)
 
 
@@ -111,17 +132,33 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
             message = "the line that announces the values is not understood"
             hint = "it must be such as 7000 acceleration pts, approx 70 secs, units=cm/sec2(04),Format=(8F10.5)"
         raise InputError(Problem(message, file, min(line_number, len(lines)), excerpt=line.strip()[:100], hint=hint))
-    count = int(number(file, line_number, line, match[1], "number of points", least=1))
+    count = whole_number(file, line_number, line, match[1], "number of points", least=2)
     block = Block(line_number, count, _width(file, line_number, match[5]), line_number)
-    values, end = fixed_width(file, lines, block)
+    values, end, remarks = fixed_width(file, lines, block)
     if not match[2].lower().startswith("acc"):
         return match[2], end
     unit = stated_unit(file, line_number, match[4].strip(), units)
+    code = _CODE.search(line)
+    coded = _UNIT_CODES.get(int(code[1])) if code else None
+    if coded is not None and coded != unit:
+        message = f"the header says the unit is {unit}, but its code ({code[1] if code else ''}) stands for {coded}"
+        hint = "one of the two is damaged: download the file again"
+        raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100], hint=hint))
     (length,) = numbers_in(file, line_number, line, [match[3]])
     own = _interval(file, headers, count, length)
     mark = _END.match(lines[end]) if end < len(lines) else None
     name = mark[1] if mark and not mark[1].isdecimal() else headers.name
-    return Channel(name, own, in_si(values, unit), unit, headers.reals_line), end
+    remarks += _peak(headers, values, own, unit)
+    return Channel(name, own, in_si(values, unit), unit, headers.reals_line, remarks=remarks), end
+
+
+def _peak(headers: _Headers, values: NDArray[np.float64], dt: float, unit: str) -> tuple[Doubt, ...]:
+    """Whether the largest value is the one of the header."""
+    if headers.reals.size < _PEAK_TIME or headers.reals[_PEAK - 1] == _UNSET:
+        return ()
+    peak, time = headers.reals[_PEAK - 1], headers.reals[_PEAK_TIME - 1]
+    stated = "" if time == _UNSET else f"{time:.6f}"
+    return peak_doubts(values, dt, unit, headers.reals_line, f"{peak:.6f}", stated)
 
 
 def _announced(line: str) -> re.Match[str] | None:
@@ -150,6 +187,6 @@ def _interval(file: str, headers: _Headers, count: int, length: float) -> float:
 def _width(file: str, line_number: int, form: str) -> int:
     """Characters to a number in a Fortran format such as (8F10.5)."""
     match = _WIDTH.match(form)
-    if match is None or not int(match[1]):
+    if match is None:
         raise InputError(Problem(f"a format such as (8F10.5) is needed, this is {form}", file, line_number))
-    return int(match[1])
+    return column_width(file, line_number, form, match[1])

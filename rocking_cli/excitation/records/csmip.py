@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import csmip_v1
-from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
-from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.layout import (
+    Block,
+    Channel,
+    choose,
+    column_width,
+    fixed_width,
+    in_si,
+    lines_of,
+    number,
+    stated_unit,
+    whole_number,
+)
+from rocking_cli.excitation.records.stated import peak_doubts
 
 TITLE = "CSMIP V2"
 SIGN = "a line such as 3251 POINTS OF ACCEL DATA EQUALLY SPACED AT .020 SEC"
@@ -17,22 +29,24 @@ _DATA = re.compile(r"\s*(\d+) +POINTS OF (ACCEL|VELOC|DISPL)\w* +DATA EQUALLY SP
 _UNIT = re.compile(r"(?:\bunits:|\bin) *([^,()]*?\w)\.? *(?:[,()]|$|format)", re.I)
 _FORMAT = re.compile(r"\b\d+F(\d+)\.\d+", re.I)
 _CHANNEL = re.compile(r"\bCHAN(?:NEL)? +\d+: *(.*\S)", re.I)
+_PEAK = re.compile(r"PEAK ACCELERATION *= *(\S+) +CM/SEC/SEC +AT +(\S+) *SEC", re.I)
 _WIDTH = 10  # 8F10.3, unless the line says otherwise
 _HEAD = 100_000  # characters looked at to recognise the format
 
 
 def sniff(text: str) -> bool:
     """Whether the line that announces a history is there, and not of an uncorrected record, which may have it too."""
-    return not csmip_v1.sniff(text) and any(_DATA.match(line) for line in text[:_HEAD].split("\n"))
+    return not csmip_v1.sniff(text) and any(_DATA.match(line) for line in text[:_HEAD].expandtabs().split("\n"))
 
 
 def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a CSMIP V2 file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = Lines(text)
+    lines = lines_of(text)
     channels = []
     name = ""
+    peak: tuple[int, str, str] | None = None
     index = 0
     while index < len(lines):
         line = lines[index]
@@ -40,18 +54,28 @@ def read(
         # The first line of a channel has it too, followed by more; the one that begins with it comes later.
         if match := _CHANNEL.match(line.strip()):
             name = match[1]
+        if match := _PEAK.match(line.strip()):
+            peak = (index, match[1], match[2])
         data = _DATA.match(line)
         if data is None:
             continue
-        count = int(number(file, index, line, data[1], "number of points", least=1))
+        count = whole_number(file, index, line, data[1], "number of points", least=2)
         own = number(file, index, line, data[3], "sample interval")
         form = _FORMAT.search(data[4])
-        block = Block(index, count, int(form[1]) if form else _WIDTH, index)
-        values, index = fixed_width(file, lines, block)
+        width = column_width(file, index, line, form[1]) if form else _WIDTH
+        block = Block(index, count, width, index)
+        values, index, remarks = fixed_width(file, lines, block)
         if data[2].upper() == "ACCEL":
             spelling = _UNIT.search(data[4])
             unit = stated_unit(file, block.header_line, spelling[1] if spelling else "", units)
-            channels.append(Channel(name, own, in_si(values, unit), unit, block.header_line))
+            if peak is not None:
+                remarks += peak_doubts(100 * in_si(values, unit), own, "cm/s2", *peak)
+            channels.append(Channel(name, own, in_si(values, unit), unit, block.header_line, remarks=remarks))
+            peak = None
+        elif channels and not math.isclose(own, channels[-1].dt):
+            message = f"the interval is {own:g} s, but that of its accelerations {channels[-1].dt:g} s"
+            hint = "one of the two is damaged: download the file again"
+            raise InputError(Problem(message, file, block.header_line, excerpt=line.strip()[:100], hint=hint))
     if not channels:
         message = "the file holds no acceleration, only velocity or displacement"
         raise InputError(Problem(message, file, hint="give the file with the corrected acceleration"))

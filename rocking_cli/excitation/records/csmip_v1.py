@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
@@ -11,13 +12,17 @@ from rocking_cli.excitation.records.layout import (
     Block,
     Channel,
     choose,
+    column_width,
     fixed_width,
     in_si,
+    lines_of,
     number,
     old_unit,
     straight_lines,
+    whole_number,
 )
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.stated import length_doubts
 
 TITLE = "CSMIP V1"
 SIGN = "a first line that begins with UNCORRECTED ACCELEROGRAM DATA"
@@ -25,6 +30,8 @@ SIGN = "a first line that begins with UNCORRECTED ACCELEROGRAM DATA"
 FIRST = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
 _CHANNEL = re.compile(r"CHAN(?:NEL)? +\d+: *(.*?) *(?:\(STA CHN.*)?$", re.I)
 _COUNT = re.compile(r"NO\. OF POINTS *= *(\d+)", re.I)
+_LENGTH = re.compile(r"RECORD LENGTH *= *(\S+) *SEC", re.I)
+_AT_LEAST, _SHARE = 1.0, 0.02  # s, and of its length: what the length of a record may be rounded or cut by
 _UNITS = re.compile(r"UNITS OF UNCOR \w+ (?:ARE|IS) (?:SEC AND )?(.*?) *\.? *(?: {2,}.*)?$", re.I)
 # What announces samples at a constant interval: its number of points, kind, interval or rate, unit and format.
 _EVENLY = (
@@ -50,7 +57,7 @@ def read(
 
     The points of a digitised film are put on a constant interval as `layout.straight_lines` says.
     """
-    lines = Lines(text)
+    lines = lines_of(text)
     channels: list[Channel] = []
     start = 0
     while start < len(lines):
@@ -72,11 +79,17 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Ch
     name = next((match[1] for line in head if (match := _CHANNEL.match(line.strip()))), "")
     index = start + _TEXT_LINES
     for size, width in (_INTEGERS, _REALS):
-        _, index = fixed_width(file, lines, Block(index, size, width, start + 1), last=False)
+        _, index, _ = fixed_width(file, lines, Block(index, size, width, start + 1), last=False)
     line = lines[index] if index < len(lines) else ""
     for pattern in _EVENLY:
         if match := pattern.match(line):
-            return _evenly(file, lines, index, match, name, units)
+            found, end = _evenly(file, lines, index, match, name, units)
+            length = next(((n, m[1]) for n, line in enumerate(head, start + 1) if (m := _LENGTH.search(line))), None)
+            if length is not None:
+                lasting = found.acceleration.size * found.dt
+                tolerance = max(_AT_LEAST, _SHARE * lasting)
+                found = replace(found, remarks=found.remarks + length_doubts(lasting, *length, tolerance))
+            return found, end
     return _film(file, lines, start, index, name, units)
 
 
@@ -88,16 +101,16 @@ def _evenly(
     if not match[2].lower().startswith("accel"):
         message = f"the values are {match[2]} data, not accelerations"
         raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100]))
-    count = int(number(file, line_number, line, match[1], "number of points", least=1))
+    count = whole_number(file, line_number, line, match[1], "number of points", least=2)
     if "dt" in match.re.groupindex:
         own = number(file, line_number, line, match["dt"], "sample interval")
     else:
         own = 1 / number(file, line_number, line, match["rate"], "number of points per second")
     stated, form = _STATED.search(match[4]), _FORMAT.search(match[4])
     unit = old_unit(file, line_number, stated[1] if stated else "", units)
-    block = Block(line_number, count, int(form[1]) if form else _VALUES, line_number)
-    values, end = fixed_width(file, lines, block)
-    return Channel(name, own, in_si(values, unit), unit, line_number), end
+    width = column_width(file, line_number, line, form[1]) if form else _VALUES
+    values, end, remarks = fixed_width(file, lines, Block(line_number, count, width, line_number))
+    return Channel(name, own, in_si(values, unit), unit, line_number, remarks=remarks), end
 
 
 def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str | None) -> tuple[Channel, int]:
@@ -106,10 +119,10 @@ def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str
     count_line, count_text = _find(file, head, start, _COUNT, "number of points (NO. OF POINTS)")
     unit_line, spelling = _find(file, head, start, _UNITS, "unit (UNITS OF UNCOR ACCEL ARE SEC AND ...)")
     unit = old_unit(file, unit_line, spelling, units)
-    count = int(number(file, count_line, lines[count_line - 1], count_text, "number of points", least=1))
-    pairs, end = fixed_width(file, lines, Block(index, 2 * count, _PAIRS, count_line))
+    count = whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
+    pairs, end, remarks = fixed_width(file, lines, Block(index, 2 * count, _PAIRS, count_line))
     own, values, points = straight_lines(file, pairs, f"lines {index + 1} to {end}")
-    return Channel(name, own, in_si(values, unit), unit, points=points), end
+    return Channel(name, own, in_si(values, unit), unit, points=points, remarks=remarks), end
 
 
 def _find(file: str, head: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:

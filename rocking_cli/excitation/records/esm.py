@@ -6,15 +6,24 @@ import re
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
-from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.layout import (
+    Block,
+    Channel,
+    choose,
+    fixed_width,
+    in_si,
+    lines_of,
+    number,
+    stated_unit,
+    whole_number,
+)
+from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
 
 TITLE = "ESM ASCII"
 SIGN = "header lines SAMPLING_INTERVAL_S: and NDATA:"
 
 _KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(.*)")
 _HEAD = 20_000  # characters the header is sought in
-_WIDE = 100  # one value a line, however wide
 
 
 def sniff(text: str) -> bool:
@@ -26,7 +35,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read an ESM ASCII file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = Lines(text)
+    lines = lines_of(text)
     header: dict[str, tuple[int, str]] = {}
     start = 0
     while start < len(lines) and (match := _KEY.match(lines[start])):
@@ -48,7 +57,14 @@ def read(
     dt_line, dt_text = header["SAMPLING_INTERVAL_S"]
     own = number(file, dt_line, lines[dt_line - 1], dt_text, "sampling interval")
     count_line, count_text = header["NDATA"]
-    count = int(number(file, count_line, lines[count_line - 1], count_text, "number of points", least=1))
-    values, _ = fixed_width(file, lines, Block(start, count, _WIDE, count_line))
+    count = whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
+    values, _, remarks = fixed_width(file, lines, Block(start, count, None, count_line))
+    peak_line, peak = header.get("PGA_CM/S^2", (0, ""))
+    remarks += peak_doubts(
+        100 * in_si(values, unit), own, "cm/s2", peak_line, peak, header.get("TIME_PGA_S", (0, ""))[1]
+    )
+    length_line, length = header.get("DURATION_S", (0, ""))
+    remarks += length_doubts(count * own, length_line, length, own)
     _, stream = header.get("STREAM", (0, ""))
-    return choose(file, TITLE, [Channel(stream, own, in_si(values, unit), unit, dt_line)], channel, dt)
+    found = Channel(stream, own, in_si(values, unit), unit, dt_line, remarks=remarks)
+    return choose(file, TITLE, [found], channel, dt)

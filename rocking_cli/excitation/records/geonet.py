@@ -7,8 +7,19 @@ from collections.abc import Sequence
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
+from rocking_cli.excitation.records.layout import (
+    Block,
+    Channel,
+    choose,
+    fixed_width,
+    in_si,
+    lines_of,
+    number,
+    stated_unit,
+    whole_number,
+)
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
 
 TITLE = "GeoNet V2A"
 SIGN = "a first line Corrected accelerogram, and Number of points below it"
@@ -16,16 +27,19 @@ SIGN = "a first line Corrected accelerogram, and Number of points below it"
 _TEXT_LINES = 16
 _NUMBER_LINES = 10
 _WIDTH = 8
+_SIZE = re.compile("[0-9]{1,9}")
 _FIRST = re.compile(r"Corrected accelerogram\b")
 _COUNT = re.compile(r"Number of points\s+(\d+)")
+_DURATION = re.compile(r"Duration\s+(\S+)\s+sec")
 _DT = re.compile(r"data at\s+(\S+)\s+sec intervals")
 _COMPONENT = re.compile(r"Component\s+(\S+)")
 _UNIT = re.compile(r"Acceleration:\s+peak\s+\S+\s+(\S+)")
+_PEAK = re.compile(r"Acceleration:\s+peak\s+(\S+)")
 
 
 def sniff(text: str) -> bool:
     """Whether the first two lines of the header are those of a corrected GeoNet record."""
-    head = text[:5000].split("\n")[:_TEXT_LINES]
+    head = text[:5000].expandtabs().split("\n")[:_TEXT_LINES]
     return bool(_FIRST.match(head[0])) and any(_COUNT.match(line) for line in head)
 
 
@@ -33,7 +47,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a GeoNet V2A file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = Lines(text)
+    lines = lines_of(text)
     channels = []
     start = 0
     while start < len(lines) and lines[start].strip():
@@ -54,21 +68,30 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
     unit_line, spelling = _find(file, lines, start, _UNIT, "unit of the accelerations")
     unit = stated_unit(file, unit_line, spelling, units)
     own = number(file, dt_line, lines[dt_line - 1], interval, "sample interval")
-    npts = int(number(file, count_line, lines[count_line - 1], count, "number of points", least=1))
+    npts = whole_number(file, count_line, lines[count_line - 1], count, "number of points", least=2)
 
     # The fourth line of numbers says how long each of the three histories is; the last two may be left out.
     sizes_line = start + _TEXT_LINES + 3
-    sizes = lines[sizes_line].split()[3:6] if sizes_line < len(lines) else []
-    if len(sizes) < 3 or not all(size.isdecimal() for size in sizes) or int(sizes[0]) != npts:
+    sizes = (
+        [int(size) for size in lines[sizes_line].split()[3:6] if _SIZE.fullmatch(size)]
+        if sizes_line < len(lines)
+        else []
+    )
+    if len(sizes) < 3 or sizes[0] != npts:
         message = f"the numbers of the header do not give the {npts} points of its text, followed by two more counts"
         raise InputError(
             Problem(message, file, sizes_line + 1, hint="the file may have been edited: download it again")
         )
     end = start + _TEXT_LINES + _NUMBER_LINES
-    values, end = fixed_width(file, lines, Block(end, npts, _WIDTH, count_line), last=False)
+    values, end, remarks = fixed_width(file, lines, Block(end, npts, _WIDTH, count_line), last=False)
     for size in sizes[1:]:  # velocity and displacement
-        _, end = fixed_width(file, lines, Block(end, int(size), _WIDTH, sizes_line + 1), last=False)
-    return Channel(name, own, in_si(values, unit), unit, dt_line), end
+        _, end, _ = fixed_width(file, lines, Block(end, size, _WIDTH, sizes_line + 1), last=False)
+    if match := _PEAK.search(lines[unit_line - 1]):
+        # Not its time: that does not count the taper which was put in front of the values.
+        remarks += peak_doubts(values, own, unit, unit_line, match[1])
+    if match := _DURATION.search(lines[count_line - 1]):
+        remarks += length_doubts((npts - 1) * own, count_line, match[1], own)
+    return Channel(name, own, in_si(values, unit), unit, dt_line, remarks=remarks), end
 
 
 def _find(file: str, lines: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:

@@ -5,10 +5,23 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+import numpy as np
+
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
-from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.layout import (
+    Block,
+    Channel,
+    choose,
+    fixed_width,
+    in_si,
+    lines_of,
+    number,
+    stated_unit,
+    whole_number,
+)
+from rocking_cli.excitation.records.stated import peak_doubts
+from rocking_cli.excitation.records.text import sensible
 
 TITLE = "K-NET/KiK-net"
 SIGN = "header lines Sampling Freq(Hz) and Scale Factor"
@@ -16,14 +29,15 @@ SIGN = "header lines Sampling Freq(Hz) and Scale Factor"
 _RATE = re.compile(r"Sampling Freq\.? *\(Hz\)\s+([\d.]+) *Hz\s*$")
 _DURATION = re.compile(r"Duration Time *\(s\)\s+(\S+)\s*$")
 _SCALE = re.compile(r"Scale Factor\s+([\d.]+) *\((.*?)\) */ *([\d.]+)\s*$")
+_PEAK = re.compile(r"Max\. Acc\. *\(.*?\)\s+(\S+)\s*$")
 _DIRECTION = re.compile(r"Dir\.\s+(\S+)")
 _HEADER_LINES = 17
-_WIDTH = 9
+_WIDTH, _AFTER = 9, 1  # characters to a number, the last of them a blank
 
 
 def sniff(text: str) -> bool:
     """Whether the header has the rate and the scale factor under the names of K-NET."""
-    head = text[:5000].split("\n")[:_HEADER_LINES]
+    head = text[:5000].expandtabs().split("\n")[:_HEADER_LINES]
     return all(any(line.startswith(key) for line in head) for key in ("Sampling Freq", "Scale Factor"))
 
 
@@ -34,7 +48,8 @@ def read(
 
     Arguments, result and errors are those of `registry.Reader.read`.
     """
-    lines = Lines(text)
+    lines = lines_of(text)
+    head = lines[:_HEADER_LINES]
     rate_line, (rate_text,) = _find(file, lines, _RATE, "sampling frequency, such as 100Hz")
     scale_line, scale = _find(file, lines, _SCALE, "scale factor, such as 3920(gal)/6182761")
     length_line, (length_text,) = _find(file, lines, _DURATION, "duration")
@@ -43,12 +58,21 @@ def read(
     length = number(file, length_line, lines[length_line - 1], length_text, "duration")
     full, counts = (number(file, scale_line, lines[scale_line - 1], part, "scale factor") for part in scale[::2])
     # The format has no number of points: it is the rate times the duration.
-    block = Block(_HEADER_LINES, round(rate * length), _WIDTH, length_line)
-    number(file, length_line, lines[length_line - 1], str(block.count), "number of points", least=1)
-    values, _ = fixed_width(file, lines, block)
-    acceleration = in_si((values - values.mean()) * (full / counts), unit)
-    direction = next((match[1] for line in lines[:_HEADER_LINES] if (match := _DIRECTION.match(line))), "")
-    return choose(file, TITLE, [Channel(direction, 1 / rate, acceleration, unit, rate_line)], channel, dt)
+    line = lines[length_line - 1]
+    count = whole_number(file, length_line, line, f"{round(rate * length)}", "number of points", least=2)
+    values, _, remarks = fixed_width(file, lines, Block(_HEADER_LINES, count, _WIDTH, length_line, after=_AFTER))
+    if not sensible(float(np.abs(values).max()) * (full / counts)):
+        message = "the scale factor makes accelerations beyond all measure"
+        raise InputError(Problem(message, file, scale_line, excerpt=lines[scale_line - 1].strip()[:100]))
+    scaled = (values - values.mean()) * (full / counts)
+    acceleration = in_si(scaled, unit)
+    peak = next(((n, match[1]) for n, line in enumerate(head, 1) if (match := _PEAK.match(line))), None)
+    if peak is not None:
+        remarks += peak_doubts(scaled, 1 / rate, scale[1], *peak)
+    direction = next((match[1] for line in head if (match := _DIRECTION.match(line))), "")
+    return choose(
+        file, TITLE, [Channel(direction, 1 / rate, acceleration, unit, rate_line, remarks=remarks)], channel, dt
+    )
 
 
 def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, tuple[str, ...]]:

@@ -2,26 +2,34 @@
 
 from __future__ import annotations
 
+import math
 import re
 from array import array
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.doubts import Doubt
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
 from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, resolve_unit
+from rocking_cli.excitation.records.widths import Rows, odd_digits, split_numbers
 
 # A row of numbers has no letters but those of exponents; asterisks are an overflow, for `numbers_in` to refuse.
 _NO_ROW = re.compile(r"[^\s\d.+\-*EeDd]")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 TENTH_OF_G = "g/10"
 _GRID = 1e-3  # s; times of digitised films are printed with three decimals
+_LONGEST = 3600.0  # s; films ran for a minute or two, and each second is a thousand samples
+_MOST = 2_000_000_000  # numbers; no file that is read holds more
+_WIDEST = 1000  # characters to a number
+_TOUCHING = "the rows do not keep to columns of {} characters, so that numbers that touch cannot be told apart"
 
 
 @dataclass(frozen=True)
@@ -34,19 +42,25 @@ class Block:
         Index of its first line, counted from 0.
     count : int
         How many numbers the header says.
-    width : int
-        Characters to a number.
+    width : int or None
+        Characters to a number; None for numbers that stand in no columns.
     header_line : int
         Line number of the header that gives `count`, counted from 1.
     margin : int, optional
         Characters before the first number of a line.
+    after : int, optional
+        How many blanks end each column.
+    unset : float, optional
+        What stands for no value; it is read as NaN.
     """
 
     start: int
     count: int
-    width: int
+    width: int | None
     header_line: int
     margin: int = 0
+    after: int = 0
+    unset: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +83,8 @@ class Channel:
         Why it cannot be used: it is listed with that, and refused if it is chosen.
     points : ndarray of int, optional
         Indexes of the samples that were recorded, if not all of them.
+    remarks : tuple of Doubt, optional
+        What is doubtful about its place in the file.
     """
 
     name: str
@@ -78,10 +94,37 @@ class Channel:
     dt_line: int | None = None
     flaw: Problem | None = None
     points: NDArray[np.intp] | None = None
+    remarks: tuple[Doubt, ...] = ()
 
 
-def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> tuple[NDArray[np.float64], int]:
+class Numbers(NamedTuple):
+    """What `fixed_width` reads.
+
+    Parameters
+    ----------
+    values : ndarray, shape (count,)
+        The numbers.
+    end : int
+        Index of the line after the last one.
+    remarks : tuple of Doubt
+        What is doubtful about how they are printed.
+    """
+
+    values: NDArray[np.float64]
+    end: int
+    remarks: tuple[Doubt, ...]
+
+
+def lines_of(text: str) -> Lines:
+    """Lines of a file with columns: where an editor has put tabs there are blanks again."""
+    return Lines(text, tabs=True)
+
+
+def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> Numbers:
     """Read numbers that stand in columns of a constant width, with or without blanks between them.
+
+    A row that leaves its columns has lost a character, and its numbers with it. Where most rows do, an editor has taken
+    their blanks away: they are read as numbers with blanks between them, and that is a remark.
 
     Parameters
     ----------
@@ -96,38 +139,99 @@ def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> 
 
     Returns
     -------
-    values : ndarray, shape (block.count,)
-        The numbers.
-    end : int
-        Index of the line after the last one.
+    Numbers
 
     Raises
     ------
     InputError
-        If one is no finite number, or there are more or fewer than there must be.
+        If one is no finite number, there are more or fewer than there must be, or a few rows leave their columns.
     """
     values = array("d")  # a list would hold an object for each
     index = block.start
+    leaving: list[int] = []  # line numbers
+    unread: InputError | None = None
     for line in lines.since(block.start):
         if not _is_row(line) or (len(values) >= block.count and not last):
             break
         row = line.rstrip()
-        cells = [row[place : place + block.width].strip() for place in range(block.margin, len(row), block.width)]
-        try:
-            found = [float(cell.upper().replace("D", "E")) for cell in cells]
-        except ValueError:
-            found = []
-        if not found or not all(map(sensible, found)):
-            found = numbers_in(file, index + 1, row, cells)
-        values.extend(found)
         index += 1
+        cells = _cells(row, block)
+        if cells is None:
+            leaving.append(index)
+            cells = split_numbers(row)
+            try:
+                found = _floats(file, index, row, cells, block)
+            except InputError as error:
+                unread = unread or error
+                found = [math.nan] * len(cells)
+        else:
+            found = _floats(file, index, row, cells, block)
+        values.extend(found)
+    remarks: tuple[Doubt, ...] = ()
+    rows = index - block.start
+    if leaving:
+        if 2 * len(leaving) <= rows and not lines.edited:
+            raise InputError(_out_of_columns(file, lines, leaving, rows, block))
+        if unread is not None:
+            raise InputError(*(replace(each, hint=_TOUCHING.format(block.width)) for each in unread.problems))
+        remarks = (_no_columns(leaving, rows, block),)
     if len(values) != block.count:
         excerpt = lines[index].strip()[:100] if index < len(lines) else None
         where = f", up to line {index}" if index < len(lines) else ""
         message = f"the header says {block.count} values, but {len(values)} follow{where}"
         hint = "the file may have been cut short or edited: download it again"
+        if leaving:
+            hint += (
+                f"; its rows leave their columns of {block.width} characters, and numbers that touch are taken for one"
+            )
         raise InputError(Problem(message, file=file, line=block.header_line, excerpt=excerpt or None, hint=hint))
-    return np.array(values), index
+    if block.width is None or leaving:
+        remarks += tuple(odd_digits(Rows(lines, block.start, split_numbers, index)))
+    return Numbers(np.array(values), index, remarks)
+
+
+def _cells(row: str, block: Block) -> list[str] | None:
+    """The cells of a row; None if its numbers do not all end where their columns do."""
+    if block.width is None:
+        return [row]
+    wide, rest = divmod(len(row) - block.margin + block.after, block.width)
+    if rest or not wide or row[: block.margin].strip():
+        return None
+    first = block.margin - block.after
+    cells = [row[max(first + k * block.width, 0) : first + (k + 1) * block.width] for k in range(wide)]
+    return None if any(cell.endswith(" ") or len(cell.split()) != 1 for cell in cells) else cells
+
+
+def _floats(file: str, line_number: int, row: str, cells: Sequence[str], block: Block) -> list[float]:
+    """Values of cells, NaN for those that are not set."""
+    try:
+        found = [float(cell.upper().replace("D", "E")) for cell in cells]
+    except ValueError:
+        found = []
+    if found and block.unset is not None:
+        found = [math.nan if value == block.unset else value for value in found]
+        if all(sensible(value) or math.isnan(value) for value in found):
+            return found
+    if not found or not all(map(sensible, found)):
+        return numbers_in(file, line_number, row, cells)
+    return found
+
+
+def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, block: Block) -> Problem:
+    """Describe the first of a few rows that leave their columns."""
+    more = f" (as in {len(leaving) - 1} more of {rows})" if len(leaving) > 1 else ""
+    message = f"the numbers of this row do not end at their columns of {block.width} characters{more}"
+    hint = "a character was lost or added, so that its values are wrong: download the file again"
+    return Problem(message, file, leaving[0], excerpt=lines[leaving[0] - 1][:100], hint=hint)
+
+
+def _no_columns(leaving: Sequence[int], rows: int, block: Block) -> Doubt:
+    """Say that rows are read as free text."""
+    text = (
+        f"{len(leaving)} of its {rows} rows, from line {leaving[0]} on, do not keep to columns of {block.width} "
+        "characters: they were read as numbers with blanks between them. Did an editor save the file?"
+    )
+    return Doubt("columns", float(len(leaving)), text)
 
 
 def stated_unit(file: str, line_number: int, unit: str, units: str | None) -> str:
@@ -189,6 +293,11 @@ def straight_lines(
         Which of them are the points.
     """
     time, values = pairs.reshape(-1, 2).T
+    far = np.abs(time) > _LONGEST
+    if far.any():
+        point = int(np.argmax(far))
+        message = f"point {point + 1} is at {time[point]:g} s: no film runs for more than {_LONGEST:g} s"
+        raise InputError(Problem(message, file, hint=f"it is among {where}"))
     ticks = np.rint(time / _GRID).astype(np.int64)
     steps = np.diff(ticks)
     if (steps <= 0).any():
@@ -198,6 +307,24 @@ def straight_lines(
     step = int(np.gcd.reduce(steps))
     grid = np.arange(ticks[0], ticks[-1] + 1, step)
     return step * _GRID, np.interp(grid, ticks, values), ((ticks - ticks[0]) // step).astype(np.intp)
+
+
+def whole_number(
+    file: str, line_number: int, line: str, token: str, what: str, *, least: int = 1, most: int = _MOST
+) -> int:
+    """A whole number of the header from `least` to `most`; `what` says which it is."""
+    digits = token.strip()
+    # Python takes no more than some thousand digits for a number, and those of other scripts, too.
+    if re.fullmatch(r"[+-]?[0-9]{1,30}", digits) and least <= int(digits) <= most:
+        return int(digits)
+    shown = digits if len(digits) <= 40 else f"{digits[:20]}... ({len(digits)} characters)"
+    message = f"the {what} must be a whole number from {least} to {most}, this is {shown or 'missing'}"
+    raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100]))
+
+
+def column_width(file: str, line_number: int, line: str, token: str) -> int:
+    """Characters to a number, from the format of the header."""
+    return whole_number(file, line_number, line, token, "width of the columns", most=_WIDEST)
 
 
 def number(file: str, line_number: int, line: str, token: str, what: str, *, least: float = 0.0) -> float:
@@ -242,7 +369,9 @@ def choose(
     name = Path(file).name
     if len(channels) > 1:
         name += f" channel {chosen.name or 1 + list(channels).index(chosen)}"
-    return GroundMotion(name, chosen.dt, chosen.acceleration, chosen.unit, form, points=chosen.points)
+    return GroundMotion(
+        name, chosen.dt, chosen.acceleration, chosen.unit, form, points=chosen.points, remarks=chosen.remarks
+    )
 
 
 def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import overload
 
 PAGE = 1 << 16
@@ -17,10 +18,13 @@ class Lines(Sequence[str]):
     ----------
     text : str
         Content of a file, lines ending in a plain newline.
+    tabs : bool, optional
+        Whether there are blanks in place of tabs, as in a file with columns.
     """
 
-    def __init__(self, text: str) -> None:
-        self._text = text
+    def __init__(self, text: str, *, tabs: bool = False) -> None:
+        self._had_tabs = "\t" in text
+        self._text = text = text.expandtabs() if tabs and self._had_tabs else text
         self._starts = [0]  # of each page, in the text
         self._firsts = [0]  # index of its first line
         while (end := text.find("\n", self._starts[-1] + PAGE)) >= 0:
@@ -48,6 +52,11 @@ class Lines(Sequence[str]):
 
     def __iter__(self) -> Iterator[str]:
         return self.since(0)
+
+    @cached_property
+    def edited(self) -> bool:
+        """Whether an editor has gone over the blanks of a file with columns: tabs, or none before any line."""
+        return self._had_tabs or not (self._text.startswith(" ") or "\n " in self._text)
 
     def since(self, start: int) -> Iterator[str]:
         """Yield all lines from index `start` on: quicker than one index after the other."""

@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.layout import lines_of, whole_number
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
+from rocking_cli.excitation.records.widths import Rows, odd_digits, odd_row, split_numbers
 
 TITLE = "PEER AT2"
 SIGN = "a title with PEER and DATABASE, or a line with NPTS="
@@ -26,7 +28,6 @@ _DT = re.compile(rf"\bDT\s*=\s*({_FLOAT})", re.IGNORECASE)
 _OLD_STYLE = re.compile(rf"^\s*(\d+)[\s,]+({_FLOAT})[\s,]+NPTS\s*,\s*DT\b", re.IGNORECASE)
 _SIGNATURE = re.compile(r"^\s*PEER\b.*\bDATABASE\b", re.IGNORECASE)
 _BEGINS_WITH_NUMBER = re.compile(r"\s*[+-]?\.?\d")
-_GLUED = re.compile(r"(?<=[\d.])(?=[+-])")  # before a sign that follows a digit: Fortran columns run together
 _HEADER_LINES = 30  # where the header must have ended; four lines are usual
 
 
@@ -54,11 +55,16 @@ def read(
 ) -> GroundMotion:
     """Read a PEER AT2 file; arguments, result and errors are those of `registry.Reader.read`."""
     only_channel(file, channel)
-    lines = Lines(text)
+    lines = lines_of(text)
     header = _header(file, lines)
     unit = resolve_unit(file, list(enumerate(lines[: header.data], start=1)), units)
     check_interval(file, header.dt_line, header.dt, dt)
     values = _values(file, lines, header.data)
+    rows = Rows(lines, header.data, lambda line: split_numbers(line) if _plain(line) else [])
+    if (odd := odd_row(rows)) is not None:
+        message = "the numbers of this row do not end at the columns of the other rows"
+        hint = "a character was lost or added, so that its values are wrong: download the file again"
+        raise InputError(Problem(message, file, odd[0], excerpt=odd[1][:100], hint=hint))
     if len(values) != header.npts:
         message = f"the header says NPTS = {header.npts}, but the file has {len(values)} values"
         hint = "the file may have been cut short or edited: download it again, or correct NPTS"
@@ -66,7 +72,8 @@ def read(
     if header.npts < 2:
         message = f"a record needs at least two samples, this has {header.npts}"
         raise InputError(Problem(message, file=file, line=header.npts_line))
-    return GroundMotion(Path(file).name, header.dt, values * UNITS[unit], unit, TITLE)
+    remarks = tuple(odd_digits(rows))
+    return GroundMotion(Path(file).name, header.dt, values * UNITS[unit], unit, TITLE, remarks=remarks)
 
 
 def _header(file: str, lines: Sequence[str]) -> _Header:
@@ -90,13 +97,14 @@ def _header(file: str, lines: Sequence[str]) -> _Header:
         line_number = npts[1] if npts else None
         raise InputError(Problem(f"the header does not state the {missing}", file=file, line=line_number, hint=hint))
 
+    count = whole_number(file, npts[1], lines[npts[1] - 1], npts[0], "number of points", least=0)
     interval = float(dt[0].upper().replace("D", "E"))
     if not (math.isfinite(interval) and interval > 0):
         raise InputError(Problem(f"the sample interval must be positive, DT = {dt[0]}", file=file, line=dt[1]))
     data = max(npts[1], dt[1])
     while data < len(lines) and not _BEGINS_WITH_NUMBER.match(lines[data]):
         data += 1
-    return _Header(int(npts[0]), interval, npts[1], dt[1], data)
+    return _Header(count, interval, npts[1], dt[1], data)
 
 
 def _values(file: str, lines: Lines, data: int) -> NDArray[np.float64]:
@@ -109,7 +117,7 @@ def _page_values(file: str, first: int, page: Sequence[str]) -> NDArray[np.float
     body = "\n".join(filter(_plain, page))
     if "_" not in body:  # float() would take 1_000
         try:
-            values = np.array([float(token) for token in _split(body.upper().replace("D", "E"))])
+            values = np.array([float(token) for token in split_numbers(body.upper().replace("D", "E"))])
         except ValueError:
             pass
         else:
@@ -118,12 +126,8 @@ def _page_values(file: str, first: int, page: Sequence[str]) -> NDArray[np.float
     found: list[float] = []
     for number, line in enumerate(page, start=first + 1):
         if _plain(line):
-            found.extend(numbers_in(file, number, line, _split(line)))
+            found.extend(numbers_in(file, number, line, split_numbers(line)))
     return np.array(found)
-
-
-def _split(text: str) -> list[str]:
-    return _GLUED.sub(" ", text).split()
 
 
 def _plain(line: str) -> bool:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.doubts import Doubt
 from rocking_cli.excitation.records.layout import choose
 from rocking_cli.excitation.records.seismo import channel_of, given_unit, traces, velocity_code
 
@@ -20,14 +22,18 @@ _HEADER, _FOOTER = 632, 176  # bytes; version 7 ends with some of the header onc
 _VERSIONS = (6, 7)
 _TIME_SERIES, _XY = 1, 4  # of IFTYPE
 _ACCELERATION = 8  # of IDEP
+_UNSET = -12345.0
+_ROUNDED = 1e-5  # of the extremes, which have 32 bits
 _OTHERS = {6: "displacement", 7: "velocity", 50: "voltage"}
 
 
 @dataclass(frozen=True)
 class _Header:
-    """Words of the header: interval [s], version, number of points, kind of file, kind of values, whether even."""
+    """Words of the header: interval [s], extremes, version, number of points, kind of file, of values, whether even."""
 
     delta: float
+    least: float
+    most: float
     version: int
     npts: int
     kind: int
@@ -67,14 +73,30 @@ def read(
     flaw = None if header.quantity == _ACCELERATION else velocity_code(file, name)
     # 0.005 is stored as the nearest float of 32 bits, 0.004999999888: the shortest decimal of that was meant.
     own = float(str(np.float32(header.delta)))
-    return choose(file, TITLE, [channel_of(file, name, own, trace.data, unit, flaw)], channel, dt)
+    found = replace(channel_of(file, name, own, trace.data, unit, flaw), remarks=_extremes(header, trace.data))
+    return choose(file, TITLE, [found], channel, dt)
+
+
+def _extremes(header: _Header, samples: NDArray[np.float32]) -> tuple[Doubt, ...]:
+    """Whether the smallest and the largest sample are those of the header, where it gives them."""
+    if not samples.size or _UNSET in (header.least, header.most):
+        return ()
+    least, most = float(samples.min()), float(samples.max())
+    size = max(abs(header.least), abs(header.most), abs(least), abs(most))
+    if max(abs(least - header.least), abs(most - header.most)) <= _ROUNDED * size:
+        return ()
+    text = (
+        f"its header says the samples go from {header.least:g} to {header.most:g} (DEPMIN, DEPMAX), they go from "
+        f"{least:g} to {most:g}: a damaged file, or processed since?"
+    )
+    return (Doubt("header_peak", max(abs(least), abs(most)), text),)
 
 
 def _header(data: bytes) -> _Header | None:
     """Read the words that matter, in whichever byte order gives a version there is; None if neither does."""
     if len(data) >= _HEADER:
         for order in "<>":
-            delta, version, npts, kind, quantity, even = struct.unpack_from(f"{order}f300xi8xi20xii72xi", data)
-            if version in _VERSIONS:
-                return _Header(delta, version, npts, kind, quantity, even)
+            words = struct.unpack_from(f"{order}fff292xi8xi20xii72xi", data)
+            if words[3] in _VERSIONS:
+                return _Header(*words)
     return None

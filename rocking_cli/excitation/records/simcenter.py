@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,12 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.doubts import Doubt
 from rocking_cli.excitation.records.layout import in_si
+from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, only_channel, sensible
 from rocking_cli.excitation.records.units import resolve_unit
+from rocking_cli.excitation.records.widths import Rows, odd_digits
 
 TITLE = "SimCenter JSON"
 SIGN = 'a JSON object with "accel_data"'
@@ -30,16 +34,25 @@ def read(
     """Read a SimCenter JSON file; arguments, result and errors are those of `registry.Reader.read`."""
     only_channel(file, channel)
     try:
-        data: dict[str, Any] = json.loads(text)
+        data: dict[str, Any] = json.loads(text, parse_int=_whole, object_pairs_hook=_each_once)
+    except _TwiceError as error:
+        message = f"the key {_shown(error.key)} is there more than once"
+        last = [None, *(text.count("\n", 0, match.start()) + 1 for match in _places(text, error.key))][-1]
+        hint = "leave one of each: which of them is meant is not guessed"
+        raise InputError(Problem(message, file, last, hint=hint)) from None
     except (json.JSONDecodeError, RecursionError) as error:
         line, column = getattr(error, "lineno", None), getattr(error, "colno", None)
         reason = getattr(error, "msg", "it is nested too deeply")
         raise InputError(Problem(f"not valid JSON: {reason}", file=file, line=line, column=column)) from None
-    unit = resolve_unit(file, [(_line_of(text, "info"), str(data.get("info", "")).replace("\n", " "))], units)
+    # JSON can hold halves of characters, which no terminal and no file takes.
+    info = str(data.get("info", "")).encode("utf-8", "backslashreplace").decode().replace("\n", " ")
+    unit = resolve_unit(file, [(_line_of(text, "info"), info)], units)
 
     own: Any = data.get("dT")
     if not (_is_number(own) and 0 < own < np.inf):
-        message = "the interval dT is missing" if own is None else f"the interval dT must be positive, this is {own!r}"
+        message = (
+            "the interval dT is missing" if own is None else f"the interval dT must be positive, this is {_shown(own)}"
+        )
         hint = 'it is the time between samples in seconds, such as "dT": 0.01'
         raise InputError(Problem(message, file=file, line=_line_of(text, "dT"), field="dT", hint=hint))
     check_interval(file, _line_of(text, "dT"), own, dt)
@@ -50,17 +63,67 @@ def read(
         raise InputError(Problem("the accelerations must be a list of numbers", file, line, field="accel_data"))
     for place, value in enumerate(values, start=1):
         if not _is_number(value) or not sensible(value):
-            message = f"value {place} is not a finite number: {str(value)[:40]}"
+            message = f"value {place} is not a finite number: {_shown(value)}"
             raise InputError(Problem(message, file, line, field="accel_data"))
     stated = data.get("numPoints", len(values))
-    if stated not in (len(values), len(values) + 1):  # a file of SimCenter's own says one too many
-        message = f"the file says numPoints = {stated}, but has {len(values)} values"
+    one_too_many = _is_number(stated) and stated == len(values) + 1
+    if not _is_number(stated) or not (stated == len(values) or one_too_many):
+        message = f"the file says numPoints = {_shown(stated)}, but has {len(values)} values"
         hint = "the file may have been cut short or edited: download it again, or correct numPoints"
         raise InputError(Problem(message, file, _line_of(text, "numPoints"), field="numPoints", hint=hint))
     if len(values) < 2:
         message = f"a record needs at least two samples, this has {len(values)}"
         raise InputError(Problem(message, file, line, field="accel_data"))
-    return GroundMotion(Path(file).name, float(own), in_si(np.array(values, dtype=np.float64), unit), unit, TITLE)
+    remarks = _one_missing(stated) if one_too_many else ()
+    remarks += _digits(text)
+    acceleration = in_si(np.array(values, dtype=np.float64), unit)
+    return GroundMotion(Path(file).name, float(own), acceleration, unit, TITLE, remarks=remarks)
+
+
+class _TwiceError(Exception):
+    """A key that an object has more than once."""
+
+    def __init__(self, key: str) -> None:
+        super().__init__(key)
+        self.key = key
+
+
+def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Make an object of its pairs; JSON itself would take the last of two."""
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found:
+            raise _TwiceError(key)
+        found[key] = value
+    return found
+
+
+def _whole(digits: str) -> int | float:
+    """Value of a whole number; Python takes no more than some thousand digits, and none is used beyond a few."""
+    return int(digits) if len(digits) < 40 else float(digits)
+
+
+def _shown(value: object) -> str:
+    """A value as JSON has it, cut short."""
+    if isinstance(value, (list, dict)):  # of any size and depth
+        return "a list" if isinstance(value, list) else "an object"
+    return json.dumps(value)[:40]
+
+
+def _one_missing(stated: float) -> tuple[Doubt, ...]:
+    """Say that a value may be lost: files of SimCenter's own say one too many, though nothing tells the two apart."""
+    text = f"it says numPoints = {stated:g} and has one value less, as files of SimCenter do: or was one lost?"
+    return (Doubt("count", float(stated), text),)
+
+
+def _digits(text: str) -> tuple[Doubt, ...]:
+    """Whether a few of the accelerations are printed otherwise than the others."""
+    match = re.search(r'"accel_data"\s*:\s*\[([^\]]*)', text)
+    if match is None:
+        return ()
+    lines = Lines(text[: match.end()])
+    first = text.count("\n", 0, match.start(1))
+    return tuple(odd_digits(Rows(lines, first, lambda row: re.findall(r"[^\s,\[\]]+", row.rpartition("[")[2]))))
 
 
 def _is_number(value: object) -> bool:
@@ -70,5 +133,10 @@ def _is_number(value: object) -> bool:
 
 def _line_of(text: str, key: str) -> int:
     """Line number where a key is; 1 if it is nowhere."""
-    match = re.search(rf'"{key}"\s*:', text)
+    match = next(_places(text, key), None)
     return text.count("\n", 0, match.start()) + 1 if match else 1
+
+
+def _places(text: str, key: str) -> Iterator[re.Match[str]]:
+    """Where a key is."""
+    return re.finditer(rf"{re.escape(json.dumps(key, ensure_ascii=False))}\s*:", text)

@@ -4,10 +4,22 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
+
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, number, stated_unit
-from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.layout import (
+    Block,
+    Channel,
+    choose,
+    fixed_width,
+    in_si,
+    lines_of,
+    number,
+    stated_unit,
+    whole_number,
+)
+from rocking_cli.excitation.records.stated import peak_doubts
 
 TITLE = "USGS SMC"
 SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"
@@ -18,7 +30,7 @@ _ACCELERATIONS = (_UNCORRECTED, "2")  # the corrected; then velocity, displaceme
 _FASTEST = 1e6  # samples per second; what has no number of them has 1.7e38, or zero
 _TEXT_LINES = 11
 _INTEGERS = Block(_TEXT_LINES, 48, 10, 1)
-_REALS, _REAL_WIDTH, _REAL_LINES = _TEXT_LINES + 6, 15, 10  # index of the first line, characters, lines
+_REALS = Block(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
 _DATA_WIDTH = 10
 
 
@@ -32,43 +44,39 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a USGS SMC file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = Lines(text)
+    lines = lines_of(text)
     kind = _FIRST.match(lines[0])
     if kind is None or kind[1] not in _ACCELERATIONS:
         message = f"the header says this is not an acceleration: {lines[0].strip()}"
         raise InputError(Problem(message, file, 1, hint="give the file with the acceleration"))
     unit = stated_unit(file, 1, "cm/s2", units)  # the definition of the format says so, not the file
-    integers, _ = fixed_width(file, lines, _INTEGERS, last=False)
-    # Counted from 1: integer 16 is the number of comment lines, 17 that of points; real 2 the samples per second.
+    integers = fixed_width(file, lines, _INTEGERS, last=False).values
+    reals, start, _ = fixed_width(file, lines, _REALS, last=False)
+    # Counted from 1: integer 16 is the number of comment lines, 17 that of points; real 2 the samples per second, 29 to
+    # 32 the times and values of the largest and the smallest acceleration.
     comments, count = int(integers[15]), int(integers[16])
-    comment_line, count_line, rate_line = _TEXT_LINES + 2, _TEXT_LINES + 3, _REALS + 1
-    start = _REALS + _REAL_LINES
+    comment_line, count_line, rate_line = _TEXT_LINES + 2, _TEXT_LINES + 3, _REALS.start + 1
     if comments < 0:
         message = f"the header says {comments} comment lines"
         raise InputError(Problem(message, file, comment_line, hint="0 is the least there can be"))
     if start + comments >= len(lines):
         raise InputError(Problem("the file ends before its values", file, len(lines)))
-    number(file, count_line, lines[count_line - 1], str(count), "number of points", least=1)
-    rate_text = lines[_REALS][_REAL_WIDTH : 2 * _REAL_WIDTH]
-    if kind[1] == _UNCORRECTED and _no_rate(rate_text):
+    whole_number(file, count_line, lines[count_line - 1], str(count), "number of points", least=2)
+    if kind[1] == _UNCORRECTED and not 0 < reals[1] < _FASTEST:  # NaN too: what stands for no number
         message = "an uncorrected film record, points at uneven times: the header has no number of samples per second"
         raise InputError(Problem(message, file, rate_line, hint="give the corrected record of it (kind 2)"))
-    rate = number(file, rate_line, lines[_REALS], rate_text, "number of samples per second")
+    rate = number(file, rate_line, lines[rate_line - 1], f"{float(reals[1])!r}", "number of samples per second")
     if not all(line.startswith("|") for line in lines[start : start + comments]) or lines[start + comments].startswith(
         "|"
     ):
         message = f"the header says {comments} comment lines, but another number begins with |"
         raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
     block = Block(start + comments, count, _DATA_WIDTH, count_line)
-    values, _ = fixed_width(file, lines, block)
+    values, _, remarks = fixed_width(file, lines, block)
+    extremes = [(time, peak) for time, peak in (reals[28:30], reals[30:32]) if not np.isnan(peak)]
+    if extremes:
+        time, peak = max(extremes, key=lambda each: abs(each[1]))
+        remarks += peak_doubts(values, 1 / rate, unit, _REALS.start + 6, f"{peak:.7E}", f"{time:.7E}")
     component = re.search(r"component *= *(-?\w+)", "\n".join(lines[:_TEXT_LINES]))
-    found = Channel(component[1] if component else "", 1 / rate, in_si(values, unit), unit, rate_line)
+    found = Channel(component[1] if component else "", 1 / rate, in_si(values, unit), unit, rate_line, remarks=remarks)
     return choose(file, TITLE, [found], channel, dt)
-
-
-def _no_rate(text: str) -> bool:
-    """Whether the header has what stands for no number, in the place of the rate."""
-    try:
-        return not 0 < float(text) < _FASTEST
-    except ValueError:
-        return False

@@ -18,6 +18,7 @@ from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, 
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.times import UnevenTimeError, even_interval
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
+from rocking_cli.excitation.records.widths import Rows, unlike_the_others
 
 TITLE = "delimited text"
 SIGN = "a line that begins with a number"
@@ -29,6 +30,7 @@ _FIRST_CELL = re.compile(r'"([^"]*)"|[^\s,;]*')
 _QUOTED = re.compile(r'"([^"]*)"')
 _HEAD = 100_000  # characters looked at to recognise a format: a large file is not searched to its end
 _HUGE = 1e30  # no time or acceleration in any unit; far below where sums and conversions overflow
+_INTERVALS = (1e-9, 1e6)  # s; beyond them sums overflow, and nothing was ever recorded so
 _DT_TOLERANCE = 1e-3  # a given interval may be the rounded form of the file's, or the other way round
 
 
@@ -96,7 +98,8 @@ def read(
         dt = own
     assert dt is not None  # none at all was refused above
     name = Path(file).name + (f" channel {choice.channel}" if choice.channel else "")
-    return GroundMotion(name, dt, table[choice.column] * UNITS[unit], unit, "text")
+    remarks = unlike_the_others(Rows(lines, start, lambda line: _clean(line).split(delimiter)[choice.column :][:1]))
+    return GroundMotion(name, dt, table[choice.column] * UNITS[unit], unit, "text", remarks=remarks)
 
 
 def usable(values: NDArray[np.float64]) -> bool:
@@ -146,7 +149,9 @@ def only_channel(file: str, asked: str | None) -> None:
 
 
 def check_interval(file: str, line_number: int | None, own: float, given: float | None) -> None:
-    """Refuse a sample interval [s] given by the user that is not the one of the file."""
+    """Refuse a sample interval [s] of the file that is none, or one given by the user that is another."""
+    if not _INTERVALS[0] <= own <= _INTERVALS[1]:
+        raise InputError(Problem(f"the sample interval is {own:g} s, which no record has", file=file, line=line_number))
     if given is not None and not math.isclose(own, given, rel_tol=_DT_TOLERANCE):
         message = f"the file's sample interval is {own:g} s, but --dt says {given:g} s"
         raise InputError(Problem(message, file=file, line=line_number, hint="leave --dt out: the file states its own"))

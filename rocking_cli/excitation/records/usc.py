@@ -7,15 +7,26 @@ from collections.abc import Sequence
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.layout import Block, Channel, choose, fixed_width, in_si, old_unit, straight_lines
-from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.layout import (
+    Block,
+    Channel,
+    choose,
+    fixed_width,
+    in_si,
+    lines_of,
+    old_unit,
+    straight_lines,
+    whole_number,
+)
+from rocking_cli.excitation.records.stated import length_doubts
 
 TITLE = "USC V1"
 SIGN = "a first line with UNCORRECTED ACCELEROGRAM DATA OF VOLUME I"
 
 _FIRST = re.compile(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
 _COUNT = re.compile(r"NO\. OF POINTS *= *(\d+)")
-_UNITS = re.compile(r"UNITS ARE SEC AND (.*?)(?: {2,}.*)?$")
+_DURATION = re.compile(r"DURATION *= *(\S+) *SEC")
+_UNITS = re.compile(r"UNITS ARE SEC AND (.*?)(?:\s+\d+|\s{2,}.*)?$")
 _COMPONENT = re.compile(r"COMP\s+(\S+)")
 _INTEGERS, _REALS = 100, 50
 
@@ -34,22 +45,22 @@ def read(
     largest interval that meets all of these times, so it is the same lines, not an approximation: more samples
     than the file has points, though none of them made up.
     """
-    lines = Lines(text)
+    lines = lines_of(text)
     count_line, count_text = _find(file, lines, _COUNT, "number of points (NO. OF POINTS)")
     unit_line, spelling = _find(file, lines, _UNITS, "unit (UNITS ARE SEC AND ...)")
-    count = int(count_text)
-    if count < 2:
-        raise InputError(Problem(f"a record needs at least two points, this has {count}", file, count_line))
+    count = whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
     unit = old_unit(file, unit_line, spelling, units)
 
     start = next((index for index, line in enumerate(lines) if not re.search(r"[A-Za-z]", line)), len(lines))
     for size, width in ((_INTEGERS, 5), (_REALS, 10)):
-        _, start = fixed_width(file, lines, Block(start, size, width, 1), last=False)
-    pairs, end = fixed_width(file, lines, Block(start, 2 * count, 7, count_line, margin=1))
+        _, start, _ = fixed_width(file, lines, Block(start, size, width, 1), last=False)
+    pairs, end, remarks = fixed_width(file, lines, Block(start, 2 * count, 7, count_line, margin=1))
     step, values, points = straight_lines(file, pairs, f"lines {start + 1} to {end}")
     acceleration = in_si(values, unit)
+    if match := _DURATION.search(lines[count_line - 1]):
+        remarks += length_doubts(float(pairs[-2]), count_line, match[1], 0.0)
     name = next((match[1] for line in lines[:15] if (match := _COMPONENT.match(line))), "")
-    return choose(file, TITLE, [Channel(name, step, acceleration, unit, points=points)], channel, dt)
+    return choose(file, TITLE, [Channel(name, step, acceleration, unit, points=points, remarks=remarks)], channel, dt)
 
 
 def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, str]:

@@ -1,0 +1,190 @@
+"""Whether printed numbers keep to their columns and digits: where a character was lost, a row or a number is short.
+
+Programs print every number of a file in the same way. A row or a number that is printed otherwise than nearly all the
+others is no mistake of reading but of the file, and the number is most likely not the one that was written.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from rocking_cli.excitation.doubts import Doubt
+from rocking_cli.excitation.records.lines import Lines
+
+FEW = 0.1  # of the rows: if more of them leave the columns of the others, there are no columns
+FEW_NUMBERS = 0.03  # of the numbers: if more are printed otherwise, the program prints them as it likes
+_GLUED = re.compile(r"(?<=[\d.])(?=[+-])")  # before a sign that follows a digit: Fortran columns run together
+_DIGITS = str.maketrans("123456789", "000000000")
+_ONES = str.maketrans("0", "1")
+_PRINTED = re.compile(r"[+-]?(\d*)(?:(\.)(\d*))?(?:[EeDd]([+-]?)(\d+))?")
+
+Form = tuple[int | None, int | None, int | None]
+"""Digits after the point; and of a number with an exponent, those before the point and those of the exponent."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Printed numbers, to look at how they are printed.
+
+    Parameters
+    ----------
+    lines : Lines
+        All lines of the file.
+    start : int
+        Index of the first row.
+    split : callable
+        The numbers of a row as printed; none of a comment.
+    end : int, optional
+        Index of the line after the last row, if it is not the end of the file.
+    """
+
+    lines: Lines
+    start: int
+    split: Callable[[str], list[str]]
+    end: int | None = None
+
+    def __iter__(self) -> Iterator[tuple[int, str]]:
+        """Line number and text of each row."""
+        for first, page in self.pages():
+            yield from enumerate(page, start=first + 1)
+
+    @cached_property
+    def tally(self) -> tuple[Counter[tuple[int, int, int, int]], Counter[str]]:
+        """How often rows of a length, count, indent and length of the last number are; and numbers of a form."""
+        sizes: Counter[tuple[int, int, int, int]] = Counter()
+        numbers: Counter[str] = Counter()
+        for _, page in self.pages():
+            for row, times in Counter(_blank_out("\n".join(page)).split("\n")).items():  # few of them are different
+                if found := self.split(row):
+                    row = row.rstrip()
+                    sizes[len(row), len(found), len(row) - len(row.lstrip()), len(found[-1])] += times
+                    for number in found:
+                        numbers[number] += times
+        return sizes, numbers
+
+    def pages(self) -> Iterator[tuple[int, list[str]]]:
+        """Rows, a page of them at a time, with the index of its first line."""
+        for first, page in self.lines.pages(self.start):
+            if self.end is not None and first + len(page) >= self.end:
+                yield first, page[: self.end - first]
+                return
+            yield first, page
+
+
+def split_numbers(row: str) -> list[str]:
+    """Numbers of a row as printed: between blanks, or touching where a sign tells them apart."""
+    return _GLUED.sub(" ", row).split()
+
+
+def odd_row(rows: Rows) -> tuple[int, str] | None:
+    """Line number and text of the first of a few rows that leave the columns in which the others stand.
+
+    Columns are what numbers of different lengths, in the first place of a row and in the last, all end at; without
+    that, rows of one length are no more than numbers of one length.
+    """
+    if rows.lines.edited:
+        return None
+    tally, _ = rows.tally
+    sizes: Counter[tuple[int, int]] = Counter()
+    for (length, count, _, _), times in tally.items():
+        sizes[length, count] += times
+    if not sizes:
+        return None
+    (length, count), _ = sizes.most_common(1)[0]
+    kept = [key for key in tally if key[:2] == (length, count)]
+    if len({indent for _, _, indent, _ in kept}) < 2 or len({last for *_, last in kept}) < 2:
+        return None
+
+    def leaves(size: int, numbers: int) -> bool:
+        return size * count != length * numbers  # a last row may be short, and two may have become one
+
+    leaving = sum(times for size, times in sizes.items() if leaves(*size))
+    if not 0 < leaving <= FEW * sizes.total():
+        return None
+    return next(
+        (number, line)
+        for number, line in rows
+        if (numbers := rows.split(line)) and leaves(len(line.rstrip()), len(numbers))
+    )
+
+
+def unlike_the_others(rows: Rows) -> tuple[Doubt, ...]:
+    """What is doubtful about how the numbers of a free text are printed, one of them from each row."""
+    found = odd_digits(rows)
+    if not found and (odd := odd_row(rows)) is not None:
+        text = f"line {odd[0]} does not end where the others do, which keep to columns: was a character lost?"
+        found = [Doubt("columns", float(odd[0]), text)]
+    return tuple(found)
+
+
+def odd_digits(rows: Rows) -> list[Doubt]:
+    """Whether a few numbers have fewer or more digits than all the others, which a program that pads them prints alike.
+
+    A program that leaves zeros at the end away, or prints as many digits as a number needs, raises no doubt.
+    """
+    tally: Counter[Form | None] = Counter()
+    for number, times in rows.tally[1].items():
+        tally[_form(number)] += times
+    if len(tally) < 2:
+        return []
+    usual, _ = tally.most_common(1)[0]
+    if usual is None or tally.total() - tally[usual] > FEW_NUMBERS * tally.total():
+        return []
+    # Zero is zero however it is printed; and as many digits as any other has is a number of another size.
+    longest = max(
+        len(_mantissa(number.replace("o", "").translate(_ONES))) for number in rows.tally[1] if _form(number) == usual
+    )
+    wrong = [
+        (line, number)
+        for line, number in _unlike(rows, usual)
+        if (mantissa := _mantissa(number)) and (usual[2] is not None or len(mantissa) < longest)
+    ]
+    if not wrong or not any(_is_padded(number, usual) for _, line in rows for number in rows.split(line)):
+        return []
+    first, token = wrong[0]
+    others = f", and {len(wrong) - 1} more," if len(wrong) > 1 else ""
+    text = (
+        f"'{token[:40]}' in line {first}{others} is printed with other digits than all the other numbers: "
+        "was a character lost?"
+    )
+    return [Doubt("digits", float(first), text)]
+
+
+def _unlike(rows: Rows, usual: Form) -> Iterator[tuple[int, str]]:
+    """Line and text of each number that is printed in another form."""
+    for first, page in rows.pages():
+        blanked = _blank_out("\n".join(page)).split("\n")
+        odd = {row for row in set(blanked) if any(_form(number) != usual for number in rows.split(row))}
+        for line_number, (row, line) in enumerate(zip(blanked, page, strict=True), start=first + 1):
+            if row in odd:
+                yield from ((line_number, each) for each in rows.split(line) if _form(_blank_out(each)) != usual)
+
+
+def _is_padded(number: str, usual: Form) -> bool:
+    """Whether a number, which is not zero, is printed as most are and ends with a zero."""
+    return _mantissa(number).endswith("0") and _form(_blank_out(number)) == usual
+
+
+def _blank_out(text: str) -> str:
+    """The text with zeros for all digits, but for a zero before a point, which may as well be absent."""
+    return text.replace("0.", "o.").translate(_DIGITS)
+
+
+def _form(blanked: str) -> Form | None:
+    """How a number that is blanked out is printed; None if it is none."""
+    match = _PRINTED.fullmatch(blanked.replace("o", ""))
+    if match is None:
+        return None
+    whole, point, decimals, sign, exponent = match.groups()
+    after = len(decimals) if point else None
+    return (after, None, None) if exponent is None else (after, len(whole), len(exponent) + 10 * bool(sign))
+
+
+def _mantissa(token: str) -> str:
+    """Digits of a number from the first that is not zero on; none of zero."""
+    match = _PRINTED.fullmatch(token)
+    return ((match[1] or "") + (match[3] or "")).lstrip("0") if match else token
