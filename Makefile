@@ -8,7 +8,8 @@ endif
 STAMP := $(VENV)/.installed
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere lint type contracts check bench soak validation pictures docs clean
+.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz lint type contracts check bench validation pictures \
+	docs clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -35,6 +36,9 @@ test-versions: setup  ## The same with the other versions of Python that are ins
 
 test-elsewhere: setup  ## Both, side by side
 	$(BIN)/python -m tests.elsewhere kernels versions
+
+damage: setup  ## What is said of real records that lost a character; DAMAGE=2000 is how often, ROCKING_RECORDS where they are
+	$(BIN)/python -m tests.damage
 
 lint: setup
 	$(BIN)/ruff check .
