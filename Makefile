@@ -58,6 +58,9 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 	$(BIN)/python benchmarks/maps.py
 	$(BIN)/python benchmarks/fragility.py
 
+fuzz: setup  ## Hostile records, structures and command lines; INPUTS=100000 is how many
+	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FUZZ'] = '$(or $(INPUTS),10000)'; sys.exit(pytest.main(['-q', 'tests/test_fuzz.py']))"
+
 soak: setup  ## What takes too long for the tests, some ten minutes: 500 damaged stores, 50 races of three processes
 	$(BIN)/python -m tests.soak
 
