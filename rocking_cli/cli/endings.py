@@ -39,7 +39,7 @@ def in_order() -> Iterator[None]:
     def not_lost(what: sys.UnraisableHookArgs) -> None:
         """Give a signal again that came where Python drops exceptions, such as while an object is deleted."""
         if isinstance(what.exc_value, KeyboardInterrupt):
-            threading.Timer(AGAIN, signal.raise_signal, [_number(what.exc_value)]).start()
+            threading.Timer(AGAIN, _give, [_number(what.exc_value)]).start()
         else:
             unraisable(what)
 
@@ -54,6 +54,15 @@ def in_order() -> Iterator[None]:
         sys.unraisablehook = unraisable
         for number, handler in kept.items():
             signal.signal(number, handler)
+
+
+def _give(number: int) -> None:
+    """Give the main thread a signal: one that is raised in another thread would not wake it."""
+    main = threading.main_thread().ident
+    if hasattr(signal, "pthread_kill") and main is not None:
+        signal.pthread_kill(main, number)
+    else:  # Windows
+        signal.raise_signal(number)
 
 
 def _stop(number: int, frame: FrameType | None) -> NoReturn:

@@ -57,6 +57,8 @@ def read_record(
     try:
         motion = reader.read(content, file, dt=dt, units=units, channel=channel)
     except InputError as error:
+        if type(error) is not InputError:  # of a plugin that failed: what it says is its own
+            raise
         raise InputError(*map(_short, error.problems)) from None
     if Path(file).name == name:
         return motion

@@ -374,7 +374,7 @@ class Store:
         found = hashlib.sha256()
         queries = [f"SELECT * FROM {table} ORDER BY id" for table in PLAN]
         for query in (*queries, f"SELECT * FROM study WHERE key NOT IN ('{SEAL}', '{AT_WORK}') ORDER BY key"):
-            found.update(json.dumps(self._connection.execute(query).fetchall(), default=repr).encode())
+            found.update(repr(self._connection.execute(query).fetchall()).encode())
         return found.hexdigest()
 
     def _facts(self) -> dict[str, Any]:
