@@ -24,8 +24,10 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.fragility import assess, engines, sources, store, store_file, work
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
+from rocking_cli.studies.fragility.definition import RecordEntry
 from rocking_cli.studies.fragility.intensity import MEASURES, Scales, intensity
 from rocking_cli.studies.fragility.plan import weaker
+from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
@@ -748,3 +750,15 @@ def test_levels_are_over_the_uplift_of_the_weaker_direction(whole):
     one, other = equivalence.positive, equivalence.negative
     assert one.lambda_ < other.lambda_ and one.p != other.p
     assert (plan.trials[0].lambda_, plan.trials[0].p) == (one.lambda_, one.p)
+
+
+def test_the_checksum_of_a_pulse_is_of_all_its_digits_and_of_how_it_is_sampled(monkeypatch):
+    """A store does not mix runs under pulses that differ in the seventh digit, or in their samples."""
+
+    def checksum(text):
+        return Source(text, RecordEntry(pulse=text)).checksum()
+
+    one = checksum("sine:0.3g:1s")
+    assert one == checksum("sine:0.3g:1.0s") != checksum("sine:0.30000001g:1s")
+    monkeypatch.setattr("rocking_cli.studies.fragility.sources.SAMPLING", "otherwise")
+    assert checksum("sine:0.3g:1s") != one

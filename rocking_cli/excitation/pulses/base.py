@@ -18,6 +18,8 @@ Reals = NDArray[np.float64]
 FINE = 4000  # samples to a period of a history alone: its peak is right to 1e-6 of itself from 1.01 times uplift on
 COARSE = 400  # those of them that it keeps, and those of many histories at once: 1e-4 near uplift, 1e-7 elsewhere
 DIGITS = 17  # that tell any two numbers apart
+SAMPLING = "chords with the impulse of the curve"
+"""How samples are made, for whoever keeps what was computed with them: other samples need another text."""
 NODES = 48  # of Gauss's rule for the velocity
 
 

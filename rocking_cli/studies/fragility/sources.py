@@ -13,6 +13,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.pulses import COARSE, parse_pulse
+from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.excitation.records import read_record
 from rocking_cli.studies.fragility.definition import RecordEntry
 
@@ -40,7 +41,7 @@ class Source:
     vertical: Path | None = None
 
     def checksum(self) -> str:
-        """SHA-256 of its files' bytes, or of the pulse's specification. Raises `InputError` if one is not there."""
+        """SHA-256 of its files, or of the pulse and how it is sampled. Raises `InputError` if one is not there."""
         found = hashlib.sha256()
         for path in (self.path, self.vertical):
             if path is None:
@@ -51,7 +52,9 @@ class Source:
             except OSError as error:
                 raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from None
         if self.path is None:
-            found.update(self.name.encode())
+            assert self.entry.pulse is not None
+            pulse = parse_pulse(self.entry.pulse).specification
+            found.update(f"{pulse}, {COARSE} a period: {SAMPLING}".encode())
         return found.hexdigest()
 
     def read(self) -> GroundMotion:
