@@ -26,7 +26,7 @@ demo: setup  ## The main job on the shipped example: equiv, respond with a plot,
 	$(BIN)/rocking pulse --a 2 --omega 3
 
 test: setup  ## All tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 test-kernels: setup  ## The tests of fits and studies, with the last bits as other processors round them
 	$(BIN)/python -m tests.elsewhere kernels

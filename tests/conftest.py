@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 
 import hypothesis
@@ -19,6 +20,13 @@ SHARED = PROJECT.parent / "shared"
 RECORDS = Path(os.environ.get("ROCKING_RECORDS", SHARED / "records"))
 FORMATS = RECORDS / "formats"
 NEEDS_RECORDS = pytest.mark.skipif(not FORMATS.is_dir(), reason=f"no real records in {RECORDS} (ROCKING_RECORDS)")
+
+
+# Whoever runs the tests in the background, or under nohup, has these ignored, and their children with them.
+for _name, _usual in (("SIGINT", signal.default_int_handler), ("SIGTERM", signal.SIG_DFL), ("SIGHUP", signal.SIG_DFL)):
+    _number = getattr(signal, _name, None)
+    if _number is not None and signal.getsignal(_number) == signal.SIG_IGN:
+        signal.signal(_number, _usual)
 
 
 @pytest.fixture(autouse=True)

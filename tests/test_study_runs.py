@@ -11,7 +11,6 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -234,9 +233,7 @@ def test_killed_and_run_again_it_is_as_if_nothing_had_happened(long_study, tmp_p
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no interrupt to send to one process")
 def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path):
     place = tmp_path / "interrupted.db"
-    # Whoever runs the tests in the background has interrupts ignored, and their children with them.
-    listen = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
-    process = program("fragility", long_study[0], "--store", place, "--jobs", 1, preexec_fn=listen)
+    process = program("fragility", long_study[0], "--store", place, "--jobs", 1)
     wait_until_some_are_finished(place, process)
     process.send_signal(signal.SIGINT)
     out, said = process.communicate()
