@@ -11,6 +11,8 @@ import pytest
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
+from rocking_cli.core import Direction
+from rocking_cli.core.mechanism import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Responses, Runs, respond_many
 from rocking_cli.dynamics.deck import Deck
@@ -232,9 +234,11 @@ def test_no_runs_are_no_responses():
         ({"polarity": [1, 2]}, "run 1: polarity must be 1 or -1, got 2"),
         ({"scale": np.inf}, "run 0: scale must be finite"),
         ({"scale": [1.0, np.nan]}, "run 1: scale must be finite"),
-        ({"eta": 0.0}, r"run 0: eta must be in \(0, 1\], got 0"),
-        ({"eta": -0.5}, "eta must be in"),
-        ({"eta": [0.5, np.nan, 1.01]}, "run 2: eta must be in"),
+        ({"eta": 0.0}, "run 0: eta must be positive, got 0"),
+        ({"eta": -0.5}, "eta must be positive"),
+        ({"eta": [[0.5, 0.5], [np.nan, -0.1]]}, r"run 1: eta must be positive, got -0\.1"),
+        ({"eta": np.inf}, "eta must be positive"),
+        ({"eta": [[0.5, 0.5, 0.5]], "scale": [1.0, 2.0]}, "differ in length"),
         ({"size": 0.0}, "run 0: size must be positive"),
         ({"size": -1.0}, "size must be positive"),
         ({"size": np.nan}, "size must be positive"),
@@ -245,6 +249,41 @@ def test_no_runs_are_no_responses():
 def test_wrong_runs_are_refused(wrong, what):
     with pytest.raises(InputError, match=what):
         Runs.of(**{"model": 0, "record": 0, **wrong})
+
+
+def test_an_impact_may_not_gain_energy():
+    """Of the block beyond 1; of the frame beyond the square root of the ratio of its inertias at rest."""
+    with pytest.raises(InputError, match=r"run 2: eta must be in \(0, 1\], got 1.01"):
+        respond_many(models("block"), motions(), Runs.of(0, 0, eta=[0.5, np.nan, 1.01]))
+    frame = MECHANISMS["frame"]()
+    inertia = {side: frame.kinetic_inertia(np.zeros(1), side)[0] for side in Direction}
+    most = {side: np.sqrt(inertia[side] / inertia[side.opposite]) for side in Direction}
+    assert most[Direction.POSITIVE] < 0.999 or most[Direction.NEGATIVE] < 0.999  # else this says nothing
+    for column, side in enumerate(Direction):
+        etas = np.full((2, 2), 0.5)
+        etas[:, column] = most[side] * np.array([1 - 1e-6, 1 + 1e-6])
+        respond_many(models("frame"), motions(), Runs.of(0, 0, eta=etas[:1]))
+        with pytest.raises(InputError, match="run 1: eta must be in"):
+            respond_many(models("frame"), motions(), Runs.of(0, 0, eta=etas))
+
+
+@pytest.mark.parametrize("name", ["block", "frame"])
+def test_each_direction_may_have_its_own_restitution(name):
+    given = {"positive_to_negative": 0.9, "negative_to_positive": 0.6}
+    alone = MECHANISMS[name]().model_copy(update={"restitution": DirectionalRestitution(**given)})
+    found = respond_many(models(name)[:1], motions(), Runs.of(0, range(5), eta=np.tile([0.9, 0.6], (5, 1))))
+    same(found, respond_many(build_models(alone)[:1], motions(), Runs.every(1, 5)))
+
+
+@pytest.mark.parametrize("release", [0.4, -0.7])
+def test_a_release_is_that_of_respond(release):
+    for motion in (None, motions()[0]):
+        alone = respond(MECHANISMS["frame"](), motion, release=release)
+        found = respond_many(models("frame"), [motion], Runs.every(3, 1), release=release)
+        for k, name in enumerate(MODELS):
+            assert found.impact_count[k] == alone[name].impact_count
+            assert found.overturned[k] == alone[name].overturned
+            assert alone[name].overturned or found.peak_ratio[k] == alone[name].peak_ratio
 
 
 def test_a_model_or_a_record_that_is_not_there_is_refused():

@@ -8,6 +8,7 @@ from rocking_cli.core.coefficients import Coefficients as Coefficients
 from rocking_cli.core.equivalence import Equivalence as Equivalence
 from rocking_cli.core.equivalence import EquivalentBlock as EquivalentBlock
 from rocking_cli.core.equivalence import equivalent_block as equivalent_block
+from rocking_cli.core.equivalence import greatest_restitution as greatest_restitution
 from rocking_cli.core.kinematics import Direction as Direction
 from rocking_cli.core.kinematics import Reals as Reals
 from rocking_cli.core.kinematics import RigidMotion as RigidMotion

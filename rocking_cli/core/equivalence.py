@@ -127,6 +127,16 @@ def _too_large(error: BaseException | None) -> bool:
     return isinstance(error, OverflowError) or (isinstance(error, FloatingPointError) and "overflow" in str(error))
 
 
+def greatest_restitution(mechanism: Mechanism, direction: Direction) -> float:
+    """The eta of an impact that ends motion in `direction` and keeps all energy.
+
+    The rates before and after are of phi on either side, where the inertia I(0) differs: the energy after an impact
+    over that before is eta^2 I_-s(0)/I_s(0), so the bound is sqrt(I_s(0)/I_-s(0)), 1 for a symmetric structure.
+    """
+    before, after = (float(mechanism.kinetic_inertia(np.zeros(1), s)[0]) for s in (direction, direction.opposite))
+    return sqrt(before / after)
+
+
 def _one_direction(mechanism: Mechanism, direction: Direction) -> EquivalentBlock:
     lam = mechanism.uplift(direction)  # Eq. 10
     phi_cr = mechanism.critical_rotation(direction)  # Eq. 9

@@ -20,6 +20,7 @@ Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
 # Impacts after the record: one ends the motion under way, two a free excursion to either side; later ones only weaken.
 DECISIVE = 3
+ROUNDING = 1e-9  # by which an eta may exceed its bound: the kinematic one of two equal sides reaches it
 UNIT = 256  # histories a thread takes at a time: some 50 ms of work, against 20 us for handing them out
 
 
@@ -60,13 +61,13 @@ class Runs:
                 "record": (self.record >= 0, "a place in the list of ground motions, counted from 0"),
                 "scale": (np.isfinite(self.scale), "finite"),
                 "polarity": (np.abs(self.polarity) == 1, "1 or -1"),
-                "eta": (np.isnan(self.eta) | ((self.eta > 0) & (self.eta <= 1)), "in (0, 1]"),
+                "eta": (np.isnan(self.eta) | ((self.eta > 0) & np.isfinite(self.eta)), "positive"),
                 "size": (np.isfinite(self.size) & (self.size > 0), "positive"),
             }
         for name, (right, must) in rules.items():
             if not right.all():
-                k = int(np.argmin(right))
-                raise InputError(f"run {k}: {name} must be {must}, got {getattr(self, name)[k]:g}")
+                k = int(np.unravel_index(np.argmin(right), right.shape)[0])
+                raise InputError(f"run {k}: {name} must be {must}, got {getattr(self, name)[~right][0]:g}")
 
     def __len__(self) -> int:
         return len(self.model)
@@ -89,12 +90,18 @@ class Runs:
         InputError
             If lengths differ, or a number is out of range.
         """
+        etas = np.asarray(eta, dtype=np.float64)
+        both = etas.ndim == 2 and etas.shape[1] == 2
         try:
-            columns = np.broadcast_arrays(*np.atleast_1d(model, record, scale, polarity, eta, size))
+            columns = np.broadcast_arrays(
+                *np.atleast_1d(model, record, scale, polarity, size), *(etas.T if both else np.atleast_1d(etas)[None])
+            )
         except ValueError:
             raise InputError("the runs' models, records, scales, polarities, etas and sizes differ in length") from None
-        m, r, a, s, e, k = (column.astype(np.float64) for column in columns)
-        return cls(_whole("model", m), _whole("record", r), a, _whole("polarity", s), e, k)
+        m, r, a, s, k, *e = (column.astype(np.float64) for column in columns)
+        return cls(
+            _whole("model", m), _whole("record", r), a, _whole("polarity", s), np.stack(e, axis=-1) if both else e[0], k
+        )
 
     @classmethod
     def every(
@@ -159,9 +166,10 @@ class Responses:
 
 def respond_many(
     models: Sequence[Model],
-    motions: Sequence[GroundMotion],
+    motions: Sequence[GroundMotion | None],
     runs: Runs,
     *,
+    release: float | None = None,
     threads: int | None = None,
     rtol: float = RTOL,
     only_peaks: bool = False,
@@ -173,10 +181,12 @@ def respond_many(
     ----------
     models : sequence of Model
         See `build_models`.
-    motions : sequence of GroundMotion
-        The ground motions, before scaling.
+    motions : sequence of GroundMotion or None
+        The ground motions, before scaling; None for no shaking.
     runs : Runs
         Which histories.
+    release : float, optional
+        Start all of them at rest, tilted by this fraction of the critical rotation; negative: anticlockwise.
     threads : int, optional
         How many at a time; without it, one for each processor.
     rtol : float
@@ -215,13 +225,16 @@ def respond_many(
     for name, places, there in (("model", runs.model, len(models)), ("record", runs.record, len(motions))):
         if len(runs) and places.max() >= there:
             raise InputError(f"run {int(places.argmax())}: there is no {name} {places.max()}, only {there}")
+    etas = _etas(models, runs)
     rows = np.zeros((len(runs), kernels.RUN_COLUMNS))
     rows[:, kernels.STRUCTURE] = runs.model
     rows[:, kernels.RECORD] = runs.record
     rows[:, kernels.FACTOR] = runs.scale * runs.polarity
     rows[:, kernels.V_FACTOR] = abs(runs.scale)
     rows[:, kernels.SIZE] = runs.size
-    rows[:, kernels.ETA_POSITIVE] = rows[:, kernels.ETA_NEGATIVE] = runs.eta
+    if release is not None:
+        rows[:, kernels.START] = np.array([model.q(release) for model in models])[runs.model]
+    rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
     marks = np.empty((len(runs), kernels.MARKS))
     if len(runs):
         deck = lay_out(models, motions)
@@ -265,3 +278,15 @@ def respond_many(
         impact_count=marks[:, kernels.IMPACTS].astype(np.int64),
         end_time=marks[:, kernels.ENDED].copy(),
     )
+
+
+def _etas(models: Sequence[Model], runs: Runs) -> Reals:
+    """Restitution of both directions of each run, shape (n, 2), none of which may make an impact gain energy."""
+    etas = np.broadcast_to(runs.eta[:, None], (len(runs), 2)) if runs.eta.ndim == 1 else runs.eta
+    most = np.array([model.most_eta for model in models]).reshape(-1, 2)[runs.model]
+    with np.errstate(invalid="ignore"):
+        beyond = etas > most * (1 + ROUNDING)
+    if beyond.any():
+        k, side = (int(place) for place in np.argwhere(beyond)[0])
+        raise InputError(f"run {k}: eta must be in (0, {most[k, side]:.6g}], got {etas[k, side]:g}")
+    return etas

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core import (
+    Direction,
+    Equivalence,
+    EquivalentBlock,
+    Mechanism,
+    equivalent_block,
+    greatest_restitution,
+)
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.restitution import why_none
 from rocking_cli.dynamics.tables import Table, tabulate
@@ -36,6 +43,9 @@ class Model:
         Critical rotation in the positive and the negative direction [rad].
     numbers, forces, angles, certain : ndarray
         See `rocking_cli.dynamics.kernels.run`.
+    most_eta : tuple of float
+        The restitution with which an impact that ends motion in the positive and in the negative direction keeps all
+        energy; 1 for a symmetric structure.
     tables : tuple of Table, optional
         What the arrays are made of, if nonlinear.
     uplift_error : float
@@ -49,6 +59,7 @@ class Model:
     forces: Reals
     angles: Reals
     certain: Reals
+    most_eta: tuple[float, float] = (1.0, 1.0)
     tables: tuple[Table, Table] | None = None
     uplift_error: float = 0.0
 
@@ -61,6 +72,16 @@ class Model:
     def gravity(self) -> float:
         """Acceleration of gravity [m/s2]."""
         return float(self.numbers[0, -1])
+
+    @property
+    def lambda_(self) -> tuple[float, float]:
+        """Uplift acceleration over g in the positive and the negative direction."""
+        return float(self.numbers[0, 0]), float(self.numbers[1, 0])
+
+    @property
+    def eta(self) -> tuple[float, float]:
+        """Restitution of impacts that end motion in the positive and in the negative direction."""
+        return float(self.numbers[0, 2]), float(self.numbers[1, 2])
 
     @property
     def is_linear(self) -> bool:
@@ -107,12 +128,14 @@ def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) ->
                     hint="give a measured value as restitution, a number in (0, 1]",
                 )
             )
-    return [
+    models = [
         _nonlinear(label, mechanism, blocks)
         if name == "nonlinear"
         else linear_model(label, name, blocks, mechanism.gravity)
         for name in names
     ]
+    most_eta = greatest_restitution(mechanism, Direction.POSITIVE), greatest_restitution(mechanism, Direction.NEGATIVE)
+    return [replace(model, most_eta=most_eta) for model in models]
 
 
 def _nonlinear(label: str, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:
@@ -136,7 +159,7 @@ def _nonlinear(label: str, mechanism: Mechanism, blocks: tuple[EquivalentBlock, 
         np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
     )
     phi_cr = blocks[0].phi_cr, blocks[1].phi_cr
-    return Model("nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables)
+    return Model("nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables=tables)
 
 
 def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, EquivalentBlock], gravity: float) -> Model:
