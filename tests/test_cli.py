@@ -50,6 +50,64 @@ def run_json(*arguments):
     return json.loads(line)
 
 
+def shares(near):
+    """What neighbours are said to be, as a sentence has it."""
+    share = f"{100 * near['overturned']:.3g} % overturn"
+    return {0: "none overturns", 1: "all overturn"}.get(near["overturned"], share)
+
+
+class TestNeighbours:
+    def test_they_are_what_the_study_finds(self):
+        from rocking_cli.dynamics.model import build_model
+        from rocking_cli.excitation.records import read_record
+        from rocking_cli.structure import load_structure
+        from rocking_cli.studies.neighbours import Around, neighbours
+
+        words = ("respond", FRAME, "--record", ACCEL, "--scale", "1.1", "--polarity", "-1", "--neighbours", 50)
+        found = run_json(*words, "--within-amplitude", "0.05", "--within-restitution", "0.01")["neighbours"]
+        around = Around(50, 0.05, 0.01)
+        alone = neighbours(build_model(load_structure(FRAME), "nonlinear"), read_record(ACCEL).scaled(-1.1), around)
+        assert (found["count"], found["amplitude"], found["restitution"]) == (50, 0.05, 0.01)
+        assert (found["overturned"], found["sensitive"]) == (alone.overturned, alone.sensitive)
+        assert list(found["peak_ratio"].values()) == [None if np.isinf(each) else each for each in alone.peak_ratio]
+        assert list(found["peak_ratio"]) == ["16", "50", "84"]
+
+    def test_each_polarity_has_its_own_and_words_say_the_same(self):
+        words = ("respond", FRAME, "--record", ACCEL, "--target-pga", "0.9", "--polarity", "both")
+        found, text = run_json(*words), run(*words).stdout
+        said = [each["neighbours"] for each in found["polarities"].values()]
+        for near in said:
+            assert f"Of 200 motions within 2 % of this one {shares(near)}" in text
+
+    def test_none_if_none_are_asked_for(self):
+        words = ("respond", FRAME, "--record", ACCEL, "--neighbours", 0)
+        assert run_json(*words)["neighbours"] is None and "motions within" not in run(*words).stdout
+
+    def test_of_linear_models_alone_they_follow_the_first(self):
+        words = ("respond", FRAME, "--record", ACCEL, "--scale", "1.2")
+        linear = run_json(*words, "--model", "linear2,linear1")["neighbours"]["peak_ratio"]["50"]
+        assert linear == run_json(*words, "--model", "linear2")["neighbours"]["peak_ratio"]["50"]
+        assert linear != run_json(*words)["neighbours"]["peak_ratio"]["50"]
+
+    def test_several_motions_have_a_row_each_and_one_governs(self, tmp_path):
+        record = (EXAMPLES / "accel.csv").read_text(encoding="utf-8")
+        for name in ("north.csv", "south.csv"):
+            (tmp_path / name).write_text(record, encoding="utf-8")
+        pair = ("--record", tmp_path / "north.csv", "--record", tmp_path / "south.csv")
+        assert "None governs: north.csv, south.csv do alike." in run("respond", FRAME, *pair).stdout
+        pulses = ("--pulse", "sine:0.2g:0.5s", "--pulse", "sine:1g:3s")
+        text = run("respond", FRAME, *pulses).stdout
+        lines = run("respond", FRAME, *pulses, "--json").stdout.splitlines()
+        near = [json.loads(line)["neighbours"] for line in lines]
+        assert near[1]["overturned"] > near[0]["overturned"]
+        assert f"sine:1g:3s governs: {100 * near[1]['overturned']:.0f} % of its neighbours overturn." in text
+
+    @pytest.mark.parametrize("option", ["--within-amplitude", "--within-restitution"])
+    @pytest.mark.parametrize("wrong", ["-0.1", "1", "nan"])
+    def test_widths_out_of_range_are_refused(self, option, wrong):
+        assert option in run("respond", FRAME, "--record", ACCEL, option, wrong, code=2).stderr
+
+
 class TestHelp:
     def test_the_group_lists_every_command_and_an_example(self):
         text = run("--help").stdout

@@ -54,14 +54,17 @@ class TestRespond:
 
     def test_a_row_each_and_how_many_overturn_it(self, records):
         text = run("respond", BLOCK, "--record", records, "--model", "linear2,nonlinear").stdout
-        rows = {line.split()[0]: line.split()[1:] for line in text.splitlines() if ".csv" in line}
+        rows = {line.split()[0]: line.split()[1:] for line in text.splitlines() if ".csv  " in line}
         objects = {each["record"]["name"]: each for each in lines("respond", BLOCK, "--record", records)}
         assert list(rows) == list(objects) == ["east.csv", "north.csv", "west.csv"]
         for name, (pga, *cells) in rows.items():
             assert pga == f"{objects[name]['record']['pga']:.4g}"
-            for model, cell in zip(
-                ("linear2", "nonlinear"), " ".join(cells).replace("no uplift", "-").split(), strict=True
-            ):
+            *cells, share, sign, median = " ".join(cells).replace("no uplift", "-").split()
+            near = objects[name]["neighbours"]
+            assert sign == "%" and float(share) == pytest.approx(100 * near["overturned"], abs=0.5)
+            middle = near["peak_ratio"]["50"]
+            assert median == ("overturns" if middle is None else f"{middle:.3g}")
+            for model, cell in zip(("linear2", "nonlinear"), cells, strict=True):
                 found = objects[name]["responses"][model]
                 if found["overturned"]:
                     assert cell == "overturns"
@@ -76,7 +79,7 @@ class TestRespond:
 
     def test_both_polarities_and_the_pulses_in_them_have_rows_of_their_own(self, records):
         both = run("respond", FRAME, "--record", records, "--polarity", "both").stdout
-        assert both.count(".csv, reversed") == 3 and both.count(".csv") == 6
+        assert both.count(".csv, reversed") == 3 and both.split("By the")[0].count(".csv") == 6
         pulses = run("respond", FRAME, "--record", records, "--with-pulse", "sine", "--target-pga", "0.3").stdout
         assert pulses.count("its sine pulse alone") == 3
 

@@ -1,75 +1,178 @@
-"""How much stronger a motion must be: against histories followed one by one, and a quotient."""
+"""Shares of overturning over the factor: against histories followed one by one, and what is said against the shares."""
 
 from __future__ import annotations
+
+import json
+import re
 
 import numpy as np
 import pytest
 
 from rocking_cli.dynamics.history import respond
+from rocking_cli.dynamics.model import build_model
+from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.structure import load_structure, parse_structure
-from rocking_cli.studies.margin import FACTORS, margin
+from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
+from rocking_cli.studies.neighbours import Around
 from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
+FRAME = load_structure(EXAMPLES / "frame.yaml")
+AROUND = Around(20)
 
 
-def falls(mechanism, motion, factor, polarities):
-    return any(
-        respond(mechanism, motion.scaled(sign * factor), models=("nonlinear",))["nonlinear"].overturned
-        for sign in polarities
-    )
+def falls(mechanism, motion, factor, etas):
+    given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
+    alone = type(mechanism).model_validate({**mechanism.model_dump(), "restitution": given})
+    return respond(alone, motion.scaled(factor), models=("nonlinear",))["nonlinear"].overturned
 
 
-def test_the_factors_have_the_motion_itself_among_them():
-    assert 1.0 in FACTORS
-    assert FACTORS[0] == pytest.approx(0.2, rel=0.01) and FACTORS[-1] == pytest.approx(5, rel=0.01)
+def share(mechanism, motion, factor, polarities):
+    """The share next to one factor, of the worse polarity, each neighbour followed alone."""
+    etas = AROUND.etas(build_model(mechanism, "nonlinear"))
+    draws = list(zip(factor * AROUND.factors(), etas, strict=True))
+    return max(np.mean([falls(mechanism, motion, sign * each, eta) for each, eta in draws]) for sign in polarities)
 
 
 @pytest.mark.parametrize("polarities", [(1,), (-1,), (1, -1)])
-def test_the_least_factor_overturns_and_no_smaller_one_does(polarities):
-    mechanism = load_structure(EXAMPLES / "frame.yaml")
-    motion = parse_pulse("sine:0.3g:3s").sampled()
-    found = margin(mechanism, motion, polarities)
-    k = int(np.argmin(np.abs(FACTORS - found.overturning)))
-    assert falls(mechanism, motion, FACTORS[k], polarities)
-    assert not any(falls(mechanism, motion, factor, polarities) for factor in FACTORS[k - 8 : k])
+@pytest.mark.parametrize(
+    ("mechanism", "pulse"), [(BLOCK, "sine:0.8g:0.5s"), (FRAME, "sine:0.3g:3s")], ids=["block", "frame"]
+)
+def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, polarities):
+    motion = parse_pulse(pulse).sampled()
+    found = margin(build_model(mechanism, "nonlinear"), motion, polarities, around=AROUND)
+    partly = np.flatnonzero((found.overturned > 0) & (found.overturned < 1))
+    assert found.factors is FACTORS and partly.size
+    for k in [0, *partly[:2], partly[-1], FACTORS.size - 1]:
+        assert found.overturned[k] == share(mechanism, motion, FACTORS[k], polarities)
+    assert found.itself == share(mechanism, motion, 1.0, polarities)
 
 
-def test_a_larger_factor_that_does_not_overturn_is_found():
-    motion = parse_pulse("sine:0.8g:0.5s").sampled()
-    found = margin(BLOCK, motion, (1,))
-    fates = np.array([falls(BLOCK, motion, factor, (1,)) for factor in FACTORS])
-    least = int(fates.argmax())
-    above = [factor for factor, fell in zip(FACTORS[least:], fates[least:], strict=True) if not fell]
-    assert found.overturning == FACTORS[least]
-    assert found.safe_again == (above[-1] if above else None)
-    assert len(above) > 1  # else this says little
-    assert not fates[FACTORS == 1]
-    assert found.other == FACTORS[fates & (FACTORS > 1)][0] or found.other == FACTORS[fates & (FACTORS < 1)][-1]
+def test_sixty_factors_from_a_fifth_to_five():
+    assert FACTORS.size == 60 and FACTORS[0] == pytest.approx(0.2) and FACTORS[-1] == pytest.approx(5)
 
 
-@pytest.mark.parametrize(("scale", "side"), [(1.05, -1), (1 / 1.05, 1)])
-def test_the_nearest_factor_that_decides_otherwise_is_found(scale, side):
-    least = margin(BLOCK, parse_pulse("sine:0.4g:1s").sampled(), (1,)).overturning
-    motion = parse_pulse("sine:0.4g:1s").sampled().scaled(scale * least)
-    found = margin(BLOCK, motion, (1,))
-    assert falls(BLOCK, motion, 1.0, (1,)) is (side < 0)
-    assert falls(BLOCK, motion, found.other, (1,)) is (side > 0)
-    assert found.other == pytest.approx(1.05**side, rel=0.021)
+def made(*shares) -> Margin:
+    return Margin(AROUND, 0.5, np.arange(1.0, len(shares) + 1), np.array(shares, dtype=float), 0.0)
 
 
-def test_uplift_is_lambda_over_the_push_in_the_direction_that_it_lifts():
-    one_sided = GroundMotion("push", 0.01, np.array([0.0, 4.0, 0.0, -1.0, 0.0]))
-    lam = 0.7 / 2.8 * BLOCK.gravity
-    assert margin(BLOCK, one_sided).uplift == pytest.approx(lam / 4, rel=1e-12)
-    frame = load_structure(EXAMPLES / "frame.yaml")
-    # Clockwise by the push to the left, anticlockwise by that to the right.
-    positive, negative = 0.18801, 0.195274
-    found = margin(frame, one_sided, (1,)).uplift
-    assert found == pytest.approx(min(positive / 1, negative / 4) * 9.80665, rel=1e-5)
-    found = margin(frame, one_sided, (-1,)).uplift
-    assert found == pytest.approx(min(positive / 4, negative / 1) * 9.80665, rel=1e-5)
-    assert margin(frame, GroundMotion("none", 0.01, np.zeros(4))).uplift is None
-    assert margin(frame, GroundMotion("none", 0.01, np.zeros(4))).overturning is None
+class TestLevels:
+    def test_first_and_last(self):
+        found = made(0.0, 0.2, 0.6, 0.3, 0.6, 1.0)
+        assert [found.first(level) for level in LEVELS] == [2.0, 3.0, 6.0]
+        assert [found.last_below(level) for level in LEVELS] == [1.0, 4.0, 5.0]
+        assert found.islands(0.5) == [(3.0, 3.0), (5.0, 6.0)]
+
+    def test_none_and_all(self):
+        assert made(0, 0).first(0.1) is None and made(0, 0).last_below(0.1) == 2.0
+        assert made(1, 1).first(0.9) == 1.0 and made(1, 1).last_below(0.9) is None
+        assert made(1, 1).islands(0.9) == [(1.0, 2.0)] and made(0, 0).islands(0.1) == []
+
+
+class TestWords:
+    def test_no_factor_overturns(self):
+        assert in_words(made(0, 0.05, 0)) == ("At no factor from 1 to 3 do 10 % of the motions next to it overturn.")
+
+    def test_each_level_in_turn(self):
+        assert in_words(made(0, 0.2, 0.6)) == (
+            "Of the motions next to each factor 10 % at 2, 50 % at 3, 90 % at none up to 3 overturn."
+        )
+
+    def test_islands_are_told(self):
+        assert in_words(made(0, 0.2, 0.0, 1.0)).endswith("Overturning comes and goes: at 3 fewer than 10 % do again.")
+        assert "comes and goes" not in in_words(made(0, 0.2, 0.6, 1.0))
+
+    def test_the_numbers_are_those_of_the_shares(self):
+        motion = parse_pulse("ricker:0.7g:0.9s").sampled()
+        found = margin(build_model(BLOCK, "nonlinear"), motion, around=AROUND)
+        for level, factor in re.findall(r"(\d+) % at ([\d.]+)", in_words(found).split(" Overturning")[0]):
+            k = int(np.abs(found.factors - float(factor)).argmin())
+            assert found.overturned[k] >= int(level) / 100 > found.overturned[:k].max()
+
+
+@pytest.mark.parametrize("polarities", [(1,), (-1,), (1, -1)])
+def test_uplift_is_a_quotient(polarities):
+    """A ground acceleration to the left lifts a block clockwise, at tan(alpha) g."""
+    motion = GroundMotion("two pushes", 0.1, np.array([0.0, 4.0, 0.0, -2.0, 0.0]))
+    found = margin(build_model(BLOCK, "nonlinear"), motion, polarities, around=Around(1))
+    assert found.uplift == pytest.approx(0.25 * BLOCK.gravity / 4.0, rel=1e-12)
+    still = margin(build_model(BLOCK, "nonlinear"), motion.scaled(0), polarities, around=Around(1))
+    assert still.uplift is None and not still.overturned.any()
+
+
+@pytest.mark.parametrize("wrong", [[], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [1.0, np.inf], [[1.0]]])
+def test_factors_must_ascend(wrong):
+    with pytest.raises(InputError, match="ascending"):
+        margin(build_model(BLOCK, "nonlinear"), parse_pulse("sine:1g:1s").sampled(), factors=np.array(wrong))
+
+
+class TestCommand:
+    BLOCK = EXAMPLES / "block.yaml"
+    ACCEL = EXAMPLES / "accel.csv"
+
+    def test_json_is_the_study(self):
+        data = run_json("margin", self.BLOCK, "--record", self.ACCEL, "--pulse", "sine:0.5g:0.8s", "--neighbours", 20)
+        assert data["neighbours"] == {"count": 20, "amplitude": 0.02, "restitution": 0.02}
+        assert len(data["motions"]) == 2 and data["motions"][0]["name"] == "accel.csv"
+        model = build_model(load_structure(self.BLOCK), "nonlinear")
+        found = margin(model, parse_pulse("sine:0.5g:0.8s").sampled(), around=AROUND)
+        theirs = data["motions"][1]
+        assert theirs["shares"] == found.overturned.tolist() and theirs["factors"] == FACTORS.tolist()
+        assert theirs["overturned"] == found.itself and theirs["uplift"] == found.uplift
+        assert set(theirs["levels"]) == {"10", "50", "90"}
+        assert theirs["levels"]["50"]["first"] == found.first(0.5)
+        assert theirs["verdict"] == in_words(found)
+
+    def test_a_scaled_motion_is_the_motion(self):
+        one, two = (
+            run_json("margin", self.BLOCK, "--pulse", f"sine:{ag}g:0.8s", *scale, "--neighbours", 5, "--polarity", 1)
+            for ag, scale in ((0.6, ()), (0.3, ("--scale", 2)))
+        )
+        np.testing.assert_allclose(one["motions"][0]["shares"], two["motions"][0]["shares"])
+
+    @pytest.mark.parametrize("width", ["40", "80", "200"])
+    def test_the_table_has_a_row_each(self, width, monkeypatch):
+        monkeypatch.setenv("COLUMNS", width)
+        text = run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5).stdout
+        assert "accel.csv" in text and "the share of the 5 motions next to each" in text
+
+    def test_a_picture(self, tmp_path):
+        run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5, "--plot", tmp_path / "m.png")
+        assert (tmp_path / "m.png").read_bytes()[:4] == b"\x89PNG"
+
+    @pytest.mark.parametrize(
+        ("words", "fragment"),
+        [
+            ((), "--record PLACE or --pulse PULSE"),
+            (("--record", "x", "--neighbours", 0), "at least 1"),
+            (("--record", "x", "--within-amplitude", 1), "below 1"),
+            (("--record", "x", "--within-restitution", -1), "from 0"),
+            (("--record", "no.AT2"), "no such file"),
+        ],
+    )
+    def test_wrong_input(self, words, fragment):
+        assert fragment in run("margin", self.BLOCK, *words, code=2).stderr
+
+
+def test_a_missing_record_of_several_leaves_the_others():
+    from click.testing import CliRunner
+
+    from rocking_cli.cli.main import main
+
+    words = [
+        "margin",
+        EXAMPLES / "block.yaml",
+        "--record",
+        EXAMPLES / "accel.csv",
+        "--record",
+        "no.AT2",
+        "--neighbours",
+        "5",
+        "--json",
+    ]
+    result = CliRunner().invoke(main, [str(word) for word in words])
+    assert result.exit_code == 5 and "no.AT2" in result.stderr
+    assert len(json.loads(result.stdout)["motions"]) == 1

@@ -89,7 +89,7 @@ class TestContent:
         assert f"Yes, it overturns, {sense} at {alone['overturning_time']:.2f} s" in said
         assert "this way round only" in said
         assert data["answer"].endswith("overturns under sine:1g:2s.") and motion["headline"] == "overturns"
-        assert motion["margin"]["overturning"] < 1
+        assert motion["margin"]["levels"]["90"]["first"] < 1 and motion["neighbours"]["overturned"] > 0.9
 
     def test_the_worse_polarity_is_shown(self, tmp_path):
         out = tmp_path / "r.html"
@@ -141,9 +141,10 @@ class TestContent:
         assert peaks[0] == 0 and f"{100 * max(peaks):.3g} %" in found["answer"]
         assert f"under {pulses[int(np.argmax(peaks))]}" in found["answer"]
 
-    def test_a_least_factor_is_told_from_the_end_of_what_was_tried(self):
+    def test_how_close_it_is_is_told_by_the_shares(self):
         found = run_json("report", BLOCK, "--pulse", "sine:1g:2s", "--scale", "50")["motions"][0]
-        assert "Even the weakest that was tried, 0.20 times" in found["answers"]["How close is that?"]
+        assert "10 % at 0.2, 50 % at 0.2, 90 % at 0.2 overturn" in found["answers"]["How close is that?"]
+        assert "Of 200 motions within 2 % of this one all overturn." in found["answers"]["How close is that?"]
         assert any("Large factors" in each for each in found["doubts"])
 
     def test_a_motion_beyond_the_critical_rotation_is_told_as_such(self):
@@ -152,8 +153,8 @@ class TestContent:
         assert "only the next push of the ground brings it back" in motion["answers"]["How close is that?"]
 
     def test_a_close_result_and_models_that_disagree_are_doubted(self):
-        margin = run_json("report", BLOCK, "--pulse", "sine:0.5g:1s")["motions"][0]["margin"]["overturning"]
-        near = 0.5 * margin / 1.04
+        levels = run_json("report", BLOCK, "--pulse", "sine:0.5g:1s")["motions"][0]["margin"]["levels"]
+        near = 0.5 * levels["10"]["first"] / 1.15
         (motion,) = run_json("report", BLOCK, "--pulse", f"sine:{near:.6g}g:1s")["motions"]
         assert motion["headline"].endswith("(close)") and any("close" in doubt for doubt in motion["doubts"])
         far = run_json("report", BLOCK, "--pulse", f"sine:{near / 1.5:.6g}g:1s")

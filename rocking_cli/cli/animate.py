@@ -51,6 +51,7 @@ def _speed(ctx: click.Context, param: click.Parameter, value: float | None) -> f
     "--fps", type=options.Finite(positive=True), default=FPS, show_default=True, callback=_fps, metavar="FRAMES",
     help="Frames a second of a GIF.",
 )  # fmt: skip
+@options.around
 @options.as_json
 @click.pass_context
 def command(
@@ -69,6 +70,9 @@ def command(
     out: Path,
     speed: float | None,
     fps: float,
+    neighbours: int,
+    within_amplitude: float,
+    within_restitution: float,
     as_json: bool,
 ) -> None:
     """Show a structure moving under a ground motion, with the traces of rotation and ground below it.
@@ -100,6 +104,7 @@ def command(
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.dynamics.history import RTOL, TAIL
     from rocking_cli.files import keep_apart
+    from rocking_cli.studies import neighbours as near
     from rocking_cli.studies.film import Film
     from rocking_cli.studies.picture import picture
 
@@ -116,6 +121,7 @@ def command(
     keep_apart([("--out", place) for place in places], inputs)
     say_if_compiling()
     models, drawn = shaking.prepare(mechanism, (cast("ModelName", model),), file), picture(mechanism)
+    around = near.Around(neighbours, within_amplitude, within_restitution)
     rows = []
     for each, place in zip(given, places, strict=True):
         assert place is not None
@@ -141,6 +147,9 @@ def command(
                     "outcome": history.outcome.name.lower(),
                     "peak_ratio": history.peak_ratio,
                     "restitution": responses.restitution_json(mechanism, blocks),
+                    "neighbours": responses.neighbours_json(near.neighbours(models[0], motion, around))
+                    if around.count
+                    else None,
                     "verdict": film.verdict,
                     "start": film.start,
                     "end": film.end,

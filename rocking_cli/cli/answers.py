@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from rocking_cli.cli import shaking, terminal
 from rocking_cli.cli.motions import Scaled
@@ -11,6 +11,7 @@ from rocking_cli.cli.responses import Histories, Runs
 from rocking_cli.dynamics.model import Model
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
+from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 
 # The pulses that are fitted, and the word for the one that fits best.
 FITTED = ("sine", "ricker", "mavroeidis")
@@ -33,6 +34,8 @@ class Question:
         Relative local error of a step.
     with_pulse : str or None
         Also the response to the pulse in the record alone: its shape, or "best".
+    around : Around
+        The neighbours of every motion; a count of 0 for none.
     """
 
     signs: tuple[int, ...]
@@ -40,6 +43,7 @@ class Question:
     tail: float
     rtol: float
     with_pulse: str | None = None
+    around: Around = field(default_factory=Around)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +58,8 @@ class Answer:
         The motion as scaled, in the first polarity asked for.
     runs : mapping of int to mapping of str to History
         The histories under each polarity.
+    neighbours : mapping of int to Neighbours
+        What became of the neighbours of the motion, under each polarity; empty if there were to be none.
     fit, to_pulse : PulseFit and mapping of str to History, optional
         The pulse in the motion, and the histories under it alone.
     """
@@ -61,6 +67,7 @@ class Answer:
     given: Scaled | None
     first: GroundMotion | None
     runs: Runs
+    neighbours: Mapping[int, Neighbours]
     fit: PulseFit | None = None
     to_pulse: Histories | None = None
 
@@ -71,13 +78,18 @@ def answer(models: Sequence[Model], given: Scaled | None, asked: Question) -> An
     def follow(motion: GroundMotion | None) -> Histories:
         return shaking.respond(models, motion, asked.release, asked.tail, asked.rtol)
 
-    if given is None:
-        return Answer(None, None, {sign: follow(None) for sign in asked.signs})
-    under = {sign: given.motion.scaled(sign * given.factor) for sign in asked.signs}
+    under = {sign: given.motion.scaled(sign * given.factor) if given is not None else None for sign in asked.signs}
     first = under[asked.signs[0]]
-    fit = _find(first, asked.with_pulse) if asked.with_pulse is not None else None
+    fit = _find(first, asked.with_pulse) if first is not None and asked.with_pulse is not None else None
     runs = {sign: follow(motion) for sign, motion in under.items()}
-    return Answer(given, first, runs, fit, follow(fit.alone(first)) if fit is not None else None)
+    best = next((model for model in models if not model.is_linear), models[0])
+    near = {
+        sign: neighbours(best, motion, asked.around, release=asked.release, rtol=asked.rtol)
+        for sign, motion in under.items()
+        if asked.around.count
+    }
+    alone = follow(fit.alone(first)) if fit is not None and first is not None else None
+    return Answer(given, first, runs, near, fit, alone)
 
 
 def _find(motion: GroundMotion, shape: str) -> PulseFit:

@@ -18,8 +18,8 @@ from rocking_cli.errors import PluginWarning, RockingError
 from rocking_cli.text import printable
 
 COMMANDS = (
-    "draw", "equiv", "error", "record", "respond", "animate", "pulse", "overturning", "spectrum", "equivalent",
-    "fragility", "results", "report", "figure", "mechanisms", "new",
+    "draw", "equiv", "error", "record", "respond", "margin", "animate", "pulse", "overturning", "spectrum",
+    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "new",
 )  # fmt: skip
 
 
@@ -120,6 +120,7 @@ def main() -> None:
       rocking equiv block.yaml
       rocking record accel.csv
       rocking respond block.yaml --record accel.csv --plot response.png
+      rocking margin block.yaml --record accel.csv
       rocking pulse --a 4 --omega 6
       rocking overturning block.yaml --plot map.png
       rocking fragility study.yaml

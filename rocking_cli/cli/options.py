@@ -57,6 +57,13 @@ def restitution(ctx: click.Context, param: click.Parameter, value: float | None)
     return value
 
 
+def share(ctx: click.Context, param: click.Parameter, value: float) -> float:
+    """A callback for a number from 0 to below 1."""
+    if not 0 <= value < 1:
+        raise click.BadParameter(f"{value:g} is not a number from 0 to below 1.", ctx, param)
+    return value
+
+
 def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str | None], Path | None]:
     """A callback for an output file: its suffix must be one of these, and its folder must take a file."""
 
@@ -139,3 +146,34 @@ def scaling(*polarities: str, both: str = "one after the other", default: str = 
             help="-1 reverses the record." + (f" both: {both}." if "both" in polarities else ""),
         ),
     )
+
+
+around: Decorator = _in_order(
+    click.option(
+        "--neighbours",
+        type=click.IntRange(0, 1_000_000),
+        default=200,
+        show_default=True,
+        metavar="N",
+        help="Motions next to the one asked for that are followed too; 0 for none.",
+    ),
+    click.option(
+        "--within-amplitude",
+        type=Finite(),
+        default=0.02,
+        show_default=True,
+        metavar="SHARE",
+        callback=share,
+        help="How far the factors on these are from 1, at most.",
+    ),
+    click.option(
+        "--within-restitution",
+        type=Finite(),
+        default=0.02,
+        show_default=True,
+        metavar="ETA",
+        callback=share,
+        help="How far their restitution is from the structure's, at most.",
+    ),
+)
+"""The neighbours of a motion: `neighbours`, `within_amplitude` and `within_restitution`."""

@@ -34,6 +34,7 @@ POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
     "-o", "--out", callback=options.output_path(".html"), metavar="FILE.html",
     help="Where to.  [default: FILE with .html, in this folder; none with --json]",
 )  # fmt: skip
+@options.around
 @options.as_json
 @click.pass_context
 def command(
@@ -49,6 +50,9 @@ def command(
     target_pgv: float | None,
     polarity: str,
     out: Path | None,
+    neighbours: int,
+    within_amplitude: float,
+    within_restitution: float,
     as_json: bool,
 ) -> None:
     """Write a report on a structure: one HTML file that opens in any browser, without a network, and prints.
@@ -67,6 +71,8 @@ def command(
     """
     if not records and any(value is not None for value in (units, dt, channel)):
         raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
+    if not neighbours:
+        raise click.UsageError("A report says how close a result is: --neighbours must be at least 1 here.")
     motions.check_scaling(scale, target_pga, target_pgv)
     if not records and not pulses and any(value is not None for value in (scale, target_pga, target_pgv)):
         raise click.UsageError(
@@ -76,6 +82,7 @@ def command(
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.files import check_writable, keep_apart, write_whole
     from rocking_cli.report.content import gather, steps
+    from rocking_cli.studies.neighbours import Around
 
     if out is None and not as_json:
         out = Path(f"{Path(files[0]).stem if files else 'rocking'}.html")
@@ -100,6 +107,7 @@ def command(
     with structures.of_file(file), terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
             mechanism, source, given, POLARITIES[polarity],
+            around=Around(neighbours, within_amplitude, within_restitution),
             command=_command_line(ctx), date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"), progress=advance,
         )  # fmt: skip
     if out is not None:
@@ -165,6 +173,7 @@ def _command_line(ctx: click.Context) -> str:
 
 
 def _as_json(content: Content) -> dict[str, Any]:
+    from rocking_cli.cli.margin_results import margin_json
     from rocking_cli.cli.pulse_fits import fit_json
     from rocking_cli.cli.responses import runs_json
     from rocking_cli.core import Direction
@@ -191,14 +200,9 @@ def _as_json(content: Content) -> dict[str, Any]:
                 "headline": said.headline,
                 "answers": {item.question: item.answer for item in said.answers},
                 "doubts": list(said.doubts),
-                **runs_json(each.runs, None),
+                **runs_json(each.runs, each.neighbours, None),
                 "polarity": each.polarity,
-                "margin": {
-                    "uplift": each.margin.uplift,
-                    "overturning": each.margin.overturning,
-                    "safe_again": each.margin.safe_again,
-                    "other": each.margin.other,
-                },
+                "margin": margin_json(each.margin),
                 "pulses": [fit_json(fit) for fit in each.fits],
             }
             for each, said in zip(content.shakings, verdicts, strict=True)

@@ -98,6 +98,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     callback=_rtol,
     help="Relative local error of a step of the nonlinear history.",
 )
+@options.around
 @click.option("--impacts", is_flag=True, help="List the impacts: times, and rates before and after.")
 @click.option(
     "--out",
@@ -128,6 +129,9 @@ def command(
     models: tuple[str, ...],
     tail: float,
     rtol: float,
+    neighbours: int,
+    within_amplitude: float,
+    within_restitution: float,
     impacts: bool,
     out: Path | None,
     plot: Path | None,
@@ -189,6 +193,7 @@ def command(
     from rocking_cli.cli.answers import Question, answer
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.files import keep_apart
+    from rocking_cli.studies.neighbours import Around
 
     inputs = [*files, *(str(path) for path in paths), vertical]
     keep_apart([("--out", out), ("--plot", plot)], inputs)
@@ -219,8 +224,9 @@ def command(
     chosen = cast("tuple[ModelName, ...]", models)
     say_if_compiling()
     built = shaking.prepare(mechanism, chosen, file)
-    asked = Question((1, -1) if polarity == "both" else (int(polarity),), release, tail, rtol, with_pulse)
-    table = results.Several(mechanism, equivalence, chosen)
+    around = Around(neighbours, within_amplitude, within_restitution)
+    asked = Question((1, -1) if polarity == "both" else (int(polarity),), release, tail, rtol, with_pulse, around)
+    table, details = results.Several(mechanism, equivalence, chosen), []
     with terminal.progress(len(outs), "motions") as advance:
         for each, to, picture in zip(given, outs, plots, strict=True):
             title = structures.label(mechanism)
@@ -240,9 +246,14 @@ def command(
             results.write(found, to, picture, title)
             if as_json:
                 terminal.print_json(results.as_json(found, mechanism, equivalence, asked, polarity, impacts=impacts))
-            elif not several or impacts:
+            elif not several:
                 results.print_one(found, mechanism, equivalence, title, impacts=impacts)
+            elif impacts:
+                details.append((found, title))
     if several and not as_json:
         table.print()
+        for one, title in details:
+            terminal.result()
+            results.print_one(one, mechanism, equivalence, title, impacts=True)
     if missing or refused:
         ctx.exit(INCOMPLETE)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isinf
 from pathlib import Path
 from typing import Any
 
+from rocking_cli import names
 from rocking_cli.cli import responses, structures, terminal
 from rocking_cli.cli.answers import Answer, Question
 from rocking_cli.cli.pictures import write_picture
@@ -15,6 +17,8 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.files import write_whole
+from rocking_cli.names import percent
+from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
 
 
 def write(found: Answer, out: Path | None, plot: Path | None, title: str) -> None:
@@ -50,7 +54,7 @@ def as_json(
         "record": responses.record_json(given.motion, given.factor, polarity, given.pulse) if given else None,
         "release": asked.release,
         "restitution": responses.restitution_json(mechanism, blocks),
-        **responses.runs_json(found.runs, etas),
+        **responses.runs_json(found.runs, found.neighbours, etas),
     }
     if found.fit is not None and found.to_pulse is not None:
         from rocking_cli.cli.pulse_fits import fit_json
@@ -67,11 +71,11 @@ def print_one(found: Answer, mechanism: Mechanism, blocks: Equivalence, title: s
     """Tables and sentences on one motion, with the first impacts if they are asked for."""
     etas = blocks if impacts else None
     if found.to_pulse is None:
-        responses.print_tables(title, found.runs, etas)
+        responses.print_tables(title, found.runs, found.neighbours, etas)
     else:
-        responses.print_tables(f"{title}, under the record", found.runs, etas)
+        responses.print_tables(f"{title}, under the record", found.runs, found.neighbours, etas)
         terminal.result()
-        responses.print_tables(f"{title}, under its pulse alone", {1: found.to_pulse}, etas)
+        responses.print_tables(f"{title}, under its pulse alone", {1: found.to_pulse}, {}, etas)
         terminal.result(responses.share_of_pulse(next(iter(found.runs.values())), found.to_pulse))
     terminal.result(responses.restitution_used(mechanism, blocks))
     for note in _notes(found, mechanism):
@@ -95,31 +99,53 @@ class Several:
         self._models = models
         self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
         self._rows: list[list[str]] = []
-        self._motions = self._fallen = 0
+        self._worst: dict[str, Severity] = {}
+        self._fallen = 0
+        self._around: Around | None = None
 
     def add(self, found: Answer) -> None:
         """Take up what became of it under one motion."""
         assert found.given is not None
         pga = f"{abs(found.given.factor) * found.given.motion.pga:.4g}"
+        severities = []
         for sign, histories in found.runs.items():
             reversed_ = ", reversed" if sign < 0 and len(found.runs) > 1 else ""
-            self._row(f"{found.given.motion.name}{reversed_}", pga, histories)
+            near = found.neighbours.get(sign)
+            self._row(f"{found.given.motion.name}{reversed_}", pga, histories, near)
+            severities.append(severity(histories[self._best], near))
+            self._around = near.around if near is not None else None
         if found.fit is not None and found.to_pulse is not None:
             own = found.fit.pulse
-            self._row(f"  its {own.name} pulse alone", f"{own.amplitude / STANDARD_GRAVITY:.4g}", found.to_pulse)
-        self._motions += 1
+            self._row(f"  its {own.name} pulse alone", f"{own.amplitude / STANDARD_GRAVITY:.4g}", found.to_pulse, None)
+        self._worst[found.given.motion.name] = max(severities)
         self._fallen += any(histories[self._best].overturned for histories in found.runs.values())
 
-    def _row(self, what: str, pga: str, histories: responses.Histories) -> None:
-        self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models)])
+    def _row(self, what: str, pga: str, histories: responses.Histories, near: Neighbours | None) -> None:
+        around = [percent(near.overturned), _peak(near.peak_ratio[1])] if near is not None else [terminal.ABSENT] * 2
+        self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models), *around])
 
     def print(self) -> None:
-        """The table, and how many motions overturn it."""
+        """The table, how many motions overturn it, and which governs."""
         heads = ["peak phi/phi_cr\nunder", "PGA\n[g]", *self._models]
-        terminal.table(self._title, heads, self._rows, numbers=range(1, len(heads)))
-        fallen = f"{self._fallen} of {self._motions} motions overturn it" if self._fallen else ""
-        terminal.result(f"By the {self._best} model {fallen or f'none of {self._motions} motions overturns it'}.")
+        rows = self._rows
+        if self._around is not None:
+            heads += ["neighbours\noverturn", "their\nmedian"]
+        else:
+            rows = [row[:-2] for row in rows]
+        terminal.table(self._title, heads, rows, numbers=range(1, len(heads)))
+        fallen = f"{self._fallen} of {len(self._worst)} motions overturn it" if self._fallen else ""
+        terminal.result(f"By the {self._best} model {fallen or f'none of {len(self._worst)} motions overturns it'}.")
+        if self._around is not None:
+            near, eta = percent(self._around.amplitude), self._around.restitution
+            terminal.result(
+                f"Neighbours: {self._around.count} motions within {near} of each, restitution within {eta:g}."
+            )
+        terminal.result(governing(self._worst))
         terminal.result(self._restitution)
+
+
+def _peak(ratio: float) -> str:
+    return names.OVERTURNS if isinf(ratio) else f"{ratio:.3g}"
 
 
 def _fate(history: History) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
-from math import degrees
+from math import degrees, isinf
 from typing import Any
 
 from rocking_cli.cli import terminal
@@ -15,6 +15,7 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import SENSE, agreements, governs, verdict
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 
 Histories = Mapping[ModelName, History]
 Runs = Mapping[int, Histories]
@@ -57,12 +58,13 @@ def _motion_json(motion: GroundMotion) -> dict[str, Any]:
     }
 
 
-def runs_json(runs: Runs, etas: Equivalence | None) -> dict[str, Any]:
-    """The responses, under their polarities if there are two; with the impacts if there are `etas`."""
+def runs_json(runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None) -> dict[str, Any]:
+    """Responses and neighbours, under their polarities if there are two; with the impacts if there are `etas`."""
     each = {
         str(polarity): {
             "responses": histories_json(histories, etas),
             "agreement": agreement_json(histories),
+            "neighbours": neighbours_json(near[polarity]) if polarity in near else None,
             "verdict": verdict(histories),
         }
         for polarity, histories in runs.items()
@@ -73,6 +75,19 @@ def runs_json(runs: Runs, etas: Equivalence | None) -> dict[str, Any]:
 def histories_json(histories: Histories, etas: Equivalence | None) -> dict[str, Any]:
     """The response of each model; with the impacts if there are `etas`."""
     return {name: _history_json(run, etas) for name, run in histories.items()}
+
+
+def neighbours_json(near: Neighbours) -> dict[str, Any]:
+    """What became of the neighbours of a motion; a peak of those that overturn is null."""
+    peaks = zip(FRACTILES, near.peak_ratio, strict=True)
+    return {
+        "count": near.around.count,
+        "amplitude": near.around.amplitude,
+        "restitution": near.around.restitution,
+        "overturned": near.overturned,
+        "peak_ratio": {f"{100 * share:.0f}": None if isinf(peak) else peak for share, peak in peaks},
+        "sensitive": near.sensitive,
+    }
 
 
 def agreement_json(histories: Histories) -> dict[str, Any]:
@@ -130,12 +145,14 @@ def _impacts(history: History, etas: Equivalence, most: int) -> list[tuple[float
     return [(time, direction, rate, etas[direction].eta * rate) for time, direction, rate in rows]
 
 
-def print_tables(title: str, runs: Runs, etas: Equivalence | None) -> None:
-    """A table and a verdict for each polarity, which of two governs, and the first impacts if there are `etas`."""
+def print_tables(title: str, runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None) -> None:
+    """A table and sentences on each polarity, which of two governs, and the first impacts if there are `etas`."""
     for polarity, histories in runs.items():
         heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
         _print_table(heading, histories)
         terminal.result(verdict(histories))
+        if polarity in near:
+            terminal.result(str(near[polarity]))
         for name, run in histories.items() if etas is not None else ():
             assert etas is not None
             terminal.result()

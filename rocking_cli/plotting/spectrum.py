@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from textwrap import shorten
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,7 +21,6 @@ NAME = 40  # characters of a structure's name in the legend
 SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks
 SHADED = 2  # curves up to which the spread of the motions is drawn: more shades cannot be told apart
 ROW = 0.06  # height of the row of marks where a curve overturns, over that of the peaks
-STAR: dict[str, Any] = {"marker": "*", "markersize": 15, "markeredgecolor": "white", "linestyle": "none", "zorder": 6}
 
 
 def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title: str) -> Figure:
@@ -117,7 +115,7 @@ def _draw_line(axes: Axes, each: Spectrum, k: int, values: Reals, row: float = n
     axes.plot(each.periods, marks, **small)
     finite = np.where(np.isinf(values), row, finite)
     if each.given is not None:
-        axes.plot(each.periods[each.given], finite[each.given], color=look["color"], clip_on=False, **STAR)
+        axes.plot(each.periods[each.given], finite[each.given], color=look["color"], clip_on=False, **style.STAR)
 
 
 def _scale_peaks(axes: Axes, top: float, rows: int) -> None:
@@ -177,7 +175,7 @@ def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None) -> 
         label = rf"blocks, $\alpha$ = {alpha:g} rad" if alpha is not None else name
         handles.append(Line2D([], [], label=label, **style.distinct(k)))
     if any(each.given is not None for each in spectra):
-        handles.append(Line2D([], [], label="as given", color=style.INK, **STAR))
+        handles.append(Line2D([], [], label="as given", color=style.INK, **style.STAR))
     if bounds is not None:
         label = f"{100 * bounds[0]:g} to {100 * bounds[1]:g} % of the motions"
         handles.append(Patch(color=style.INK, alpha=0.15, linewidth=0, label=label))

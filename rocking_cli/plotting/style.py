@@ -60,6 +60,8 @@ MARKED: dict[str, Any] = {
     "marker": "o", "markersize": 8, "color": "white", "markeredgecolor": "#000000", "markeredgewidth": 1.8
 }  # fmt: skip
 
+STAR: dict[str, Any] = {"marker": "*", "markersize": 15, "markeredgecolor": "white", "linestyle": "none", "zorder": 6}
+
 SPARED, EXCEEDED = "#1f77b4", "#b35900"  # runs below and above a limit, apart by their marks too
 
 # For any number of curves: dash and mark tell them apart in grey, and where they lie on one another.

@@ -13,7 +13,7 @@ import numpy as np
 
 from rocking_cli.core import Equivalence, Mechanism, equivalent_block
 from rocking_cli.dynamics.history import History, respond
-from rocking_cli.dynamics.model import MODELS, ModelName
+from rocking_cli.dynamics.model import MODELS, ModelName, build_model
 from rocking_cli.dynamics.verdict import governs
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -24,6 +24,7 @@ from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.registry import Registry
 from rocking_cli.studies.linearisation import Linearisation, compare
 from rocking_cli.studies.margin import Margin, margin
+from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 from rocking_cli.studies.overturning import OverturningMap, Region, overturning_map
 from rocking_cli.studies.picture import Picture, picture
 from rocking_cli.studies.shaken import Shaken, outcomes, parse_shape, shaken
@@ -95,6 +96,8 @@ class Shaking:
         The one that governs.
     governs : str
         A sentence on that; empty if one polarity was looked at.
+    neighbours : mapping of int to Neighbours
+        What became of the neighbours of the motion under each polarity, by the nonlinear model.
     margin : Margin
         How far the motion is from lifting and overturning the structure.
     fits : tuple of PulseFit
@@ -109,6 +112,7 @@ class Shaking:
     runs: Mapping[int, Mapping[ModelName, History]]
     polarity: int
     governs: str
+    neighbours: Mapping[int, Neighbours]
     margin: Margin
     fits: tuple[PulseFit, ...]
     alone: float | None
@@ -201,6 +205,7 @@ def gather(
     *,
     command: str,
     date: str,
+    around: Around | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Content:
     """Compute everything a report says.
@@ -217,6 +222,8 @@ def gather(
         Of 1 and -1: those of the motions to look at.
     command, date : str
         For the reader: what wrote it, and when.
+    around : Around, optional
+        How to draw the neighbours of a motion, at least one.
     progress : callable, optional
         Called with the number of steps done since the last call, of `steps(given)`.
 
@@ -235,7 +242,7 @@ def gather(
     done(1)
     shakings = []
     for each in given:
-        shakings.append(_shake(mechanism, equivalence, each, polarities))
+        shakings.append(_shake(mechanism, equivalence, each, polarities, around or Around()))
         done(1)
     maps = _maps(mechanism, equivalence, shakings)
     done(1)
@@ -270,11 +277,15 @@ def _plugin(mechanism: Mechanism) -> str:
     return registry.package_of(mechanism.mechanism) if mechanism.mechanism in registry else "not installed as a plugin"
 
 
-def _shake(mechanism: Mechanism, equivalence: Equivalence, given: Given, polarities: Sequence[int]) -> Shaking:
+def _shake(
+    mechanism: Mechanism, equivalence: Equivalence, given: Given, polarities: Sequence[int], around: Around
+) -> Shaking:
     asked = measure(given.motion)
     p = max(equivalence.positive.p, equivalence.negative.p)
     doubtful = [] if given.pulse is not None else doubts(given.motion, asked) + coarse_for(given.motion, p)
-    runs = {sign: respond(mechanism, given.motion.scaled(sign * given.factor), models=MODELS) for sign in polarities}
+    under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
+    runs = {sign: respond(mechanism, motion, models=MODELS) for sign, motion in under.items()}
+    model = build_model(mechanism, "nonlinear")
     worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
@@ -285,7 +296,8 @@ def _shake(mechanism: Mechanism, equivalence: Equivalence, given: Given, polarit
         runs=runs,
         polarity=worse or polarities[0],
         governs=said,
-        margin=margin(mechanism, scaled, polarities),
+        neighbours={sign: neighbours(model, motion, around) for sign, motion in under.items()},
+        margin=margin(model, scaled, polarities, around=around),
         fits=fits,
         alone=_alone(mechanism, fits[0], polarities) if fits else None,
     )

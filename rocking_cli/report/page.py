@@ -19,6 +19,7 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting.linearisation import draw_linearisation
+from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
@@ -58,6 +59,8 @@ def render(content: Content) -> str:
         content=content,
         answer=words.in_a_sentence(content),
         verdicts=words.verdicts(content),
+        overview=words.overview(content),
+        governs=words.governs(content) if content.shakings else "",
         doubts=words.doubts(content),
         restitution=words.restitution(content),
         drawing=_still(draw_structure(content.picture, content.name), "drawing"),
@@ -68,6 +71,10 @@ def render(content: Content) -> str:
         trust=_greek(content.trust),
         geometry=_geometry(content),
         responses=[_response(content, each, k, bins) for k, each in enumerate(content.shakings)],
+        margins=_still(draw_margins({each.given.motion.name: each.margin for each in content.shakings}, ""), "margins")
+        if content.shakings
+        else None,
+        around=content.shakings[0].margin.around if content.shakings else None,
         maps=[_map(each, k) for k, each in enumerate(content.maps)],
         errors=_still(draw_linearisation(content.curves, content.asked, ""), "errors") if content.curves else None,
         error_tables=[

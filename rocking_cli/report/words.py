@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees, isnan
+from math import degrees, inf, isinf, isnan
 
 from rocking_cli import names
 from rocking_cli.core import Direction
@@ -16,10 +16,11 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.report.content import Content, Shaking
-from rocking_cli.studies.margin import FACTORS, STEP
+from rocking_cli.studies.margin import LEVELS, in_words
+from rocking_cli.studies.neighbours import governing, severity
 
 LARGE = 2.0  # a factor on a record that asks for a word of caution
-NEAR = 1.25  # a factor on the motion within which the opposite outcome makes a result a close one
+NEAR = 1.25  # a factor on the motion within which the opposite outcome of some neighbours makes a result a close one
 MODELS: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear model",
     "linear1": "equivalent block with κ₁",
@@ -91,6 +92,29 @@ def in_a_sentence(content: Content) -> str:
     return (
         f"{name} rocks under {len(moved)} of {len(content.shakings)} ground motions and overturns under none: it turns "
         f"by at most {share}, under {which}.{close}"
+    )
+
+
+def overview(content: Content) -> list[list[str]]:
+    """A row for each motion: its name, PGA [g], the nonlinear peak, the share of its neighbours, and their median."""
+    rows = []
+    for each in content.shakings:
+        near, run = each.neighbours[each.polarity], each.histories["nonlinear"]
+        peaks = [inf if run.overturned else run.peak_ratio or 0.0, near.peak_ratio[1]]
+        itself, median = (names.OVERTURNS if isinf(peak) else f"{peak:.3g}" for peak in peaks)
+        rows.append(
+            [each.given.motion.name, f"{each.measured.pga:.3g}", itself, names.percent(near.overturned), median]
+        )
+    return rows
+
+
+def governs(content: Content) -> str:
+    """A sentence on the motion that is the worst."""
+    return governing(
+        {
+            each.given.motion.name: severity(each.histories["nonlinear"], each.neighbours[each.polarity])
+            for each in content.shakings
+        }
     )
 
 
@@ -191,23 +215,8 @@ def _closeness(content: Content, shaking: Shaking) -> str:
         )
         if best.peak_ratio > 1:
             said.append("It passes that, and only the next push of the ground brings it back.")
-    tried = f"factors from {FACTORS[0]:.2g} to {FACTORS[-1]:.2g} were tried in steps of {100 * (STEP - 1):.0f} %"
-    if found.overturning is None:
-        said.append(f"No factor on the motion that was tried overturns it ({tried}).")
-    elif found.overturning == FACTORS[0]:
-        said.append(f"Even the weakest that was tried, {found.overturning:.2f} times this one, overturns it ({tried}).")
-    elif _overturns(shaking) or found.overturning >= 1:
-        said.append(
-            f"The least factor on the motion that was found to overturn it is {found.overturning:.3g} ({tried}; others "
-            "between these may, too)."
-        )
-    else:
-        said.append(
-            f"Yet a weaker motion, {found.overturning:.3g} times this one, overturns it ({tried}): overturning is "
-            "erratic here, and this result owes something to chance."
-        )
-    if found.safe_again is not None:
-        said.append(f"Not every stronger motion overturns it: {found.safe_again:.3g} times this one does not.")
+    said.append(str(shaking.neighbours[shaking.polarity]))
+    said.append(in_words(found))
     return " ".join(said)
 
 
@@ -255,8 +264,11 @@ def _close(shaking: Shaking) -> bool:
     """Whether a small change of the motion or the model could give the other outcome."""
     if disagree(shaking.histories):
         return True
-    other = shaking.margin.other
-    return (other is not None and 1 / NEAR < other < NEAR) or _worst_ratio(shaking) > CLOSE
+    if shaking.neighbours[shaking.polarity].sensitive or _worst_ratio(shaking) > CLOSE:
+        return True
+    found = shaking.margin
+    near = found.overturned[(found.factors > 1 / NEAR) & (found.factors < NEAR)]
+    return bool((near < LEVELS[-1]).any() if _overturns(shaking) else (near >= LEVELS[0]).any())
 
 
 def _worst_ratio(shaking: Shaking) -> float:

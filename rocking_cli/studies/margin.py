@@ -1,4 +1,8 @@
-"""How much stronger or weaker a ground motion would have to be to lift a structure, and to overturn it."""
+"""How much stronger or weaker a ground motion would have to be to lift a structure, and to overturn it.
+
+Overturning comes and goes with the factor on a motion, so there is no least factor that a computation could find and
+another would confirm. What there is, is the share of the motions next to each factor that overturn.
+"""
 
 from __future__ import annotations
 
@@ -8,88 +12,137 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Mechanism
-from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.model import build_models
-from rocking_cli.errors import SolverError
+from rocking_cli.dynamics.batch import Runs
+from rocking_cli.dynamics.model import Model
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import percent
+from rocking_cli.studies.neighbours import Around, follow, least_uplift
 
-STEP = 1.01  # from one factor to the next
-FACTORS: NDArray[np.float64] = STEP ** np.arange(-162.0, 163.0)  # 0.2 to 5, with 1 itself
+Reals = NDArray[np.float64]
+
+LEVELS = (0.1, 0.5, 0.9)
+FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Margin:
-    """Factors on a ground motion.
+    """The share of overturning over the factor on a ground motion.
 
     Parameters
     ----------
+    around : Around
+        How the neighbours of each factor were drawn.
     uplift : float or None
-        The least that lifts the structure, exact; None if none does.
-    overturning : float or None
-        The least of `FACTORS` with which it overturns; None if it does with none of them. Others between two of them
-        may overturn it, too: overturning comes and goes with the factor.
-    safe_again : float or None
-        The largest of them above that with which it does not overturn; None if there is none.
-    other : float or None
-        The one nearest to 1 that decides otherwise than 1 whether it overturns; None if all decide alike.
+        The least factor that lifts the structure, exact (its vertical component apart); None if none does.
+    factors : ndarray, shape (n,)
+        Ascending.
+    overturned : ndarray, shape (n,)
+        The share that overturns next to each; of two polarities that of the worse.
+    itself : float
+        The share next to the motion itself, at a factor of 1.
     """
 
+    around: Around
     uplift: float | None
-    overturning: float | None
-    safe_again: float | None
-    other: float | None
+    factors: Reals
+    overturned: Reals
+    itself: float
+
+    def first(self, level: float) -> float | None:
+        """The least of the factors next to which this share overturns; None if there is none."""
+        reached = self.overturned >= level
+        return float(self.factors[reached.argmax()]) if reached.any() else None
+
+    def last_below(self, level: float) -> float | None:
+        """The largest of the factors next to which a smaller share overturns; None if there is none."""
+        below = np.flatnonzero(self.overturned < level)
+        return float(self.factors[below[-1]]) if below.size else None
+
+    def islands(self, level: float) -> list[tuple[float, float]]:
+        """The runs of neighbouring factors next to which this share overturns: the first and the last of each."""
+        edges = np.diff(np.concatenate([[False], self.overturned >= level, [False]]).astype(np.int8))
+        starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
+        return [(float(self.factors[i]), float(self.factors[j])) for i, j in zip(starts, ends, strict=True)]
 
 
 def margin(
-    mechanism: Mechanism,
+    model: Model,
     motion: GroundMotion,
     polarities: Sequence[int] = (1, -1),
+    *,
+    around: Around | None = None,
+    factors: Reals = FACTORS,
+    threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Margin:
-    """Find the factors on a motion that lift and that overturn a structure, by its nonlinear model.
+    """Find the share of overturning over the factor on a motion.
 
     Parameters
     ----------
-    mechanism : Mechanism
-        The structure.
+    model : Model
+        Of the structure; the nonlinear one is the structure itself.
     motion : GroundMotion
-        What shakes it.
+        What shakes it at a factor of 1.
     polarities : sequence of int
         Of 1 and -1; with both, the worse counts.
+    around : Around, optional
+        How to draw the neighbours of each factor.
+    factors : ndarray, shape (n,)
+        On the motion, positive and ascending.
+    threads : int, optional
+        How many at a time; without it, one for each processor.
     progress : callable, optional
-        Called with the number of histories done since the last call, of `FACTORS.size * len(polarities)`.
+        Called with the number of histories done since the last call, of n + 1 times neighbours times polarities.
 
     Raises
     ------
-    InputError, MechanismError
-        If the structure does not stand, or its restitution is not known.
+    InputError
+        If there are to be no neighbours, or the factors are not as they must be.
     SolverError
         If a motion cannot be followed.
     """
-    runs = Runs.every(1, 1, scales=FACTORS.tolist(), polarities=polarities)
-    found = respond_many(build_models(mechanism, ("nonlinear",)), [motion], runs, only_peaks=True, progress=progress)
-    if found.failed.any():
-        raise SolverError(f"{runs.scale[int(found.failed.argmax())]:.3g} times {motion.name} cannot be followed")
-    falls: NDArray[np.bool_] = np.any(found.overturned.reshape(FACTORS.size, len(polarities)), axis=1)
-    least = int(falls.argmax())
-    above = np.flatnonzero(~falls[least:]) + least if falls.any() else np.array([], dtype=np.int64)
-    one = int(np.abs(np.log(FACTORS)).argmin())
-    otherwise = np.flatnonzero(falls != falls[one])
-    return Margin(
-        uplift=_uplift(mechanism, motion, polarities),
-        overturning=float(FACTORS[least]) if falls.any() else None,
-        safe_again=float(FACTORS[above[-1]]) if above.size else None,
-        other=float(FACTORS[otherwise[np.abs(otherwise - one).argmin()]]) if otherwise.size else None,
-    )
+    around = around or Around()
+    if not around.count:
+        raise InputError(Problem("a share needs neighbours: at least 1", field="neighbours"))
+    if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
+        raise InputError("the factors on a motion must be positive and ascending")
+    shape = (len(polarities), factors.size + 1, around.count)
+    # The same neighbours at every factor: what differs between two factors is the factor.
+    scales = np.broadcast_to(np.multiply.outer([*factors, 1.0], around.factors()), shape)
+    signs = np.broadcast_to(np.reshape(polarities, (-1, 1, 1)), shape)
+    etas = np.broadcast_to(around.etas(model), (*shape, 2))
+    runs = Runs.of(0, 0, scale=scales.ravel(), polarity=signs.ravel(), eta=etas.reshape(-1, 2))
+    found = follow([model], [motion], runs, threads=threads, progress=progress)
+    shares = found.overturned.reshape(shape).mean(axis=2).max(axis=0)
+    uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
+    least = min((each for each in uplifts if each is not None), default=None)
+    return Margin(around, least, factors, shares[:-1], float(shares[-1]))
 
 
-def _uplift(mechanism: Mechanism, motion: GroundMotion, polarities: Sequence[int]) -> float | None:
-    """Uplift when -s a_g/g exceeds lambda of the direction s."""
-    needed = []
-    for direction in Direction:
-        for polarity in polarities:
-            push = float(np.max(-direction * polarity * motion.acceleration))
-            if push > 0:
-                needed.append(mechanism.uplift(direction) * mechanism.gravity / push)
-    return min(needed, default=None)
+def in_words(found: Margin) -> str:
+    """What a margin says, in a sentence or two.
+
+    Parameters
+    ----------
+    found : Margin
+        At least one factor.
+    """
+    low, high = found.factors[[0, -1]]
+    reached = {level: found.first(level) for level in LEVELS}
+    if reached[LEVELS[0]] is None:
+        return f"At no factor from {low:.2g} to {high:.2g} do {percent(LEVELS[0])} of the motions next to it overturn."
+    parts = [
+        f"{percent(level)} at {f'{factor:.3g}' if factor is not None else f'none up to {high:.2g}'}"
+        for level, factor in reached.items()
+    ]
+    said = f"Of the motions next to each factor {', '.join(parts)} overturn."
+    again = {
+        level: last
+        for level, first in reached.items()
+        if first is not None and (last := found.last_below(level)) is not None and last > first
+    }
+    if again:
+        level, last = max(again.items(), key=lambda each: each[1])
+        said += f" Overturning comes and goes: at {last:.3g} fewer than {percent(level)} do again."
+    return said

@@ -1,0 +1,118 @@
+"""`rocking margin`: how close ground motions are to overturning a structure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rocking_cli.cli import motions, options
+from rocking_cli.errors import INCOMPLETE, InputError
+
+if TYPE_CHECKING:
+    from rocking_cli.cli.motions import Scaled
+    from rocking_cli.dynamics.model import Model
+    from rocking_cli.studies.neighbours import Around
+
+POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
+
+
+@click.command(short_help="How close motions are to overturning, as shares over the factor.")
+@click.argument("file", required=False, type=click.Path())
+@click.option(
+    "--record",
+    "records",
+    multiple=True,
+    metavar="PLACE",
+    help="A ground motion, or a pattern in quotes for several: 'records/*.AT2'. May be repeated.",
+)
+@click.option("--pulse", "pulses", multiple=True, metavar="PULSE", help="Such as sine:0.6g:0.8s. May be repeated.")
+@options.reading
+@options.scaling("1", "-1", "both", both="the worse of the two", default="both")
+@options.around
+@options.plot("Draw the shares")
+@options.as_json
+@click.pass_context
+def command(
+    ctx: click.Context,
+    file: str | None,
+    records: tuple[str, ...],
+    pulses: tuple[str, ...],
+    units: str | None,
+    dt: float | None,
+    channel: str | None,
+    scale: float | None,
+    target_pga: float | None,
+    target_pgv: float | None,
+    polarity: str,
+    neighbours: int,
+    within_amplitude: float,
+    within_restitution: float,
+    plot: Path | None,
+    as_json: bool,
+) -> None:
+    """How close ground motions are to overturning a structure: the share of overturning over the factor on each.
+
+    Overturning comes and goes with the factor, so there is no least one. At each of 60 factors from 0.2 to 5 the
+    motions next to it are followed, a little stronger or weaker and with a little more or less restitution, and the
+    share of them that overturn is given: where it first reaches 10, 50 and 90 %, and where it is last below them.
+
+    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m. A motion that cannot be used is
+    reported, the others are run, and the exit code is 5.
+
+    \b
+    Example:
+      rocking margin block.yaml --record accel.csv --plot margin.png
+      rocking margin frame.yaml --record "records/*.AT2" --polarity 1
+      rocking margin --pulse sine:0.5g:0.8s --neighbours 1000
+    """
+    if not records and not pulses:
+        raise click.UsageError("Nothing to vary: give --record PLACE or --pulse PULSE, each as often as you like.")
+    if not neighbours:
+        raise click.UsageError("A share needs neighbours: --neighbours must be at least 1 here.")
+    motions.check_scaling(scale, target_pga, target_pgv)
+    from rocking_cli.cli import margin_results as results
+    from rocking_cli.cli import shaking, structures
+    from rocking_cli.dynamics.model import build_model
+    from rocking_cli.files import keep_apart
+    from rocking_cli.studies.neighbours import Around
+
+    paths, missing = motions.find(records)
+    keep_apart([("--plot", plot)], [file, *(str(path) for path in paths)])
+    mechanism = structures.load([file] if file else [])[0]
+    blocks = shaking.equivalence(mechanism)
+    model = build_model(mechanism, "nonlinear")
+    p = max(blocks.positive.p, blocks.negative.p)
+    chosen, refused = motions.gather(paths, pulses, (dt, units, channel), (scale, target_pga, target_pgv), p)
+    if not chosen:
+        ctx.exit(InputError.exit_code)
+    around = Around(neighbours, within_amplitude, within_restitution)
+    rows = _rows(model, chosen, POLARITIES[polarity], around)
+    if plot is not None:
+        from rocking_cli.cli.pictures import write_picture
+        from rocking_cli.plotting.margin import draw_margins
+
+        write_picture(plot, draw_margins({row.name: row.margin for row in rows}, structures.label(mechanism)))
+    results.give(mechanism, rows, polarity, around, as_json=as_json)
+    if missing or refused:
+        ctx.exit(INCOMPLETE)
+
+
+def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], around: Around) -> list[Any]:
+    """The margin of each motion, and the share next to the motion itself."""
+    from rocking_cli.cli import work
+    from rocking_cli.cli.margin_results import Row
+    from rocking_cli.studies.margin import FACTORS, margin
+
+    rows = []
+    each_has = (FACTORS.size + 1) * around.count * len(polarities)
+    with work.histories(each_has * len(chosen)) as progress:
+        for motion, factor, *_ in chosen:
+            scaled = motion.scaled(factor)
+            rows.append(
+                Row(
+                    motion.name, factor, scaled.pga, margin(model, scaled, polarities, around=around, progress=progress)
+                )
+            )
+    return rows

@@ -1,0 +1,97 @@
+"""Margins to overturning as people and programs read them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from textwrap import shorten
+from typing import Any, NamedTuple
+
+from rocking_cli.cli import structures, terminal
+from rocking_cli.cli.motions import FEW
+from rocking_cli.core import Mechanism
+from rocking_cli.names import percent
+from rocking_cli.studies.margin import LEVELS, Margin, in_words
+from rocking_cli.studies.neighbours import Around
+
+NAME = 36  # characters of a motion's name in the table
+
+
+class Row(NamedTuple):
+    """A motion, the factor on it as read, its PGA [g] with that, and its margin."""
+
+    name: str
+    factor: float
+    pga: float
+    margin: Margin
+
+
+def give(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around, *, as_json: bool) -> None:
+    """Print margins."""
+    if as_json:
+        terminal.print_json(_json(mechanism, rows, polarity, around))
+        return
+    heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
+    heads += [f"{percent(level)}\nfrom" for level in LEVELS] + [f"below\n{percent(level)} to" for level in LEVELS]
+    cells = [
+        [
+            shorten(row.name, NAME, placeholder=" ..."),
+            f"{row.pga:.3g}",
+            terminal.number(row.margin.uplift, 3),
+            percent(row.margin.itself),
+            *(terminal.number(row.margin.first(level), 3) for level in LEVELS),
+            *(_last(row.margin, level) for level in LEVELS),
+        ]
+        for row in rows
+    ]
+    either = {"1": "", "-1": ", reversed", "both": ", the worse of two polarities"}[polarity]
+    terminal.result(structures.label(mechanism))
+    terminal.result(
+        f"Factors on the motion{either}, and the share of the {around.count} motions next to each that overturn it: "
+        f"within {percent(around.amplitude)} in amplitude and {around.restitution:g} in restitution."
+    )
+    terminal.table("", heads, cells, numbers=range(1, len(heads)))
+    for row in rows if len(rows) <= FEW else []:
+        terminal.result(f"{row.name}: {in_words(row.margin)}")
+
+
+def _last(found: Margin, level: float) -> str:
+    """Up to which factor fewer overturn; a plus where that is the largest tried."""
+    last = found.last_below(level)
+    return f"{terminal.number(last, 3)}{'+' if last == found.factors[-1] else ''}"
+
+
+def _json(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around) -> dict[str, Any]:
+    return {
+        "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
+        "model": "nonlinear",
+        "polarity": polarity,
+        "neighbours": {"count": around.count, "amplitude": around.amplitude, "restitution": around.restitution},
+        "motions": [
+            {
+                "name": row.name,
+                "scale": row.factor,
+                "pga": row.pga,
+                **margin_json(row.margin),
+                "verdict": in_words(row.margin),
+            }
+            for row in rows
+        ],
+    }
+
+
+def margin_json(found: Margin) -> dict[str, Any]:
+    """A margin: the shares, and where they pass each level."""
+    return {
+        "uplift": found.uplift,
+        "overturned": found.itself,
+        "factors": found.factors.tolist(),
+        "shares": found.overturned.tolist(),
+        "levels": {
+            f"{100 * level:g}": {
+                "first": found.first(level),
+                "last_below": found.last_below(level),
+                "islands": found.islands(level),
+            }
+            for level in LEVELS
+        },
+    }

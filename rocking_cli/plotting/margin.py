@@ -1,0 +1,52 @@
+"""How close motions are to overturning a structure: the share that overturns over the factor on each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from textwrap import shorten
+
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator, PercentFormatter
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.margin import LEVELS, Margin
+
+NAME = 40  # characters of a motion's name in the legend
+TICKS = (0.2, 0.5, 1, 2, 5)
+
+
+def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
+    """Draw the shares of overturning over the factor on one or more motions; a star marks each motion itself.
+
+    Parameters
+    ----------
+    margins : mapping of str to Margin
+        By the name of the motion.
+    title : str
+        Heading.
+    """
+    figure = style.new_figure(3.6 + 0.16 * ((len(margins) + 1) // 2 if len(margins) > 1 else 0))
+    axes = figure.subplots()
+    style.heading(axes, title)
+    for level in LEVELS:
+        axes.axhline(level, color=style.FAINT, linewidth=style.THIN, linestyle=":")
+    axes.axvline(1.0, color=style.FAINT, linewidth=style.CURVE)
+    for k, (name, each) in enumerate(margins.items()):
+        look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
+        axes.plot(each.factors, each.overturned, label=shorten(name, NAME, placeholder=" ..."), **look)
+        axes.plot(1.0, each.itself, color=look["color"], clip_on=False, **style.STAR)
+        if each.uplift is not None and each.factors[0] <= each.uplift <= each.factors[-1]:
+            axes.plot(each.uplift, 0.0, color=look["color"], clip_on=False, marker="|", markersize=12, linestyle="none")
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(FixedLocator(TICKS))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.set_ylim(-0.03, 1.03)
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_ylabel("share that overturns", fontsize=style.LABEL)
+    axes.set_xlabel("factor on the motion (star: as it is; tick: from where it uplifts)", fontsize=style.LABEL)
+    axes.margins(x=0.01)
+    style.tidy(axes)
+    if len(margins) > 1:
+        figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False, handlelength=3.5)
+    return figure
