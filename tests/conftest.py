@@ -41,7 +41,7 @@ def frame_report(tmp_path_factory):
     from tests.test_cli import run
 
     out = tmp_path_factory.mktemp("report") / "r.html"
-    result = run("report", EXAMPLES / "frame.yaml", "--record", EXAMPLES / "accel.csv", "-o", out)
+    result = run("report", "--neighbours", 20, EXAMPLES / "frame.yaml", "--record", EXAMPLES / "accel.csv", "-o", out)
     return out, result.stdout.strip()
 
 

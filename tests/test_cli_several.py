@@ -169,9 +169,11 @@ class TestAnimate:
 
 class TestOthers:
     def test_a_report_takes_a_pattern_and_leaves_bad_ones_out(self, records):
-        found = lines("report", BLOCK, "--record", records, "--record", "bad.csv", "--polarity", "1", code=5)
+        found = lines(
+            "report", "--neighbours", 20, BLOCK, "--record", records, "--record", "bad.csv", "--polarity", "1", code=5
+        )
         assert [each["name"] for each in found[0]["motions"]] == ["east.csv", "north.csv", "west.csv"]
-        assert run("report", BLOCK, "--record", "no*.csv", "-o", "r.html", code=2).stdout == ""
+        assert run("report", "--neighbours", 20, BLOCK, "--record", "no*.csv", "-o", "r.html", code=2).stdout == ""
         assert not Path("r.html").exists()
 
     def test_figure_14_is_of_one_record(self, records):

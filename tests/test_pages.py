@@ -288,7 +288,7 @@ def test_names_stay_text(browser, folder):
     record = where / '<img src=x onerror=alert(1)> & "q"\'.csv'
     record.write_bytes(ACCEL.read_bytes())
     path = where / "report.html"
-    run("report", structure, "--record", record, "-o", path)
+    run("report", "--neighbours", 20, structure, "--record", record, "-o", path)
     with opened(browser, path) as page:
         alerts = []
         page.on("dialog", lambda dialog: (alerts.append(dialog.message), dialog.dismiss()))
@@ -309,7 +309,7 @@ def test_names_stay_text(browser, folder):
 
 def test_without_a_motion_there_is_a_page_too(browser, folder):
     path = folder / "still.html"
-    run("report", EXAMPLES / "arch.yaml", "-o", path)
+    run("report", "--neighbours", 20, EXAMPLES / "arch.yaml", "-o", path)
     with opened(browser, path) as page:
         assert page.locator(".motion, #response").count() == 0
         assert page.locator("#pulses svg").count() == 1

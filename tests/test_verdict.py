@@ -283,7 +283,11 @@ def test_the_frame_whose_linear_motions_die_out_is_not_said_to_agree(tmp_path):
     for name in ("linear1", "linear2"):
         found = data["agreement"][name]
         assert abs(found["peak_error"]) < 0.05 and found["rms_difference"] > 0.8 and found["grade"] == "disregard"
-    said = json.loads(run("report", EXAMPLES / "frame.yaml", "--record", place, "--polarity", "1", "--json").stdout)
+    said = json.loads(
+        run(
+            "report", "--neighbours", 20, EXAMPLES / "frame.yaml", "--record", place, "--polarity", "1", "--json"
+        ).stdout
+    )
     answer = said["motions"][0]["answers"]["Which model to trust?"]
     assert answer.startswith("The nonlinear one.") and "agree closely" not in answer
 
@@ -315,7 +319,7 @@ def test_every_command_calls_an_outcome_the_same(pulse, word, tmp_path):
     texts = {
         "respond": run("respond", block, "--pulse", pulse).stdout,
         "animate": run("animate", block, "--pulse", pulse, "--out", tmp_path / "a.html").stdout,
-        "report": run("report", block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
+        "report": run("report", "--neighbours", 20, block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
         "spectrum": re.findall(r" s: (it .*?\w)\.", smaller)[0],
         "pulse": run("pulse", block, "--ag", amplitude, "--period", period[:-1]).stdout,
     }
