@@ -317,7 +317,7 @@ def test_every_command_calls_an_outcome_the_same(pulse, word, tmp_path):
     _, amplitude, period = pulse.split(":")
     smaller = run("spectrum", block, "--pulse", pulse, "--sizes", "5:6:2").stdout
     texts = {
-        "respond": run("respond", block, "--pulse", pulse).stdout,
+        "respond": run("respond", block, "--pulse", pulse, "--neighbours", 0).stdout,
         "animate": run("animate", block, "--pulse", pulse, "--out", tmp_path / "a.html").stdout,
         "report": run("report", "--neighbours", 20, block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
         "spectrum": re.findall(r" s: (it .*?\w)\.", smaller)[0],

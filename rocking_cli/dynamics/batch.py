@@ -281,9 +281,13 @@ def respond_many(
 
 
 def _etas(models: Sequence[Model], runs: Runs) -> Reals:
-    """Restitution of both directions of each run, shape (n, 2), none of which may make an impact gain energy."""
+    """Restitution of both directions of each run, shape (n, 2).
+
+    None may be above 1 and make an impact gain energy; where the inertias at rest differ even one below 1 may, which is
+    the user's to say.
+    """
     etas = np.broadcast_to(runs.eta[:, None], (len(runs), 2)) if runs.eta.ndim == 1 else runs.eta
-    most = np.array([model.most_eta for model in models]).reshape(-1, 2)[runs.model]
+    most = np.maximum(1.0, np.array([model.most_eta for model in models]).reshape(-1, 2))[runs.model]
     with np.errstate(invalid="ignore"):
         beyond = etas > most * (1 + ROUNDING)
     if beyond.any():

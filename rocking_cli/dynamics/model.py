@@ -43,13 +43,13 @@ class Model:
         Critical rotation in the positive and the negative direction [rad].
     numbers, forces, angles, certain : ndarray
         See `rocking_cli.dynamics.kernels.run`.
-    most_eta : tuple of float
-        The restitution with which an impact that ends motion in the positive and in the negative direction keeps all
-        energy; 1 for a symmetric structure.
     tables : tuple of Table, optional
         What the arrays are made of, if nonlinear.
     uplift_error : float
         By how much its uplift acceleration is off that of the structure, relative, in the worse direction.
+    most_eta : tuple of float
+        The restitution with which an impact that ends motion in the positive and in the negative direction keeps all
+        energy; 1 for a symmetric structure.
     """
 
     name: ModelName
@@ -59,9 +59,9 @@ class Model:
     forces: Reals
     angles: Reals
     certain: Reals
-    most_eta: tuple[float, float] = (1.0, 1.0)
     tables: tuple[Table, Table] | None = None
     uplift_error: float = 0.0
+    most_eta: tuple[float, float] = (1.0, 1.0)
 
     @property
     def p(self) -> float:
