@@ -53,6 +53,11 @@ def record(name: str) -> Path:
     return path
 
 
+def pytest_make_parametrize_id(val):
+    """Bytes have no name of their own: what is packed holds the time at which it was, and each worker packs anew."""
+    return "bytes" if isinstance(val, bytes) else None
+
+
 def pytest_terminal_summary(terminalreporter):
     """Say how many tests were skipped for want of records: a green run without them has tested less."""
     skipped = terminalreporter.stats.get("skipped", [])
