@@ -243,7 +243,7 @@ class Store:
         """Lock the store that is there, and make sure that its runs can be relied upon."""
         self._there = True
         try:
-            self._connection = open_locked(self.path)
+            self._hold(open_locked(self.path))
         except sqlite3.DatabaseError as error:
             if not (anew and is_beyond_reading(self.path, error)):
                 raise
@@ -258,6 +258,11 @@ class Store:
             if self.doubts():
                 self._mend()
             self._sign()
+
+    def _hold(self, connection: sqlite3.Connection) -> None:
+        """Go on with another connection than the one to nothing."""
+        self._connection.close()
+        self._connection = connection
 
     def _sign(self) -> None:
         """Tell others who is at work."""
@@ -292,7 +297,7 @@ class Store:
                 new._insert_runs(rows)
 
         self._connection = _nothing()
-        self._connection = exchange(self.path, old._connection, fill, self._say)
+        self._hold(exchange(self.path, old._connection, fill, self._say))
         self.damaged, self.unreadable, self.checked = [], False, True
         self._check_plan()
 
@@ -328,11 +333,11 @@ class Store:
         if self._replaced is not None:
             old, self._replaced = self._replaced, None
             fill: Callable[[sqlite3.Connection], None] = lambda new: Store(self.path, new)._fill(plan, facts)  # noqa: E731
-            self._connection = exchange(self.path, old, fill, self._say)
+            self._hold(exchange(self.path, old, fill, self._say))
             self._check_plan()
         else:
             if not self._there:
-                self._connection = open_locked(self.path)
+                self._hold(open_locked(self.path))
             if not self.empty:
                 what = "another process has begun this study at the same moment"
                 raise InputError(Problem(what, str(self.path), hint="the same command goes on from there"))
