@@ -154,7 +154,7 @@ class Mechanism(BaseModel, ABC):
     verified: ClassVar[str] = ""
     """What its numbers were checked against; empty means nobody has, and the tool says so."""
     caution: ClassVar[str] = ""
-    """Where its answers are on the unsafe side or mean less than they seem: a sentence or two that the tool shows."""
+    """A sentence or two, which the tool shows, on where its answers are unsafe or mean less than they seem."""
     starter: ClassVar[tuple[str, ...]] = ()
     """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
 
