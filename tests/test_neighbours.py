@@ -18,7 +18,7 @@ from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure import load_structure, parse_structure
-from rocking_cli.studies.neighbours import Around, Neighbours, can_lift, least_uplift, neighbours
+from rocking_cli.studies.neighbours import Around, Neighbours, can_lift, governing, least_uplift, neighbours
 from tests.conftest import EXAMPLES
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
@@ -153,6 +153,11 @@ class TestWithoutShaking:
     def test_a_release_alone_has_neighbours_too(self):
         found = neighbours(build_model(BLOCK, "nonlinear"), None, release=0.5)
         assert found.overturned == 0 and found.peak_ratio == pytest.approx((0.5, 0.5, 0.5), rel=1e-9)
+
+
+@pytest.mark.parametrize(("off", "said"), [(1e-9, "None governs: one, other do alike."), (1e-4, "other governs: 40 %")])
+def test_what_differs_by_rounding_does_not_govern(off, said):
+    assert governing({"one": (0.4, np.inf, 0.5), "other": (0.4, np.inf, 0.5 * (1 + off))}).startswith(said)
 
 
 class TestWords:

@@ -24,6 +24,7 @@ Reals = NDArray[np.float64]
 
 FRACTILES = (0.16, 0.50, 0.84)
 AGREEMENT = 0.9  # share that must end as the history itself, else its answer is sensitive
+ALIKE = 1e-6  # relative difference below which no motion is the worse
 LEAST_ETA = 1e-3  # a restitution drawn below that is this: an impact leaves some motion
 MOST = 1_000_000  # neighbours; more take minutes
 SEED = 1963
@@ -193,7 +194,7 @@ def governing(severities: Mapping[str, Severity]) -> str:
     worst = max(severities.values())
     if not any(worst):
         return "No motion lifts it."
-    which = [name for name, each in severities.items() if each == worst]
+    which = [name for name, each in severities.items() if np.allclose(each, worst, rtol=ALIKE, atol=0)]
     if len(which) > 1:
         return f"None governs: {', '.join(which)} do alike."
     share, median, itself = worst
