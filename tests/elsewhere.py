@@ -29,7 +29,7 @@ FITS = [
 ]  # fmt: skip
 # They take long, and rest on random numbers or on processes rather than on rounding: once is enough.
 ONCE = "TestCoverage or killed or interrupted or cluster or while_it_runs or hold_at_their_rate"
-NEEDED = ["hypothesis>=6.100", "pytest>=8"]  # besides the package
+NEEDED = ["hypothesis>=6.100", "pytest>=8", "statsmodels>=0.14.2"]  # besides the package
 
 
 def tests(python: Path, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -6,9 +6,11 @@ import io
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 from scipy.stats import binomtest
 
 from rocking_cli.plotting.fragility import Drawn, draw_curves, draw_ida, draw_surface
+from rocking_cli.studies.fragility.assess import Bivariate
 from rocking_cli.studies.fragility.curves import Observations, fit_curve, fit_surface
 
 LEVELS = np.array([0.2, 0.4, 0.6, 0.8])
@@ -16,11 +18,23 @@ LEVELS = np.array([0.2, 0.4, 0.6, 0.8])
 
 def stripes(counts, runs=20):
     exceeded = np.concatenate([np.arange(runs) < count for count in counts])
-    return Observations(np.repeat(LEVELS, runs), exceeded, np.arange(exceeded.size))
+    return Observations.of(np.repeat(LEVELS, runs), exceeded, np.arange(exceeded.size))
+
+
+def bivariate(x1, x2, exceeded):
+    surface = fit_surface(x1, x2, exceeded, np.arange(x1.size))
+    return Bivariate("a", "uplift", ("PGA", "PGV"), x1, x2, np.ones(x1.size, int), exceeded.astype(int), surface)
 
 
 def drawn(name, seen):
     return Drawn(name, fit_curve(seen), seen)
+
+
+def marks(axes):
+    """Where the observed parts are, a row a mark, and the ends of the bars of the first that is drawn."""
+    (points, *_) = [line for line in axes.get_lines() if line.get_linestyle() == "None"]
+    bars = next(each for each in axes.collections if isinstance(each, LineCollection))
+    return points.get_xydata(), np.array([segment[:, 1] for segment in bars.get_segments()])
 
 
 def words(figure):
@@ -39,10 +53,8 @@ def test_stripes_are_marked_with_counts_and_wilsons_intervals_under_the_curve():
     (axes,) = figure.axes
     assert axes.get_xlabel() == "PGA [g]" and axes.get_title(loc="left") == "a block"
     assert [text.get_text() for text in axes.texts] == ["1/20", "5/20", "12/20", "19/20"]
-    (marks,) = axes.containers
-    np.testing.assert_allclose(marks[0].get_xdata(), LEVELS)
-    np.testing.assert_allclose(marks[0].get_ydata(), np.array([1, 5, 12, 19]) / 20)
-    ends = np.array([segment[:, 1] for segment in marks[2][0].get_segments()])
+    points, ends = marks(axes)
+    np.testing.assert_allclose(points.T, [LEVELS, np.array([1, 5, 12, 19]) / 20])
     expected = [binomtest(k, 20).proportion_ci(0.95, method="wilson") for k in (1, 5, 12, 19)]
     np.testing.assert_allclose(ends, [[ci.low, ci.high] for ci in expected])
     (line,) = [line for line in axes.get_lines() if len(line.get_xdata()) > 10]
@@ -59,10 +71,10 @@ def test_bars_and_bands_count_records():
     capacity = 0.5 * np.exp(0.5 * random.normal(size=8))
     x = np.tile(np.repeat(LEVELS, 60), 8)
     record = np.repeat(np.arange(8), 240)
-    seen = Observations(x, x > capacity[record] * np.exp(0.02 * random.normal(size=x.size)), record)
+    seen = Observations.of(x, x > capacity[record] * np.exp(0.02 * random.normal(size=x.size)), record)
     figure = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a block"))
     (axes,) = figure.axes
-    ends = np.array([segment[:, 1] for segment in axes.containers[0][2][0].get_segments()])
+    _, ends = marks(axes)
     parts = seen.parts(0.95)
     np.testing.assert_allclose(ends, np.column_stack([parts.low, parts.high]))
     assert (np.diff(ends, axis=1) > 0.35).all()
@@ -74,9 +86,9 @@ def test_bars_and_bands_count_records():
 def test_a_cloud_of_many_runs_is_a_few_marks():
     x = np.outer(np.geomspace(0.1, 0.9, 12), np.geomspace(0.5, 4, 10)).ravel().repeat(60)
     record = np.repeat(np.arange(12), 600)
-    seen = Observations(x, x > np.exp(0.3 * np.random.default_rng(4).normal(size=x.size)), record)
+    seen = Observations.of(x, x > np.exp(0.3 * np.random.default_rng(4).normal(size=x.size)), record)
     (axes,) = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a cloud")).axes
-    assert len(axes.containers[0][0].get_xdata()) == 10
+    assert len(marks(axes)[0]) == 10
 
 
 def test_a_step_a_curve_and_nothing_share_a_picture():
@@ -90,9 +102,10 @@ def test_a_step_a_curve_and_nothing_share_a_picture():
     said = words(figure)
     assert "step, between 0.2 and 0.4" in said[0] and "lognormal" in said[1]
     assert "no curve, none of the 80 runs exceed" in said[2]
-    assert len([line for line in axes.get_lines() if len(line.get_xdata()) > 10]) == 2
-    assert len(axes.containers) == 3 and not axes.texts
-    step = next(line for line in axes.get_lines() if len(line.get_xdata()) > 10)
+    curves = [line for line in axes.get_lines() if len(line.get_xdata()) > 10 and line.get_linewidth() > 1]
+    assert len(curves) == 2
+    assert not axes.texts
+    step = curves[0]
     jump = step.get_xdata()[np.flatnonzero(np.diff(step.get_ydata()))]
     np.testing.assert_allclose(jump, entries[0].curve.step.value)
 
@@ -100,11 +113,11 @@ def test_a_step_a_curve_and_nothing_share_a_picture():
 def test_a_wide_cloud_is_drawn_in_tenths_over_logarithms():
     random = np.random.default_rng(1)
     x = np.exp(1.2 * random.normal(size=200))
-    figure = rendered(draw_curves([drawn("a", Observations(x, x > np.exp(random.normal(size=200)), np.arange(200)))],
+    figure = rendered(draw_curves([drawn("a", Observations.of(x, x > np.exp(random.normal(size=200)), np.arange(200)))],
                                   "PGV [m/s]", "a cloud"))  # fmt: skip
     (axes,) = figure.axes
     assert axes.get_xscale() == "log"
-    np.testing.assert_allclose(axes.containers[0][0].get_xdata(), np.sort(x).reshape(10, 20).mean(axis=1))
+    np.testing.assert_allclose(marks(axes)[0][:, 0], np.sort(x).reshape(10, 20).mean(axis=1))
 
 
 def test_the_records_of_an_ida_rise_into_the_band_of_overturning():
@@ -132,20 +145,55 @@ def test_a_surface_is_drawn_as_contours_between_the_runs():
     random = np.random.default_rng(2)
     x1, x2 = np.exp(random.normal(size=(2, 150)))
     exceeded = np.log(x1) + np.log(x2) > 0.4 * random.normal(size=150)
-    surface = fit_surface(x1, x2, exceeded, np.arange(150))
-    figure = rendered(draw_surface(surface, x1, x2, exceeded, ("PGA/(g lambda)", "p PGV/(g lambda)"), "a frame"))
+    found = bivariate(x1, x2, exceeded)
+    figure = rendered(draw_surface(found, ("PGA/(g lambda)", "p PGV/(g lambda)"), "a frame"))
     (axes,) = figure.axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGA/(g lambda)", "p PGV/(g lambda)")
     below, above, contours = axes.collections
     np.testing.assert_allclose(above.get_offsets(), np.column_stack([x1, x2])[exceeded])
     np.testing.assert_allclose(below.get_offsets(), np.column_stack([x1, x2])[~exceeded])
     middle = contours.get_paths()[list(contours.levels).index(0.5)].vertices
-    np.testing.assert_allclose(surface.probability(*middle.T), 0.5, atol=0.01)
+    np.testing.assert_allclose(found.surface.probability(*middle.T), 0.5, atol=0.01)
     assert words(figure)[0] == f"does not exceed ({(~exceeded).sum()})"
 
 
 def test_runs_without_a_surface_are_drawn_with_the_reason():
     x = np.geomspace(0.1, 1, 20)
-    surface = fit_surface(x, x**2, x > 0.3, np.arange(20))
-    (axes,) = rendered(draw_surface(surface, x, x**2, x > 0.3, ("PGA [g]", "PGV [m/s]"), "a frame")).axes
-    assert len(axes.collections) == 2 and "proportion" in axes.texts[0].get_text()
+    figure = rendered(draw_surface(bivariate(x, x**2, x > 0.3), ("PGA [g]", "PGV [m/s]"), "a frame"))
+    assert len(figure.axes[0].collections) == 2
+    assert words(figure)[2].replace("\n    ", " ") == f"no surface: {bivariate(x, x**2, x > 0.3).surface.why}"
+
+
+def test_of_very_many_runs_an_even_share_is_drawn():
+    random = np.random.default_rng(3)
+    x1, x2 = np.exp(random.normal(size=(2, 20_000)))
+    figure = rendered(draw_surface(bivariate(x1, x2, x1 * x2 > 3 * random.random(20_000)), ("a", "b"), "a frame"))
+    below, above, _ = figure.axes[0].collections
+    assert 2500 < len(below.get_offsets()) + len(above.get_offsets()) <= 3001
+    assert words(figure)[-1] == "every 7th is drawn"
+
+
+def test_a_band_that_the_data_leave_open_is_not_painted_and_said():
+    random = np.random.default_rng(23)
+    x = np.exp(random.normal(size=40))
+    seen = Observations.of(x, random.random(40) < 0.4 + 0.1 * (x > 1), np.arange(40))
+    figure = rendered(draw_curves([drawn("uplift", seen)], "PGA [g]", "a block"))
+    assert not [each for each in figure.axes[0].collections if each.get_alpha() == 0.14]
+    assert words(figure)[-1] == "no band: the slope of uplift cannot be told from none"
+
+
+def test_bands_of_several_are_their_edges_and_labels_are_whole():
+    counts = ([1, 5, 12, 19], [0, 4, 10, 20], [2, 7, 13, 20], [0, 0, 0, 0])
+    entries = [drawn(f"{'a long name of a structure ' * 3}{k}", stripes(each)) for k, each in enumerate(counts)]
+    figure = rendered(draw_curves(entries, "PGA [g]", "overturning"))
+    (axes,) = figure.axes
+    assert not [each for each in axes.collections if each.get_alpha() == 0.14]
+    thin = [line for line in axes.get_lines() if len(line.get_xdata()) > 10 and line.get_linewidth() < 1]
+    assert len(thin) == 6
+    for line, each in zip(thin[::2], entries, strict=False):
+        np.testing.assert_array_equal(line.get_ydata(), each.curve.band(line.get_xdata())[0])
+    for said, each in zip(words(figure), entries, strict=False):
+        assert max(map(len, said.split("\n"))) <= 96 and "..." not in said
+        assert said.replace("\n    ", " ").startswith(f"{each.name}: ")
+    edge = figure.bbox.width
+    assert all(text.get_window_extent().x1 <= edge for text in figure.legends[0].get_texts())

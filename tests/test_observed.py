@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import binom, binomtest
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility.observed import FEW, Observations, few_records, one_of_each
+from rocking_cli.studies.fragility.observed import FEW, GROUPS, HELD, STRIPES, Observations, few_records, one_of_each
 
 LEVELS = np.array([0.2, 0.4, 0.6])
 
@@ -20,7 +20,9 @@ def jittered(x, seed=0, ulps=3):
 def scaled(records, each, levels=LEVELS, **options):
     """`each` runs of every record at every level, none of which exceeds."""
     x = np.repeat(np.tile(levels, records), each)
-    return Observations(x, np.zeros(x.size, dtype=bool), np.repeat(np.arange(records), levels.size * each), **options)
+    return Observations.of(
+        x, np.zeros(x.size, dtype=bool), np.repeat(np.arange(records), levels.size * each), **options
+    )
 
 
 class TestOneIntensity:
@@ -38,13 +40,13 @@ class TestOneIntensity:
 
     def test_runs_of_a_level_have_the_intensity_of_the_level(self):
         level = np.tile(np.arange(3), 40)
-        seen = Observations(jittered(LEVELS[level]), np.zeros(120, dtype=bool), np.arange(120) // 3, level)
-        assert np.unique(seen.x).size == 3
-        np.testing.assert_array_equal(seen.place, level)
+        seen = Observations.of(jittered(LEVELS[level]), np.zeros(120, dtype=bool), np.arange(120) // 3, level=level)
+        assert seen.x.size == 3 and seen.counts.number.tolist() == [1] * 120
+        np.testing.assert_array_equal(seen.counts.term, np.sort(level))
 
     def test_a_level_of_several_intensities_is_refused(self):
         with pytest.raises(InputError, match=r"level 7 have the intensities 0.5 and 0.6"):
-            Observations(np.array([0.5, 0.6]), np.zeros(2, dtype=bool), np.arange(2), np.array([7, 7]))
+            Observations.of(np.array([0.5, 0.6]), np.zeros(2, dtype=bool), np.arange(2), level=np.array([7, 7]))
 
 
 class TestGroups:
@@ -55,21 +57,45 @@ class TestGroups:
     def test_a_cloud_run_over_and_over_is_looked_at_in_tenths(self):
         # 12 records of unlike intensity at 10 factors, each 60 times: 120 intensities, and none of them is a stripe.
         x = np.outer(np.geomspace(0.1, 0.9, 12), np.geomspace(0.5, 4, 10)).ravel()
-        seen = Observations(np.repeat(x, 60), np.zeros(7200, dtype=bool), np.repeat(np.arange(12), 600))
+        seen = Observations.of(np.repeat(x, 60), np.zeros(7200, dtype=bool), np.repeat(np.arange(12), 600))
         assert not seen.stripes and seen.group.max() == 9
-        assert np.bincount(seen.group).tolist() == [720] * 10
-        assert all(np.unique(seen.x[seen.group == k]).size == 12 for k in range(10))
+        assert np.bincount(seen.group, seen.counts.number).tolist() == [720] * 10
+        assert np.bincount(seen.group).tolist() == [12] * 10
 
     def test_one_intensity_stays_together(self):
-        seen = Observations(np.repeat([1.0, 2.0], [9, 3]), np.zeros(12, dtype=bool), np.arange(12) % 3)
-        assert seen.group.tolist() == [0] * 9 + [1] * 3
+        seen = Observations.of(np.repeat([1.0, 2.0], [9, 3]), np.zeros(12, dtype=bool), np.arange(12) % 3)
+        assert (seen.group.tolist(), seen.counts.number.tolist()) == ([0] * 3 + [1] * 3, [3.0] * 3 + [1.0] * 3)
+
+    def test_runs_counted_beforehand_are_the_same_runs(self):
+        random = np.random.default_rng(2)
+        x, record = LEVELS[random.integers(0, 3, 500)], random.integers(0, 9, 500)
+        exceeding, runs = random.integers(0, 3, 500), random.integers(2, 5, 500)
+        once = Observations.of(x, exceeding, record, runs=runs)
+        each = np.repeat(np.arange(500), runs)
+        nth = np.arange(each.size) - np.repeat(np.cumsum(runs) - runs, runs)
+        one_by_one = Observations.of(x[each], nth < exceeding[each], record[each])
+        for name in ("record", "term", "number"):
+            np.testing.assert_array_equal(getattr(once.counts, name), getattr(one_by_one.counts, name))
+        np.testing.assert_array_equal(once.exceeding, one_by_one.exceeding)
+        assert (once.runs, once.exceedances) == (runs.sum(), exceeding.sum())
+
+    def test_fewer_are_neighbours_taken_together(self):
+        seen = scaled(6, 1, np.linspace(0.1, 1, 13))
+        found = seen.parts(0.95, at_most=4)
+        assert (found.runs.tolist(), found.records.tolist()) == ([24, 24, 24, 6], [6] * 4)
+        np.testing.assert_allclose(found.x, [np.linspace(0.1, 1, 13)[k : k + 4].mean() for k in (0, 4, 8, 12)])
+
+    def test_more_intensities_than_can_be_looked_at_are_looked_at_in_tenths(self):
+        assert scaled(5, 1, np.linspace(0.1, 1, STRIPES)).stripes
+        many = scaled(5, 1, np.linspace(0.1, 1, STRIPES + 1))
+        assert not many.stripes and many.group.max() == GROUPS - 1
 
 
 class TestIntervals:
     def test_of_records_that_occur_once_are_wilsons(self):
         x = np.repeat(LEVELS, 20)
         exceeded = np.concatenate([np.arange(20) < k for k in (0, 7, 20)])
-        found = Observations(x, exceeded, np.arange(60)).parts(0.95)
+        found = Observations.of(x, exceeded, np.arange(60)).parts(0.95)
         expected = [binomtest(k, 20).proportion_ci(0.95, method="wilson") for k in (0, 7, 20)]
         np.testing.assert_allclose(np.column_stack([found.low, found.high]), [[ci.low, ci.high] for ci in expected])
         assert (found.runs.tolist(), found.exceeding.tolist(), found.records.tolist()) == (
@@ -82,7 +108,9 @@ class TestIntervals:
         def of(each):
             exceeded = np.repeat(np.repeat([True, False], 6), each)
             record = np.repeat(np.arange(12), each)
-            return Observations(np.ones(12 * each), exceeded, record, np.zeros(12 * each, dtype=int)).parts(0.95)
+            return Observations.of(np.ones(12 * each), exceeded, record, level=np.zeros(12 * each, dtype=int)).parts(
+                0.95
+            )
 
         two, many = of(2), of(60)
         assert (two.low[0], two.high[0]) == pytest.approx((many.low[0], many.high[0]), rel=1e-12)
@@ -90,19 +118,19 @@ class TestIntervals:
         assert many.high[0] - many.low[0] > 5 * (wilson.high - wilson.low)
 
     def test_one_record_says_nothing_of_others(self):
-        found = Observations(np.ones(60), np.ones(60, dtype=bool), np.zeros(60, dtype=int)).parts(0.95)
+        found = Observations.of(np.ones(60), np.ones(60, dtype=bool), np.zeros(60, dtype=int)).parts(0.95)
         assert (found.part[0], found.low[0], found.high[0]) == (1, 0, 1)
 
     @pytest.mark.parametrize("part", [0, 1])
     def test_none_or_all_of_few_records_is_no_certainty(self, part):
-        seen = Observations(np.ones(360), np.full(360, bool(part)), np.repeat(np.arange(6), 60))
+        seen = Observations.of(np.ones(360), np.full(360, bool(part)), np.repeat(np.arange(6), 60))
         found = seen.parts(0.95)
         assert abs((found.low if part else found.high)[0] - part) > 0.4
         assert (found.high if part else found.low)[0] == part
 
     def test_records_of_unlike_numbers_of_runs_count_for_less(self):
         runs = np.array([100, 1, 1, 1, 1, 1])
-        uneven = Observations(np.ones(105), np.zeros(105, dtype=bool), np.repeat(np.arange(6), runs)).parts(0.95)
+        uneven = Observations.of(np.ones(105), np.zeros(105, dtype=bool), np.repeat(np.arange(6), runs)).parts(0.95)
         assert uneven.high[0] > 0.8
 
     @pytest.mark.parametrize("records", [3, 6, 20])
@@ -118,7 +146,7 @@ class TestIntervals:
             else:
                 own = random.beta(true * (1 / alike - 1), (1 - true) * (1 / alike - 1), records)
             exceeded = random.random((records, each)) < own[:, None]
-            seen = Observations(np.ones(exceeded.size), exceeded.ravel(), np.repeat(np.arange(records), each))
+            seen = Observations.of(np.ones(exceeded.size), exceeded.ravel(), np.repeat(np.arange(records), each))
             found = seen.parts(0.95)
             held += bool(found.low[0] <= true <= found.high[0])
         assert held >= binom.ppf(1e-4, repetitions, 0.95)
@@ -133,8 +161,8 @@ class TestIntervals:
 
 
 def test_few_records_are_said():
-    assert few_records(FEW, 0.95) == ""
-    assert few_records(6, 0.9) == (
-        "only 6 distinct records: below 20 or so, intervals and bands of 90 % are a rough guide"
-    )
-    assert few_records(1, 0.95).startswith("only 1 distinct record:")
+    assert few_records(FEW) == ""
+    said = "intervals and bands are a rough guide, those of 95 % held in {} to {} % of trials with {}"
+    assert few_records(6) == f"only 6 distinct records: {said.format(*HELD[5], 5)}"
+    assert few_records(19) == f"only 19 distinct records: {said.format(*HELD[10], 10)}"
+    assert few_records(1).startswith("only 1 distinct record: ")

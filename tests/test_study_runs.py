@@ -21,10 +21,11 @@ from rocking_cli import GroundMotion, equivalent_block, exact_response, load_str
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.fragility import assess, engines, sources, store, store_file, work
+from rocking_cli.studies.fragility import assess, curves, engines, sources, store, store_file, tally, work
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.definition import RecordEntry
 from rocking_cli.studies.fragility.intensity import MEASURES, Scales, intensity
+from rocking_cli.studies.fragility.observed import few_records
 from rocking_cli.studies.fragility.plan import weaker
 from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
@@ -572,19 +573,49 @@ def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
 
 def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
     with Store.reading(whole[2]) as kept:
-        found = {name: assess.find(kept, kept.plan(), name) for name in ("valley bridge", "uncertain")}
+        plan, limits = kept.plan(), ["uplift", "overturning"]
+        found = {name: tally.count(kept, plan, name, limits) for name in ("valley bridge", "uncertain")}
+        rows = kept.runs(0, plan.total)
     over = {name: {each for each in MEASURES if found[name].decided_by_level(each)} for name in found}
     assert over == {"valley bridge": {"PGA", "PGA/(g lambda)"}, "uncertain": {"PGA/(g lambda)"}}  # its lambda varies
-    seen = found["valley bridge"].observations("PGA", found["valley bridge"].exceeds("uplift"))
-    assert seen.place.tolist() == seen.level.tolist() == found["valley bridge"].level.tolist()
-    assert found["uncertain"].observations("PGA", found["uncertain"].exceeds("uplift")).level is None
+    # Of the bridge one sample, of the other four: 3 records at 5 levels each, of both polarities.
+    cells = {(name, each): found[name].over(each).runs for name in found for each in ("PGA", "PGA/(g lambda)")}
+    assert {key: (runs.size, set(runs.tolist())) for key, runs in cells.items()} == {
+        ("valley bridge", "PGA"): (15, {2}),
+        ("valley bridge", "PGA/(g lambda)"): (15, {2}),
+        ("uncertain", "PGA"): (60, {2}),
+        ("uncertain", "PGA/(g lambda)"): (15, {8}),
+    }
+    fallen = (rows.outcome[30:] != 0).reshape(4, 3, 5, 2)
+    of = found["uncertain"]
+    assert of.over("PGA/(g lambda)").exceeding("overturning").tolist() == fallen.sum(axis=(0, 3)).ravel().tolist()
+    assert of.over("PGA").exceeding("overturning").tolist() == fallen.sum(axis=3).ravel().tolist()
+    sample, record, level = of.over("PGA").place
+    x = of.over("PGA").intensities("PGA")
+    expected = rows.scale[30:].reshape(4, 3, 5, 2)[..., 0] * np.array([each.pga for each in plan.records])[:, None]
+    np.testing.assert_allclose(x, expected[sample, record, level], rtol=1e-14)
+
+
+def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
+    with Store.reading(whole[2]) as kept:
+        plan, seen = kept.plan(), []
+        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ladders=True, counted=seen.append)
+        monkeypatch.setattr(store, "READ", 7)
+        kept.damaged = [31]
+        piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ladders=True, counted=seen.append)
+    assert sum(seen) == 2 * 120
+    np.testing.assert_array_equal(piecewise.runs, once.runs)
+    np.testing.assert_array_equal(piecewise.ladders.there, once.ladders.there)
+    for limit in ("uplift", 0.25):
+        np.testing.assert_array_equal(piecewise.exceeding[limit], once.exceeding[limit])
+        np.testing.assert_array_equal(piecewise.ladders.first[limit], once.ladders.first[limit])
 
 
 @pytest.mark.parametrize("method", ["stripes", "ida"])
 def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_path, method):
     text = STUDY.replace("method: stripes", f"method: {method}").replace("method:", MORE)
     said, curves, surfaces = both_as_text_and_json(write(tmp_path, text))
-    warning = "only 3 distinct records: below 20 or so, intervals and bands of 95 % are a rough guide"
+    warning = few_records(3)
     assert {(each["distinct_records"], each["warning"]) for each in (*curves, *surfaces)} == {(3, warning)}
     assert said.count(f"Warning: {warning}.") == len({(each["structure"], each["measure"]) for each in curves}) + 2
     reasons = [each["goodness"]["why"] for each in curves if each["goodness"] and each["goodness"]["p_value"] is None]
@@ -698,21 +729,22 @@ def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     assert result.exit_code == 0, result.stderr
     with Store.reading(tmp_path / "study.db") as kept:
         plan, definition = kept.plan(), load_study(path).definition
-        found = assess.find(kept, plan, "uncertain")
+        found = tally.count(kept, plan, "uncertain", definition.limit_states, ladders=True)
+        rows = kept.runs(36, plan.total)
+        assert tally.peaks(kept, plan, "uncertain").shape == (24, 6)
     (_, _, overturning) = assess.curves(found, "uncertain", definition, None)
-    x, over = found.intensities("PGA/(g lambda)"), found.exceeds("overturning")
-    each = assess.ladders(found, x, over)
-    assert len(each.lower) == 4 * 3 * 2  # samples, records, polarities
-    table = over.reshape(4, 3, 6, 2)
-    for k, (sample, record, polarity) in enumerate(np.ndindex(4, 3, 2)):
+    table = (rows.outcome != 0).reshape(4, 3, 6, 2)
+    lower, upper, exceeding = [], [], np.zeros((6, 3))
+    for sample, record, polarity in np.ndindex(4, 3, 2):  # samples, records, polarities
         fallen = np.flatnonzero(table[sample, record, :, polarity])
         first = int(fallen[0]) if fallen.size else 6
-        assert each.record[k] == record
-        assert each.lower[k] == (plan.levels[first - 1] if first else 0)
-        assert each.upper[k] == (plan.levels[first] if first < 6 else np.inf)
-        seen = overturning.seen.exceeded.reshape(4, 3, 6, 2)[sample, record, :, polarity]
-        assert seen.tolist() == [level >= first for level in range(6)]
-    assert assess.peaks(found).shape == (24, 6)
+        lower.append(plan.levels[first - 1] if first else 0)
+        upper.append(plan.levels[first] if first < 6 else np.inf)
+        exceeding[first:, record] += 1
+    expected = curves.fit_capacities(np.array(lower), np.array(upper), np.tile(np.repeat(np.arange(3), 2), 4))
+    assert (overturning.curve.runs, overturning.curve.why) == (24, expected.why)
+    assert overturning.curve.median == expected.median
+    assert overturning.seen.exceeding.tolist() == exceeding.ravel().tolist()
     assert (tmp_path / "drawn" / "uncertain-ida.png").exists()
 
 

@@ -69,7 +69,7 @@ def draw_all(
     for each in surfaces:
         name = f"{each.structure}, {limit_name(each.limit)}"
         one, other = each.measures
-        figure = plotting.draw_surface(each.surface, each.x1, each.x2, each.exceeded, (label(one), label(other)), name)
+        figure = plotting.draw_surface(each, (label(one), label(other)), name)
         add(f"{name} {one} {other}", figure)
     with terminal.progress(len(drawn), "pictures") as advance:
         for file, figure in drawn.items():
@@ -82,12 +82,11 @@ def _increments(store: Store, structure: str, definition: Definition) -> Figure:
     import numpy as np
 
     from rocking_cli.plotting.fragility import draw_ida
-    from rocking_cli.studies.fragility import assess
     from rocking_cli.studies.fragility.definition import SCALE
     from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.studies.fragility.tally import peaks
 
     plan = store.plan()
-    found = assess.find(store, plan, structure)
     measure = definition.levels.measure
     across = "factor on the records" if measure == SCALE else label(measure)
-    return draw_ida(np.array(plan.levels), assess.peaks(found), across, structure)
+    return draw_ida(np.array(plan.levels), peaks(store, plan, structure), across, structure)

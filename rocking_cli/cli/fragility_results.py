@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility
     from rocking_cli.studies.fragility.curves import Curve, Estimate, Surface
     from rocking_cli.studies.fragility.definition import Definition, Limit
-    from rocking_cli.studies.fragility.hazard import Rate
+    from rocking_cli.studies.fragility.hazard import HazardCurve, Rate
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import Study
@@ -65,7 +65,6 @@ def give(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool
     import numpy as np
     from pydantic import ValidationError
 
-    from rocking_cli.studies.fragility import assess
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.hazard import HazardCurve
 
@@ -76,15 +75,8 @@ def give(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool
         hint = "`rocking fragility STUDY.yaml` says what, and keeps the runs"
         raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
     points = store.fact("hazard")
-    hazard = HazardCurve(*np.array(points)) if points is not None else None
     finished, failed = store.count()
-    curves: list[Fragility] = []
-    surfaces: list[Bivariate] = []
-    for structure in assess.structures(plan):
-        found = assess.find(store, plan, structure)
-        if len(found.rows):
-            curves += assess.curves(found, structure, definition, hazard)
-            surfaces += assess.surfaces(found, structure, definition)
+    curves, surfaces = _fitted(store, plan, definition, HazardCurve(*np.array(points)) if points is not None else None)
     if out is not None:
         _write(out, store, plan)
     if pictures is not None:
@@ -98,6 +90,35 @@ def give(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool
     if failed:
         terminal.error(f"{failed} runs could not be followed, and are left out of the curves")
     return finished == plan.total and not failed and not _useless(plan)
+
+
+def _fitted(
+    store: Store, plan: Plan, definition: Definition, hazard: HazardCurve | None
+) -> tuple[list[Fragility], list[Bivariate]]:
+    """Count the runs of a store, and fit what its study asks for."""
+    from rocking_cli.studies.fragility import assess, tally
+
+    curves: list[Fragility] = []
+    surfaces: list[Bivariate] = []
+    structures = assess.structures(plan)
+    each = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
+    ladders = definition.method == "ida"
+    with terminal.progress(plan.size, "runs counted") as counted:
+        found = {
+            name: tally.count(store, plan, name, definition.limit_states, ladders=ladders, counted=counted)
+            for name in structures
+        }
+    with terminal.progress(each * len(structures), "fits") as advance:
+        for structure, runs in found.items():
+            if not runs.runs.any():
+                continue
+            for curve in assess.curves(runs, structure, definition, hazard):
+                curves.append(curve)
+                advance(1)
+            for surface in assess.surfaces(runs, structure, definition):
+                surfaces.append(surface)
+                advance(1)
+    return curves, surfaces
 
 
 def report_useless(plan: Plan) -> None:

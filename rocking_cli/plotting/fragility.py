@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from textwrap import shorten
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -15,12 +15,19 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentF
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
-from rocking_cli.studies.fragility.curves import Curve, Observations, Surface
+from rocking_cli.studies.fragility.assess import Bivariate
+from rocking_cli.studies.fragility.curves import Curve, Observations
 
 Reals = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+Integers = NDArray[np.int64]
 WIDEST = 30.0  # ratio of the ends of an axis from which on it is logarithmic
 FINE = 400  # points of a curve
+MARKS = {True: 20, False: 8}  # observed parts at most, of one curve alone and of each of several
+FILLED = 2  # bands in one picture that are filled: of more the edges are drawn
+SHADED = 0.14  # how dark they are
+WIDEST_LINE = 96  # characters of a line of the legend
+DRAWN_RUNS = 3000  # runs and records that are drawn one by one, at most
+DRAWN_LADDERS = 300
 LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
 FRACTILES = ((0.16, "16 %"), (0.5, "median"), (0.84, "84 %"))
 CROWDED = 15  # levels of shaking from which on not every one is counted out
@@ -74,8 +81,8 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
         fine = np.linspace(0.0, stop * 1.05, FINE)
     for k, each in enumerate(drawn):
         look = style.distinct(k)
-        _draw_observed(axes, each, look, counted=len(drawn) == 1)
-        _draw_curve(axes, each, look, fine)
+        _draw_observed(axes, each, look, alone=len(drawn) == 1)
+        _draw_curve(axes, each, look, fine, filled=len(drawn) <= FILLED)
     axes.set_xlim(fine[0], fine[-1])
     axes.set_ylim(-0.03, 1.06 if len(drawn) > 1 else 1.1)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
@@ -83,8 +90,9 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
     axes.set_ylabel("probability of exceedance", fontsize=style.LABEL)
     style.tidy(axes)
     handles = [_key(each, style.distinct(k)) for k, each in enumerate(drawn)]
-    said = f"marks: observed parts; bars and shades: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
-    handles += [Line2D([], [], linestyle="none", label=each) for each in [said, *_warnings(drawn)]]
+    bands = "shades" if len(drawn) <= FILLED else "thin lines"
+    marks = f"marks: observed parts; bars and {bands}: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
+    handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in (marks, *_remarks(drawn))]
     figure.legend(
         handles=handles,
         loc="outside lower center",
@@ -97,20 +105,32 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
     return figure
 
 
-def _warnings(drawn: Sequence[Drawn]) -> list[str]:
+def _remarks(drawn: Sequence[Drawn]) -> list[str]:
     """What to be careful about in a picture, each thing once."""
-    return list(dict.fromkeys(each.curve.warning for each in drawn if each.curve.warning))
+    unbounded = [each.name for each in drawn if _is_open(each.curve)]
+    open_ = f"no band: the slope of {', '.join(unbounded)} cannot be told from none" if unbounded else ""
+    return list(dict.fromkeys(each for each in (*(each.curve.warning for each in drawn), open_) if each))
 
 
-def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, counted: bool) -> None:
-    """Mark the part that exceeds in each group, at the mean intensity, with its interval."""
-    seen = each.observations.parts(each.curve.confidence)
-    bars = np.array([seen.part - seen.low, seen.high - seen.part])
-    axes.errorbar(
-        seen.x, seen.part, yerr=bars, fmt=look["marker"], color=look["color"], markersize=4.5, markerfacecolor="white",
-        elinewidth=style.CURVE, capsize=2, zorder=4,
+def _is_open(curve: Curve) -> bool:
+    """Whether the data bound a curve neither above nor below: its band would be the whole picture."""
+    return curve.median is not None and curve.step is None and not np.isfinite(curve.median.high)
+
+
+def _lines(text: str) -> str:
+    """A text in lines that are no wider than a picture."""
+    return "\n".join(wrap(style.plain(text), WIDEST_LINE, subsequent_indent="    "))
+
+
+def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, alone: bool) -> None:
+    """Mark the part that exceeds in each group, at the mean intensity, with its interval; faint beside others."""
+    seen = each.observations.parts(each.curve.confidence, MARKS[alone])
+    axes.vlines(seen.x, seen.low, seen.high, color=look["color"], linewidth=style.CURVE, alpha=1.0 if alone else 0.4)
+    axes.plot(
+        seen.x, seen.part, linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
+        markerfacecolor="white", zorder=4,
     )  # fmt: skip
-    if counted:
+    if alone:
         for place, n, m, top in zip(seen.x, seen.exceeding, seen.runs, seen.high, strict=True):
             axes.annotate(
                 f"{n}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center",
@@ -118,18 +138,20 @@ def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, counted: bo
             )  # fmt: skip
 
 
-def _draw_curve(axes: Axes, each: Drawn, look: dict[str, Any], fine: Reals) -> None:
-    """Draw a curve over its band; of a step the interval in which it lies."""
+def _draw_curve(axes: Axes, each: Drawn, look: dict[str, Any], fine: Reals, *, filled: bool) -> None:
+    """Draw a curve over its band, filled or as its two edges; of a step the interval in which it lies."""
     curve = each.curve
     if curve.kind == "none":
         return
-    shade = {"color": look["color"], "alpha": 0.14, "linewidth": 0.0}
     if curve.step is not None:
-        axes.axvspan(curve.step.low, curve.step.high, **shade)
+        axes.axvspan(curve.step.low, curve.step.high, color=look["color"], alpha=SHADED, linewidth=0.0)
         at = curve.step.value
         fine = np.sort(np.concatenate([fine, [np.nextafter(at, 0), np.nextafter(at, np.inf)]]))
-    else:
-        axes.fill_between(fine, *curve.band(fine), **shade)
+    elif filled and not _is_open(curve):
+        axes.fill_between(fine, *curve.band(fine), color=look["color"], alpha=SHADED, linewidth=0.0)
+    elif not _is_open(curve):
+        for edge in curve.band(fine):
+            axes.plot(fine, edge, color=look["color"], linestyle=look["linestyle"], linewidth=style.THIN, zorder=2)
     axes.plot(
         fine, curve.probability(fine), color=look["color"], linestyle=look["linestyle"], linewidth=style.BOLD, zorder=3
     )
@@ -141,7 +163,7 @@ def _key(each: Drawn, look: dict[str, Any]) -> Line2D:
     said: str = curve.kind
     if curve.kind == "none":
         look = look | {"linestyle": "none"}
-        said = "no curve, " + shorten(curve.why, 70, placeholder=" ...")
+        said = f"no curve, {curve.why}"
     elif curve.step is not None:
         said += f", between {curve.step.low:.3g} and {curve.step.high:.3g}"
     elif curve.median is not None:
@@ -149,8 +171,7 @@ def _key(each: Drawn, look: dict[str, Any]) -> Line2D:
         for name, spread in (("dispersion", curve.dispersion), ("scale", curve.scale)):
             if spread is not None:
                 said += f", {name} {spread.value:.2g} ({spread.low:.2g} to {spread.high:.2g})"
-    text = style.plain(f"{each.name}: {said}")
-    return Line2D([], [], label=text, markerfacecolor="white", **look)
+    return Line2D([], [], label=_lines(f"{each.name}: {said}"), markerfacecolor="white", **look)
 
 
 def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
@@ -181,10 +202,12 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     middle = floor + 0.4 * (top - floor)
     axes.axhspan(floor, top, color=style.SHADE, linewidth=0)
     axes.axhline(1.0, color=style.FAINT, linewidth=style.CURVE)
-    for each in np.where(fallen, middle, peaks):
+    some = np.linspace(0, len(peaks) - 1, min(len(peaks), DRAWN_LADDERS)).round().astype(int)
+    for each in np.where(fallen, middle, peaks)[some]:
         axes.plot(intensity, each, color=style.FAINT, linewidth=style.THIN, alpha=0.8)
     ranked = np.sort(np.where(fallen, np.inf, peaks), axis=0)
-    handles = [Line2D([], [], color=style.FAINT, linewidth=style.THIN, label="a record")]
+    name = "a record" if some.size == len(peaks) else f"a record, {some.size} drawn"
+    handles = [Line2D([], [], color=style.FAINT, linewidth=style.THIN, label=name)]
     for k, (fractile, name) in zip((1, 0, 2), FRACTILES, strict=True):
         place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that so many records do not exceed
         look = style.distinct(k) | {"marker": "none", "linewidth": 2.0}
@@ -210,19 +233,13 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     return figure
 
 
-def draw_surface(
-    surface: Surface, x1: Reals, x2: Reals, exceeded: Bools, labels: tuple[str, str], title: str
-) -> Figure:
+def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figure:
     """Draw runs in the plane of two intensities, with contours of the probability of exceedance.
 
     Parameters
     ----------
-    surface : Surface
-        What was fitted.
-    x1, x2 : ndarray, shape (n,)
-        Intensities of the runs.
-    exceeded : ndarray of bool, shape (n,)
-        Whether they exceed.
+    found : Bivariate
+        The runs, and what was fitted.
     labels : tuple of str
         The two measures, with their units in brackets.
     title : str
@@ -231,28 +248,37 @@ def draw_surface(
     Returns
     -------
     matplotlib.figure.Figure
+        Of many runs an even share is drawn.
     """
     figure = style.new_figure(4.9)
     axes = figure.subplots()
     _head(axes, title)
+    surface, spared = found.surface, found.runs - found.exceeding
+    share = max(int(np.count_nonzero(spared)) + int(np.count_nonzero(found.exceeding)), 1)
+    every = int(np.ceil(share / DRAWN_RUNS))
     handles: list[Any] = [
-        axes.scatter(x1[~exceeded], x2[~exceeded], s=14, facecolors="none", edgecolors=style.SPARED,
-                     linewidths=style.CURVE, label=f"does not exceed ({(~exceeded).sum()})"),
-        axes.scatter(x1[exceeded], x2[exceeded], s=16, marker="x", color=style.EXCEEDED, linewidths=style.MEDIUM,
-                     label=f"exceeds ({exceeded.sum()})"),
+        axes.scatter(*_some(found, spared, every), s=14, facecolors="none", edgecolors=style.SPARED,
+                     linewidths=style.CURVE, label=f"does not exceed ({spared.sum()})"),
+        axes.scatter(*_some(found, found.exceeding, every), s=16, marker="x", color=style.EXCEEDED,
+                     linewidths=style.MEDIUM, label=f"exceeds ({found.exceeding.sum()})"),
     ]  # fmt: skip
     axes.set_xscale("log")
     axes.set_yscale("log")
-    across, up = (np.geomspace(x.min() / 1.15, x.max() * 1.15, FINE) for x in (x1, x2))
+    across, up = (np.geomspace(x.min() / 1.15, x.max() * 1.15, FINE) for x in (found.x1, found.x2))
     if surface.kind == "none":
-        style.note(axes, shorten(f"no surface: {surface.why}", 110, placeholder=" ..."))
+        handles.append(Line2D([], [], linestyle="none", label=_lines(f"no surface: {surface.why}")))
     else:
-        found = axes.contour(
+        drawn = axes.contour(
             across, up, surface.probability(*np.meshgrid(across, up)), levels=LEVELS, colors=style.INK,
             linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],
         )  # fmt: skip
-        axes.clabel(found, fmt=lambda level: f"{level:.0%}", fontsize=style.TICK)
+        names = axes.clabel(drawn, fmt=lambda level: f"{level:.0%}", fontsize=style.TICK)
+        for name in names:
+            name.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
+            name.set_clip_on(True)
         handles.append(Line2D([], [], color=style.INK, label="probability of exceedance"))
+    if every > 1:
+        handles.append(Line2D([], [], linestyle="none", label=f"every {every}th is drawn"))
     for axis in (axes.xaxis, axes.yaxis):
         _plain_numbers(axis)
     axes.set_xlim(across[0], across[-1])
@@ -260,8 +286,15 @@ def draw_surface(
     axes.set_xlabel(labels[0], fontsize=style.LABEL)
     axes.set_ylabel(labels[1], fontsize=style.LABEL)
     style.tidy(axes)
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=style.TICK, frameon=False)
+    columns = 1 if surface.kind == "none" else 2
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=style.TICK, frameon=False)
     return figure
+
+
+def _some(found: Bivariate, number: Integers, every: int) -> tuple[Reals, Reals]:
+    """Where some runs are, one of so many."""
+    there = np.flatnonzero(number)[::every]
+    return found.x1[there], found.x2[there]
 
 
 def _head(axes: Axes, title: str) -> None:

@@ -8,17 +8,9 @@ from typing import Literal
 import numpy as np
 
 from rocking_cli.errors import InputError
+from rocking_cli.studies.fragility.fit import Counts, Estimate, Fit, fit_brackets, fit_outcomes, too_few
 from rocking_cli.studies.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
-from rocking_cli.studies.fragility.likelihood import (
-    Estimate,
-    Fit,
-    Integers,
-    Link,
-    Reals,
-    fit_binomial,
-    fit_brackets,
-    too_few,
-)
+from rocking_cli.studies.fragility.likelihood import Integers, Link, Reals
 from rocking_cli.studies.fragility.observed import Observations, few_records, one_of_each
 from rocking_cli.studies.fragility.surfaces import Surface, fit_surface
 
@@ -73,7 +65,7 @@ class Curve:
     @property
     def warning(self) -> str:
         """What to say where records are so few that intervals may not hold as they say; empty elsewhere."""
-        return few_records(self.records, self.confidence)
+        return few_records(self.records)
 
     @property
     def median(self) -> Estimate | None:
@@ -143,24 +135,24 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
         lognormal and wrong where it is wrong. A step if all that exceed lie above all that do not: the likelihood
         then grows for ever with the slope. None if there is nothing to fit.
     """
-    x, exceeded = observations.x, observations.exceeded
-    bare = Curve("none", "", confidence, x.size, int(exceeded.sum()), records=observations.records)
+    seen = observations
+    bare = Curve("none", "", confidence, seen.runs, seen.exceedances, records=seen.records)
     if not 0 < bare.exceedances < bare.runs:
         return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
-    special = _step_or_none(bare, x[~exceeded], x[exceeded])
+    special = _step_or_none(bare, *seen.sides)
     if special is not None:
         return special
-    if few := too_few(observations.record, 2):
+    if few := too_few(seen.counts, 2):
         return replace(bare, why=few)
     curves: dict[Kind, Curve] = {}
     refused: dict[Kind, str] = {}
     for kind, link in LINKS.items():
-        design = _design(kind, x)
-        fit = fit_binomial(link, design, exceeded, observations.record, confidence)
+        design = _design(kind, seen.x)
+        fit = fit_outcomes(link, design, seen.counts, seen.exceeding, confidence)
         if isinstance(fit, str):
             refused[kind] = fit
         else:
-            goodness = goodness_of_runs(fit, design, observations)
+            goodness = goodness_of_runs(fit, design, seen)
             curves[kind] = replace(bare, kind=kind, fit=fit, goodness=goodness)
     kind, why = _choice(curves) if "lognormal" in curves else ("none", refused["lognormal"])
     aic = {kind: curve.fit.aic for kind, curve in curves.items() if curve.fit is not None}
@@ -198,10 +190,13 @@ def fit_capacities(
     if wrong.any():
         k = int(wrong.argmax())
         raise InputError(f"the capacity of record {k} lies between {lower[k]:g} and {upper[k]:g}: no such interval")
-    if record is None:
-        record = np.arange(lower.size)
+    who = np.unique(np.arange(lower.size) if record is None else record, return_inverse=True)[1]
+    bounds, place = np.unique(ends, return_inverse=True)
+    pairs, place = np.unique(place[: lower.size] * bounds.size + place[lower.size :], return_inverse=True)
+    cells, number = np.unique(who * pairs.size + place, return_counts=True)
+    seen = Counts(cells // pairs.size, cells % pairs.size, number.astype(np.float64))
     above = np.isfinite(upper)
-    bare = Curve("none", "", confidence, lower.size, int(above.sum()), records=np.unique(record).size)
+    bare = Curve("none", "", confidence, lower.size, int(above.sum()), records=seen.records)
     if not bare.exceedances:
         return replace(bare, why=f"none of the {bare.runs} records exceeds at any level")
     if not (lower > 0).any():
@@ -210,13 +205,13 @@ def fit_capacities(
     if special is not None:
         return special
     with np.errstate(divide="ignore"):
-        logs = np.log(lower), np.log(upper)
-    fit = too_few(record, 2) or fit_brackets(*logs, record, confidence)
+        logs = np.log(bounds[pairs // bounds.size]), np.log(bounds[pairs % bounds.size])
+    fit = too_few(seen, 2) or fit_brackets(*logs, seen, confidence)
     if isinstance(fit, str):
         return replace(bare, why=fit)
     if fit.coefficients[1] <= 0:
         return replace(bare, why=_DECREASING)
-    goodness = goodness_of_brackets(fit, *logs, record)
+    goodness = goodness_of_brackets(fit, *logs, seen)
     curve = replace(bare, kind="lognormal", fit=fit, goodness=goodness, aic={"lognormal": fit.aic})
     return replace(curve, why=f"capacities are taken as lognormal; {_tested(curve)}")
 

@@ -6,18 +6,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking_cli.studies.fragility.fit import Counts, Fit
 from rocking_cli.studies.fragility.likelihood import (
     FARTHEST,
-    Fit,
+    Brackets,
     Integers,
     Reals,
     cumulative,
     density,
     standardised,
+    totals,
 )
 from rocking_cli.studies.fragility.observed import Observations
 
 LEAST = 2.0 - 1e-6  # runs expected on either side in a group, or records in a cell: two less rounding are two
+BY_RECORD = ", corrected for repeated records"
 
 
 @dataclass(frozen=True)
@@ -49,8 +52,8 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     ----------
     fit : Fit
         The curve.
-    design : ndarray, shape (n, 2)
-        X of the fit.
+    design : ndarray, shape (m, 2)
+        X at the different intensities.
     seen : Observations
         The runs, as fitted.
 
@@ -62,33 +65,33 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     chi-square of tr(V)^2/tr(V^2) degrees of freedom [Rao & Scott 1984, Annals of Statistics 12, 46-60]. For stripes
     of independent runs V has m - 2 eigenvalues, all one: this is the usual test with m - 2 degrees of freedom.
     """
-    eta = np.clip(design @ fit.coefficients, -FARTHEST, FARTHEST)
+    place, record, number = seen.counts.term, seen.counts.record, seen.counts.number
+    eta = np.clip(design @ fit.coefficients, -FARTHEST, FARTHEST)[place]
     p, q, slope = cumulative(fit.link, eta), cumulative(fit.link, -eta), density(fit.link, eta)
     name = "Pearson chi-square over the intensities" if seen.stripes else "Hosmer-Lemeshow"
-    member = _membership(_merged(seen.group, p, q))
-    count = member.shape[1]
+    group = _merged(seen.group, number * p, number * q)
+    count = int(group.max()) + 1
     if count < 3:
         why = f"{count} group{'s' * (count > 1)} with two or more expected on either side, three are needed"
         return Goodness(name, why=why)
-    deviation = np.sqrt(member.T @ (p * q))
-    standard = member.T @ (seen.exceeded - p) / deviation
-    # What one run adds to the standardised differences, less what it takes off them through the coefficients.
-    weight = slope / (p * q)
-    design, _ = standardised(design)
-    information = (design * (slope * weight)[:, None]).T @ design
-    through = np.linalg.solve(information, (design * slope[:, None]).T @ member)
-    adds = (member - (design * weight[:, None]) @ through) / deviation
+    rest, weight = seen.exceeding - number * p, slope / (p * q)
+    variance = totals(group, number * p * q)
+    rows = standardised(design)[0][place]
+    information = (rows * (number * slope * weight)[:, None]).T @ rows
+    by_coefficients = _sums(group, number * slope, rows, count)
+    through = by_coefficients @ np.linalg.inv(information)
     if seen.repeated:
-        sums = np.zeros((seen.records, count))
-        np.add.at(sums, seen.who, adds * (seen.exceeded - p)[:, None])
-        covariance = sums.T @ sums
-        name += ", corrected for repeated records"
+        adds = np.zeros((seen.records, count))
+        np.add.at(adds, (record, group), rest)
+        adds -= _sums(record, weight * rest, rows, seen.records) @ through.T
+        covariance = adds.T @ adds
+        name += BY_RECORD
     else:
-        covariance = (adds * (p * q)[:, None]).T @ adds
-    return _weighted(name, standard, covariance)
+        covariance = np.diag(variance) - through @ by_coefficients.T
+    return _weighted(name, totals(group, rest), variance, covariance)
 
 
-def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, record: Integers) -> Goodness:
+def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts) -> Goodness:
     """Test a distribution of capacities against their number in cells whose bounds cut no bracket.
 
     Parameters
@@ -96,54 +99,67 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, record: Integers)
     fit : Fit
         The distribution, over u.
     lower, upper : ndarray, shape (n,)
-        The brackets of u; minus and plus infinity where open.
-    record : ndarray of int, shape (n,)
-        The record of each: where one has several nothing is tested.
+        The different brackets of u; minus and plus infinity where open.
+    seen : Counts
+        How many capacities of each record lie in each.
 
     Notes
     -----
-    As `goodness_of_runs`, with V the covariance of the counts less what the fit takes up of it; where the cells are
-    the brackets V has m - 3 eigenvalues, all one.
+    As `goodness_of_runs`; where every record has one capacity V is the covariance of the counts less what the fit takes
+    up of it, and where the cells are the brackets it has m - 3 eigenvalues, all one.
     """
     name = "chi-square of the capacities"
-    if np.unique(record).size < record.size:
-        return Goodness(name, why="there are several capacities of a record, which are alike")
+    total = seen.number.sum()
     ends = np.unique(np.concatenate([lower, upper]))
     ends = ends[np.isfinite(ends)]
     whole = np.array([end for end in ends if not ((lower < end) & (end < upper)).any()])
     # P and its derivatives by the coefficients at the bounds of the cells, 0 and 1 at infinity.
     eta = fit.coefficients[0] + fit.coefficients[1] * whole
-    expected = lower.size * np.diff(cumulative(fit.link, eta), prepend=0.0, append=1.0)
+    expected = total * np.diff(cumulative(fit.link, eta), prepend=0.0, append=1.0)
     slope = density(fit.link, eta)
     slopes = np.pad(np.column_stack([slope, slope * whole]), ((1, 1), (0, 0)))
-    by_coefficients = lower.size * np.diff(slopes, axis=0)
-    member = _membership(_merged(np.arange(expected.size), expected, expected))
-    expected, by_coefficients = member.T @ expected, member.T @ by_coefficients
-    count = expected.size
+    cell = _merged(np.arange(expected.size), expected, expected)
+    count = int(cell.max()) + 1
     if count < 4:
         why = f"{count} cell{'s' * (count > 1)} with two or more capacities expected, four are needed"
         return Goodness(name, why=why)
-    observed = member.T @ np.bincount(np.searchsorted(whole, lower, side="right"), minlength=whole.size + 1)
-    covariance = np.diag(expected) - np.outer(expected, expected) / lower.size
-    covariance -= by_coefficients @ fit.covariance @ by_coefficients.T
-    deviation = np.sqrt(expected)
-    return _weighted(name, (observed - expected) / deviation, covariance / np.outer(deviation, deviation))
+    by_coefficients = _sums(cell, np.full(cell.size, total), np.diff(slopes, axis=0), count)
+    expected = totals(cell, expected)
+    among = cell[np.searchsorted(whole, lower, side="right")][seen.term]
+    rest = totals(among, seen.number, count) - expected
+    if seen.repeated:
+        terms = Brackets(lower, upper)
+        found = terms.at(np.linalg.solve(terms.back, fit.coefficients), slice(None))
+        information = np.einsum("n,nkl->kl", totals(seen.term, seen.number), found.information)
+        of_records = totals(seen.record, seen.number)
+        adds = -np.outer(of_records, expected / total)
+        np.add.at(adds, (seen.record, among), seen.number)
+        scores = _sums(seen.record, seen.number, found.score[seen.term], seen.records)
+        adds -= scores @ np.linalg.solve(information, (by_coefficients @ terms.back).T)
+        covariance = adds.T @ adds
+        name += BY_RECORD
+    else:
+        covariance = np.diag(expected) - np.outer(expected, expected) / total
+        covariance -= by_coefficients @ fit.covariance @ by_coefficients.T
+    return _weighted(name, rest, expected, covariance)
 
 
-def _weighted(name: str, standard: Reals, covariance: Reals) -> Goodness:
+def _sums(group: Integers, weights: Reals, rows: Reals, count: int) -> Reals:
+    """Weighted sums of the rows of each group, shape (count, k)."""
+    return np.column_stack([totals(group, weights * column, count) for column in rows.T])
+
+
+def _weighted(name: str, rest: Reals, variance: Reals, covariance: Reals) -> Goodness:
     """The test of a sum of squares of differences with this covariance, by a chi-square of equal mean and variance."""
     from scipy.special import chdtrc
 
+    standard, deviation = rest / np.sqrt(variance), np.sqrt(variance)
+    covariance = covariance / np.outer(deviation, deviation)
     first, second = np.trace(covariance), (covariance**2).sum()
     if first <= 0:
         return Goodness(name, why="the fit takes up all the scatter that there could be")
     statistic, degrees = float(standard @ standard * first / second), float(first**2 / second)
     return Goodness(name, statistic, degrees, float(chdtrc(degrees, statistic)))
-
-
-def _membership(group: Integers) -> Reals:
-    """One where a run, or a cell, belongs to a group."""
-    return np.eye(int(group.max()) + 1)[group]
 
 
 def _merged(group: Integers, p: Reals, q: Reals) -> Integers:

@@ -8,100 +8,134 @@ from functools import cached_property
 import numpy as np
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
+from rocking_cli.studies.fragility.fit import Counts
+from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals, totals
 
 SAME = 1e-9  # relative difference of intensities that are one: rounding is far below it, shaking far above
 A_STRIPE = 5  # records at one intensity, on average, from which on intensities are looked at one by one
+STRIPES = 50  # of them at most: more are looked at in tenths
 GROUPS = 10  # of runs otherwise
-FEW = 20  # records below which intervals may hold less often than they say; docs/fragility.md has the trials
+FEW = 20  # records below which intervals may hold less, or more, often than they say
+HELD = {5: (89, 100), 10: (90, 98)}  # of so many records, how often those of 95 % did: docs/make_coverage.py
 
 
 @dataclass(frozen=True, eq=False)
 class Observations:
-    """Which runs exceed a limit state.
+    """How many runs exceed a limit state, of each record at each intensity; `of` counts them.
 
     Parameters
     ----------
-    x : ndarray, shape (n,)
-        Intensity of each run, positive. Those that differ by rounding alone are made one.
-    exceeded : ndarray of bool, shape (n,)
-        Whether it exceeds the limit state.
-    record : ndarray of int, shape (n,)
-        The record it belongs to: runs of one record are not independent.
-    level : ndarray of int, shape (n,), optional
-        The level to which it was scaled, where that decides its intensity.
-
-    Raises
-    ------
-    InputError
-        If an intensity is not a positive number, runs of one level have several, or there are no runs.
+    x : ndarray, shape (m,)
+        The different intensities, positive and growing.
+    counts : Counts
+        How many runs each record has at each of them: n cells.
+    exceeding : ndarray, shape (n,)
+        How many runs of each cell exceed.
     """
 
     x: Reals
-    exceeded: Bools
-    record: Integers
-    level: Integers | None = None
+    counts: Counts
+    exceeding: Reals
 
-    def __post_init__(self) -> None:
-        if not self.x.size == self.exceeded.size == self.record.size:
-            raise InputError(f"{self.x.size} intensities, {self.exceeded.size} outcomes, {self.record.size} records")
-        if not self.x.size:
+    @classmethod
+    def of(
+        cls,
+        x: Reals,
+        exceeding: Bools | Reals | Integers,
+        record: Integers,
+        *,
+        level: Integers | None = None,
+        runs: Reals | Integers | None = None,
+    ) -> Observations:
+        """Count runs, each by itself or several alike.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Intensities, positive. Those that differ by rounding alone are made one.
+        exceeding : ndarray, shape (n,)
+            Whether it exceeds the limit state, or how many of the runs do.
+        record : ndarray of int, shape (n,)
+            The record it belongs to: runs of one record are not independent.
+        level : ndarray of int, shape (n,), optional
+            The level to which it was scaled, where that decides its intensity.
+        runs : ndarray, shape (n,), optional
+            How many runs are alike; one unless given.
+
+        Raises
+        ------
+        InputError
+            If an intensity is not a positive number, runs of one level have several, or there are no runs.
+        """
+        if not x.size == exceeding.size == record.size:
+            raise InputError(f"{x.size} intensities, {exceeding.size} outcomes, {record.size} records")
+        if not x.size:
             raise InputError("a fragility curve needs runs, and there are none")
-        wrong = ~((self.x > 0) & np.isfinite(self.x))
+        wrong = ~((x > 0) & np.isfinite(x))
         if wrong.any():
             k = int(wrong.argmax())
             raise InputError(
-                f"the intensity of run {k} (record {self.record[k]}) is {self.x[k]:g}: a curve over its logarithm "
+                f"the intensity of run {k} (record {record[k]}) is {x[k]:g}: a curve over its logarithm "
                 "needs positive ones; leave out records without shaking"
             )
-        x = self.x if self.level is None else _of_levels(self.x, self.level)
-        object.__setattr__(self, "x", one_of_each(x))
+        levels, place = np.unique(one_of_each(x if level is None else _of_levels(x, level)), return_inverse=True)
+        names, who = np.unique(record, return_inverse=True)
+        cells, cell = np.unique(place * names.size + who, return_inverse=True)
+        number = np.bincount(cell, runs)
+        counts = Counts(cells % names.size, cells // names.size, number.astype(np.float64))
+        return cls(levels, counts, totals(cell, exceeding.astype(np.float64)))
 
-    @cached_property
-    def place(self) -> Integers:
-        """The place of each run's intensity among the different ones, from the lowest."""
-        return np.unique(self.x, return_inverse=True)[1].astype(np.int64)
+    @property
+    def runs(self) -> int:
+        """How many there are."""
+        return int(self.counts.number.sum())
 
-    @cached_property
-    def who(self) -> Integers:
-        """The record of each run, numbered from 0."""
-        return np.unique(self.record, return_inverse=True)[1].astype(np.int64)
+    @property
+    def exceedances(self) -> int:
+        """How many of them exceed."""
+        return int(self.exceeding.sum())
 
     @property
     def records(self) -> int:
         """How many different records there are."""
-        return int(self.who.max()) + 1
+        return self.counts.records
 
     @property
     def repeated(self) -> bool:
         """Whether a record has several runs."""
-        return self.records < self.x.size
+        return self.counts.repeated
 
     @cached_property
-    def _told(self) -> Integers:
-        """The place of each record at each of its intensities: its further runs there tell no new record."""
-        return np.unique(self.place * self.records + self.who) // self.records
+    def sides(self) -> tuple[Reals, Reals]:
+        """The intensities at which a run does not exceed, and those at which one does."""
+        place = self.counts.term
+        return self.x[np.unique(place[self.exceeding < self.counts.number])], self.x[
+            np.unique(place[self.exceeding > 0])
+        ]
 
     @property
     def stripes(self) -> bool:
         """Whether records share intensities often enough for these to be looked at one by one."""
-        return bool(A_STRIPE * (int(self.place.max()) + 1) <= self._told.size)
+        return self.x.size <= STRIPES and A_STRIPE * self.x.size <= self.counts.record.size
 
     @cached_property
     def group(self) -> Integers:
-        """The group of each run, from the lowest: a stripe, or a tenth of the records' intensities in their order."""
+        """The group of each cell, from the lowest: a stripe, or a tenth of the records' intensities in their order."""
+        place = self.counts.term
         if self.stripes:
-            return self.place
-        tenth = np.searchsorted(self._told, self.place) * GROUPS // self._told.size  # one intensity stays together
+            return place
+        tenth = np.searchsorted(place, place) * GROUPS // place.size  # one intensity stays together
         return np.unique(tenth, return_inverse=True)[1].astype(np.int64)
 
-    def parts(self, confidence: float) -> Parts:
+    def parts(self, confidence: float, at_most: int = STRIPES) -> Parts:
         """The part of the runs that exceeds, in each group.
 
         Parameters
         ----------
         confidence : float
             Of the intervals.
+        at_most : int
+            How many groups: neighbours are taken together where there are more.
 
         Returns
         -------
@@ -116,9 +150,12 @@ class Observations:
         """
         from scipy.special import ndtri, stdtrit
 
-        runs = np.bincount(self.group)
-        exceeding = np.bincount(self.group, weights=self.exceeded)
-        keys, each = np.unique(self.group * self.records + self.who, return_counts=True)
+        number = self.counts.number
+        group = self.group // -(-(int(self.group.max()) + 1) // at_most)
+        runs = np.bincount(group, number)
+        exceeding = np.bincount(group, self.exceeding)
+        keys, which = np.unique(group * self.records + self.counts.record, return_inverse=True)
+        each = np.bincount(which, number)
         records = np.bincount(keys // self.records)
         trials = runs**2 / np.bincount(keys // self.records, weights=each**2)
         level = (1 + confidence) / 2
@@ -130,11 +167,11 @@ class Observations:
         half = np.sqrt(z2 * (part * (1 - part) + z2 / 4)) / (1 + z2)
         alone = self.repeated & (records == 1)
         return Parts(
-            np.bincount(self.group, weights=self.x) / runs,
+            np.bincount(group, self.x[self.counts.term] * number) / runs,
             part,
             np.where(alone, 0.0, np.clip(middle - half, 0.0, part)),
             np.where(alone, 1.0, np.clip(middle + half, part, 1.0)),
-            runs,
+            runs.astype(np.int64),
             exceeding.astype(np.int64),
             records,
         )
@@ -184,11 +221,13 @@ def _of_levels(x: Reals, level: Integers) -> Reals:
     return of_level
 
 
-def few_records(records: int, confidence: float) -> str:
+def few_records(records: int) -> str:
     """What to say of intervals and bands that rest on few records; empty if there are enough."""
     if records >= FEW:
         return ""
+    trials = max([each for each in HELD if each <= records], default=min(HELD))
+    low, high = HELD[trials]
     return (
-        f"only {records} distinct record{'s' * (records != 1)}: below {FEW} or so, intervals and bands of "
-        f"{100 * confidence:g} % are a rough guide"
+        f"only {records} distinct record{'s' * (records != 1)}: intervals and bands are a rough guide, those of 95 % "
+        f"held in {low} to {high} % of trials with {trials}"
     )

@@ -148,6 +148,20 @@ class Rows:
 COLUMNS = tuple(each.name for each in fields(Rows))
 
 
+@dataclass(frozen=True, eq=False)
+class Outcomes:
+    """What fragility asks of finished runs, one a place: some of the columns of `Rows`, and whether they uplift."""
+
+    id: Integers
+    outcome: Integers
+    peak_ratio: Reals
+    uplifts: NDArray[np.bool_]
+
+    def select(self, which: NDArray[np.bool_]) -> Outcomes:
+        """Some of them."""
+        return Outcomes(self.id[which], self.outcome[which], self.peak_ratio[which], self.uplifts[which])
+
+
 class Store:
     """The runs of one study in a file; `writing` and `reading` open it.
 
@@ -515,6 +529,31 @@ class Store:
         """The finished runs with numbers from `first` to before `stop`, without those that are damaged."""
         blocks = list(self._blocks(first, stop)) or [_rows([])]
         return Rows(*(np.concatenate([getattr(each, name) for each in blocks]) for name in COLUMNS))
+
+    def outcomes(
+        self, first: int, stop: int, counted: Callable[[int], None] = lambda numbers: None
+    ) -> Iterator[Outcomes]:
+        """How the finished runs with numbers from `first` to before `stop` end, a block at a time.
+
+        Parameters
+        ----------
+        first, stop : int
+            Numbers of runs.
+        counted : callable, optional
+            Called with how many numbers have been looked at since the last call.
+        """
+        query = "SELECT id, outcome, peak_ratio, uplift_time FROM run WHERE id >= ? AND id < ?"
+        for start in range(first, stop, READ):
+            end = min(start + READ, stop)
+            if self.damaged or self.unreadable:
+                rows = self._read(start, end)[0]
+                yield Outcomes(rows.id, rows.outcome, rows.peak_ratio, np.isfinite(rows.uplift_time))
+            else:  # all have been held against their checksums
+                found = self._connection.execute(query, (start, end)).fetchall()
+                table = np.array(found, dtype=np.float64).reshape(-1, 4).T
+                whole = table[:2].astype(np.int64)
+                yield Outcomes(whole[0], whole[1], table[2], np.isfinite(table[3]))
+            counted(end - start)
 
     def _blocks(self, first: int, stop: int) -> Iterator[Rows]:
         for start in range(first, stop, READ):  # as Python's numbers they take ten times the memory

@@ -8,17 +8,8 @@ from typing import Literal
 import numpy as np
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility.likelihood import (
-    Bools,
-    Estimate,
-    Fit,
-    Integers,
-    Reals,
-    fit_binomial,
-    separable,
-    standardised,
-    too_few,
-)
+from rocking_cli.studies.fragility.fit import Counts, Estimate, Fit, fit_outcomes, too_few
+from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals, separable, standardised
 from rocking_cli.studies.fragility.observed import SAME, few_records
 
 ADDS = 0.05  # p-value below which a second measure adds something
@@ -63,7 +54,7 @@ class Surface:
     @property
     def warning(self) -> str:
         """What to say where records are so few that intervals may not hold as they say; empty elsewhere."""
-        return few_records(self.records, self.confidence)
+        return few_records(self.records)
 
     @property
     def coefficients(self) -> list[Estimate] | None:
@@ -78,17 +69,27 @@ class Surface:
         return self.fit.probability(_design(x1.ravel(), x2.ravel())).reshape(x1.shape)
 
 
-def fit_surface(x1: Reals, x2: Reals, exceeded: Bools, record: Integers, *, confidence: float = 0.95) -> Surface:
+def fit_surface(
+    x1: Reals,
+    x2: Reals,
+    exceeding: Bools | Reals | Integers,
+    record: Integers,
+    *,
+    runs: Integers | None = None,
+    confidence: float = 0.95,
+) -> Surface:
     """Fit the probability of exceedance over two measures of intensity.
 
     Parameters
     ----------
     x1, x2 : ndarray, shape (n,)
-        Intensities of each run, positive.
-    exceeded : ndarray of bool, shape (n,)
-        Whether it exceeds the limit state.
+        Intensities, positive.
+    exceeding : ndarray, shape (n,)
+        Whether it exceeds the limit state, or how many of the runs there do.
     record : ndarray of int, shape (n,)
         The record it belongs to.
+    runs : ndarray of int, shape (n,), optional
+        How many runs there are at each of them; one unless given.
     confidence : float
         Of the intervals.
 
@@ -105,7 +106,10 @@ def fit_surface(x1: Reals, x2: Reals, exceeded: Bools, record: Integers, *, conf
     for name, x in (("first", x1), ("second", x2)):
         if not ((x > 0) & np.isfinite(x)).all():
             raise InputError(f"the {name} intensity of a run is not a positive number: leave out what is not shaken")
-    bare = Surface("none", "", confidence, x1.size, int(exceeded.sum()), records=np.unique(record).size)
+    who = np.unique(record, return_inverse=True)[1]
+    number = np.ones(x1.size) if runs is None else runs.astype(np.float64)
+    seen, exceeding = Counts(who, np.arange(x1.size), number), exceeding.astype(np.float64)
+    bare = Surface("none", "", confidence, int(number.sum()), int(exceeding.sum()), records=seen.records)
     if not 0 < bare.exceedances < bare.runs:
         return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
     design = _design(x1, x2)
@@ -116,13 +120,13 @@ def fit_surface(x1: Reals, x2: Reals, exceeded: Bools, record: Integers, *, conf
         return replace(
             bare, why="the two measures are in proportion (of their logarithms): take a curve over either one"
         )
-    if separable(standardised(design)[0], exceeded):
+    if _separable(design, number, exceeding):
         why = "a line in the plane of the two measures separates what exceeds from what does not"
         return replace(bare, why=f"{why}: the likelihood has no maximum, more runs near the line are needed")
-    if few := too_few(record, 3):
+    if few := too_few(seen, 3):
         return replace(bare, why=few)
     fits = [
-        fit_binomial("probit", design[:, columns], exceeded, record, confidence)
+        fit_outcomes("probit", design[:, columns], seen, exceeding, confidence)
         for columns in ([0, 1, 2], [0, 1], [0, 2])
     ]
     for fit in fits:
@@ -131,8 +135,7 @@ def fit_surface(x1: Reals, x2: Reals, exceeded: Bools, record: Integers, *, conf
     both, first, second = (fit for fit in fits if isinstance(fit, Fit))
     if (both.coefficients[1:] <= 0).all():
         return replace(bare, why="nothing increases: fewer exceed as either measure grows")
-    clustered = np.unique(record).size < record.size
-    p_values = (_gain(both, second, 1, clustered), _gain(both, first, 2, clustered))
+    p_values = (_gain(both, second, 1, seen.repeated), _gain(both, first, 2, seen.repeated))
     aic = {"both": both.aic, "first": first.aic, "second": second.aic}
     why = _words(both, p_values, aic)
     return replace(bare, kind="lognormal", why=why, fit=both, aic=aic, p_values=p_values)
@@ -140,6 +143,13 @@ def fit_surface(x1: Reals, x2: Reals, exceeded: Bools, record: Integers, *, conf
 
 def _design(x1: Reals, x2: Reals) -> Reals:
     return np.column_stack([np.ones(x1.size), np.log(x1), np.log(x2)])
+
+
+def _separable(design: Reals, number: Reals, exceeding: Reals) -> bool:
+    """Whether a line has all that exceed on one side; not where some do and some do not at more places than one."""
+    standard = standardised(design)[0]
+    some, none = exceeding > 0, exceeding < number
+    return separable(np.concatenate([standard[some], standard[none]]), np.arange(some.sum() + none.sum()) < some.sum())
 
 
 def _gain(both: Fit, alone: Fit, column: int, clustered: bool) -> float:

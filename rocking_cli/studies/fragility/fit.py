@@ -1,0 +1,304 @@
+"""The likeliest coefficients of a predictor, and how sure they are: the record is the cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking_cli.studies.fragility.likelihood import (
+    Brackets,
+    Integers,
+    Link,
+    Outcomes,
+    Reals,
+    Terms,
+    cumulative,
+    totals,
+)
+
+STEPS = 100  # of Newton's method, which takes about six
+DECREMENT = 1e-12  # of the log-likelihood per run, before the last of them
+SHORTEST = 1e-10  # part of a step
+FLAT = 1e-13  # smallest over largest eigenvalue of an information that tells nothing in one direction
+AT_ONCE = 1 << 16  # terms worked on at a time: some ten megabytes
+NO_MAXIMUM = "the likelihood found no maximum: the data hardly tell a slope"
+NO_ERRORS = "the errors of the fit cannot be told: one record holds most of what the data say"
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its confidence interval.
+
+    Parameters
+    ----------
+    value : float
+        The estimate.
+    low, high : float
+        The interval; an end that the data leave open is 0 or infinite.
+    """
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The likeliest coefficients of a linear predictor.
+
+    Parameters
+    ----------
+    link : str
+        `probit`, P = Phi(eta), or `logit`, P = 1/(1 + exp(-eta)).
+    coefficients : ndarray, shape (k,)
+        c.
+    covariance : ndarray, shape (k, k)
+        Of the coefficients.
+    log_likelihood : float
+        Its maximum.
+    confidence : float
+        Of the intervals.
+    degrees : float
+        Of freedom of Student's distribution, on which the intervals are based; infinite: the normal one.
+    """
+
+    link: Link
+    coefficients: Reals
+    covariance: Reals
+    log_likelihood: float
+    confidence: float
+    degrees: float = np.inf
+
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion: the smaller, the better."""
+        return 2 * self.coefficients.size - 2 * self.log_likelihood
+
+    @property
+    def quantile(self) -> float:
+        """Half-width of a confidence interval in standard errors."""
+        from scipy.special import ndtri, stdtrit
+
+        level = (1 + self.confidence) / 2
+        return float(ndtri(level) if np.isinf(self.degrees) else stdtrit(self.degrees, level))
+
+    @property
+    def intervals(self) -> list[Estimate]:
+        """The coefficients with their confidence intervals."""
+        reach = self.quantile * np.sqrt(np.diag(self.covariance))
+        return [Estimate(float(c), float(c - r), float(c + r)) for c, r in zip(self.coefficients, reach, strict=True)]
+
+    def probability(self, design: Reals) -> Reals:
+        """P of each row of the design, shape (n,)."""
+        return cumulative(self.link, design @ self.coefficients)
+
+    def band(self, design: Reals) -> tuple[Reals, Reals]:
+        """Confidence limits of P of each row: those of eta, through the link, so that they stay within 0 and 1."""
+        eta = design @ self.coefficients
+        variance = np.einsum("ij,jk,ik->i", design, self.covariance, design)
+        reach = self.quantile * np.sqrt(np.maximum(variance, 0.0))  # what rounding leaves of a variance of zero
+        return cumulative(self.link, eta - reach), cumulative(self.link, eta + reach)
+
+
+@dataclass(frozen=True, eq=False)
+class Counts:
+    """How often each record says what, each an ndarray of one length.
+
+    Parameters
+    ----------
+    record : ndarray of int
+        Which record, numbered from 0.
+    term : ndarray of int
+        What it says: a place among the terms of a likelihood.
+    number : ndarray
+        How often.
+    """
+
+    record: Integers
+    term: Integers
+    number: Reals
+
+    @property
+    def records(self) -> int:
+        """How many there are."""
+        return int(self.record.max()) + 1
+
+    @property
+    def repeated(self) -> bool:
+        """Whether a record says several things."""
+        return bool(self.records < self.number.sum())
+
+
+def too_few(seen: Counts, coefficients: int) -> str:
+    """What to say if records repeat and are too few to tell how runs of one record are alike; else empty."""
+    if not seen.repeated or seen.records > coefficients:
+        return ""
+    return (
+        f"the {seen.number.sum():.0f} runs are of {seen.records} record{'s' * (seen.records > 1)}: "
+        f"{coefficients + 1} are needed at least"
+    )
+
+
+class Sums(NamedTuple):
+    """Log-likelihood, gradient (k,) and information (k, k) of all that was observed."""
+
+    value: float
+    gradient: Reals
+    information: Reals
+
+
+def fit_outcomes(link: Link, design: Reals, seen: Counts, exceeding: Reals, confidence: float) -> Fit | str:
+    """Fit a predictor to runs that exceed or do not.
+
+    Parameters
+    ----------
+    link : str
+        `probit` or `logit`.
+    design : ndarray, shape (n, k)
+        X of each place, ones first. The caller has made sure that no column after it is constant, and that no plane
+        separates the outcomes.
+    seen : Counts
+        How many runs each record has at each place.
+    exceeding : ndarray
+        How many of them exceed.
+    confidence : float
+        Of the intervals.
+
+    Returns
+    -------
+    Fit or str
+        Why there is none.
+    """
+    # A place stands for two terms: a run there that exceeds, and one that does not.
+    term = np.concatenate([seen.term, seen.term + len(design)])
+    number = np.concatenate([exceeding, seen.number - exceeding])
+    record = np.tile(seen.record, 2)
+    there = number > 0
+    told, term = np.unique(term[there], return_inverse=True)
+    terms = Outcomes(link, design[told % len(design)], told < len(design))
+    start, degrees = np.zeros(design.shape[1]), seen.records - 1.0 if seen.repeated else np.inf
+    return _fitted(link, terms, Counts(record[there], term, number[there]), start, confidence, degrees)
+
+
+def fit_brackets(lower: Reals, upper: Reals, seen: Counts, confidence: float) -> Fit | str:
+    """Fit eta = a + b u to capacities u that are normal with mean -a/b and deviation 1/b, and known to within brackets.
+
+    Parameters
+    ----------
+    lower, upper : ndarray, shape (n,)
+        The different brackets; minus and plus infinity where open. The caller has made sure that no point lies in all.
+    seen : Counts
+        How many capacities of each record lie in each.
+    confidence : float
+        Of the intervals, which are by Student's distribution of one degree of freedom less than there are records, as
+        they are for the mean of capacities known exactly.
+
+    Returns
+    -------
+    Fit or str
+        Why there is none.
+    """
+    start, degrees = np.array([0.0, 1.0]), seen.records - 1.0
+    return _fitted("probit", Brackets(lower, upper), seen, start, confidence, degrees)
+
+
+def _fitted(
+    link: Link, terms: Terms, seen: Counts, start: Reals, confidence: float, degrees: float
+) -> Fit | str:  # fmt: skip
+    """The likeliest coefficients with their covariance."""
+    number = totals(seen.term, seen.number, len(terms))
+    with np.errstate(all="ignore"):  # of a term far out, whose probability is 0 or 1 to the last bit
+        found = _maximum(terms, number, start)
+        if found is None:
+            return NO_MAXIMUM
+        coefficients, at = found
+        covariance = _covariance(terms, seen, coefficients, at.information)
+    if covariance is None:
+        return NO_ERRORS
+    covariance = terms.back @ covariance @ terms.back.T
+    if not (np.isfinite(covariance).all() and (np.diag(covariance) > 0).all()):
+        return NO_ERRORS
+    return Fit(link, terms.back @ coefficients, covariance, at.value, confidence, degrees)
+
+
+def _sums(terms: Terms, number: Reals, coefficients: Reals) -> Sums:
+    """Sums over all terms, each counted so often."""
+    k = coefficients.size
+    value, gradient, information = 0.0, np.zeros(k), np.zeros((k, k))
+    for part in _parts(len(terms)):
+        slopes, often = terms.at(coefficients, part), number[part]
+        value += float(often @ slopes.value)
+        gradient += often @ slopes.score
+        information += np.einsum("n,nkl->kl", often, slopes.information)
+    return Sums(value, gradient, information)
+
+
+def _parts(count: int) -> Iterator[slice]:
+    for first in range(0, count, AT_ONCE):
+        yield slice(first, min(first + AT_ONCE, count))
+
+
+def _maximum(terms: Terms, number: Reals, start: Reals) -> tuple[Reals, Sums] | None:
+    """The coefficients at which a concave log-likelihood is largest, and what it is there; None if there are none.
+
+    Newton's method with halved steps.
+    """
+    at, sums = start, _sums(terms, number, start)
+    for _ in range(STEPS):
+        if not _tells(sums.information):
+            return None
+        step = np.linalg.solve(sums.information, sums.gradient)
+        if float(sums.gradient @ step) < DECREMENT * number.sum():
+            return at + step, _sums(terms, number, at + step)
+        part = 1.0
+        while not (new := _sums(terms, number, at + part * step)).value >= sums.value and part > SHORTEST:
+            part /= 2
+        at, sums = at + part * step, new
+    return None
+
+
+def _tells(information: Reals) -> bool:
+    """Whether an information, or each of several, bounds the coefficients in every direction."""
+    if not np.isfinite(information).all():
+        return False
+    values = np.linalg.eigvalsh(information)
+    return bool(((values[..., -1] > 0) & (values[..., 0] > FLAT * values[..., -1])).all())
+
+
+def _covariance(terms: Terms, seen: Counts, coefficients: Reals, information: Reals) -> Reals | None:
+    """The covariance of the coefficients; None if it cannot be told.
+
+    Where every record says one thing it is the inverse of the information. Else the record is the cluster: each is left
+    out in turn, and (G - 1)/G times the sum of the squared changes of the coefficients is the covariance, of G records.
+    The change is that of one step of Newton's method, with the information that is left [MacKinnon, Nielsen & Webb
+    2023, J. Appl. Econometrics 38, 671-694]: whole refits leave the slope of one in two studies of seven records open,
+    and the usual sandwich is narrower; docs/fragility.md has trials.
+    """
+    if not seen.repeated:
+        return np.asarray(np.linalg.inv(information)) if _tells(information) else None
+    score, own = _by_record(terms, seen, coefficients)
+    rest = information - own
+    if not _tells(rest):
+        return None
+    moved = np.linalg.solve(rest, score[:, :, None])[:, :, 0]
+    return np.asarray(moved.T @ moved * (seen.records - 1) / seen.records)
+
+
+def _by_record(terms: Terms, seen: Counts, coefficients: Reals) -> tuple[Reals, Reals]:
+    """Gradient (g, k) and information (g, k, k) of what each record says."""
+    k = coefficients.size
+    score, information = np.zeros((seen.records, k)), np.zeros((seen.records, k, k))
+    order = np.argsort(seen.term, kind="stable")
+    ends = np.searchsorted(seen.term[order], np.arange(0, len(terms) + AT_ONCE, AT_ONCE))
+    for part, (start, stop) in zip(_parts(len(terms)), pairwise(ends), strict=True):
+        slopes, those = terms.at(coefficients, part), order[start:stop]
+        which, often, record = seen.term[those] - part.start, seen.number[those], seen.record[those]
+        for i in range(k):
+            score[:, i] += totals(record, often * slopes.score[which, i], seen.records)
+            for j in range(k):
+                information[:, i, j] += totals(record, often * slopes.information[which, i, j], seen.records)
+    return score, information

@@ -1,0 +1,244 @@
+"""The runs of a structure, counted while they are read: what a study keeps of them does not grow with its runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.studies.fragility.definition import OVERTURNING, SCALE, Limit
+from rocking_cli.studies.fragility.intensity import PGA, PGV, intensity, proportional
+from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
+from rocking_cli.studies.fragility.plan import Plan
+from rocking_cli.studies.fragility.store import FAILED, STANDS, Outcomes, Store
+from rocking_cli.studies.fragility.study import RESTITUTION
+
+OF_THE_MOTION = (PGA, PGV, SCALE)  # measures that do not ask what is shaken
+Places = NDArray[np.int32]
+Counted = Callable[[int], None]
+"""Called with how many numbers of runs have been looked at since the last call."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tally:
+    """How many runs of a structure there are, and how many exceed, under each record at each level.
+
+    Parameters
+    ----------
+    plan : Plan
+        The study's runs.
+    samples : range
+        The places of the structure's samples.
+    runs : ndarray of int, shape (s, records, levels)
+        How many can be used, of each sample; of all together (s is 1) where these are shaken alike.
+    exceeding : dict of limit state to ndarray of int, shape (s, records, levels)
+        How many of them exceed.
+    ladders : Ladders or None
+        Where each ladder of levels first exceeds; of incremental dynamic analysis.
+    """
+
+    plan: Plan
+    samples: range
+    runs: Integers
+    exceeding: dict[Limit, Integers]
+    ladders: Ladders | None
+
+    def over(self, *measures: str) -> Cells:
+        """The cells of runs that are alike in some measures, without the empty ones."""
+        together = not any(self._asks_for_sample(measure) for measure in measures)
+        runs = self.runs.sum(axis=0, keepdims=True) if together else self.runs
+        there = np.nonzero(runs)
+        return Cells(self, there, runs[there], together)
+
+    def decided_by_level(self, measure: str) -> bool:
+        """Whether all runs of a level have one intensity: whatever was scaled to it, and drawn of the structure."""
+        if measure == self.plan.measure:
+            return True
+        return proportional(measure, self.plan.measure) and not _drawn_otherwise(self.plan, self.samples)
+
+    def _asks_for_sample(self, measure: str) -> bool:
+        """Whether samples under one record at one level differ in a measure."""
+        of_motion = measure in OF_THE_MOTION and self.plan.measure in OF_THE_MOTION
+        return len(self.runs) > 1 and measure != self.plan.measure and not of_motion
+
+
+@dataclass(frozen=True, eq=False)
+class Ladders:
+    """Runs that differ in their level alone, for each sample, record, restitution and polarity.
+
+    Parameters
+    ----------
+    first : dict of limit state to ndarray of int, shape (samples, records, etas, polarities)
+        The level at which each first exceeds; the number of levels if it does not.
+    there : ndarray of bool, shape (samples, records, etas, levels, polarities)
+        The runs that can be used.
+    """
+
+    first: dict[Limit, Places]
+    there: Bools
+
+    def below(self, limit: Limit) -> Integers:
+        """The last level of each ladder that does not exceed, before the first that does; -1 if there is none."""
+        levels = np.arange(self.there.shape[3])[:, None]
+        lower = self.there & (levels < self.first[limit][..., None, :])
+        return np.asarray(np.where(lower, levels, -1).max(axis=3))
+
+    def above(self, limit: Limit) -> Integers:
+        """How many runs of each sample, record and level are at the first that exceeds or above it."""
+        levels = np.arange(self.there.shape[3])[:, None]
+        return np.asarray((self.there & (levels >= self.first[limit][..., None, :])).sum(axis=(2, 4)))
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Runs that are alike, counted: those of one record, level and, where it matters, sample.
+
+    Parameters
+    ----------
+    tally : Tally
+        What they are of.
+    place : tuple of ndarray of int, each of shape (n,)
+        Which sample of the structure, record and level each cell is of; where samples are together the first stands for
+        all.
+    runs : ndarray of int, shape (n,)
+        How many there are.
+    together : bool
+        Whether samples are.
+    """
+
+    tally: Tally
+    place: tuple[Integers, ...]
+    runs: Integers
+    together: bool
+
+    @property
+    def record(self) -> Integers:
+        """The record of each."""
+        return self.place[1]
+
+    @property
+    def level(self) -> Integers:
+        """The level of each."""
+        return self.place[2]
+
+    def of(self, table: Integers) -> Integers:
+        """What a table of each sample, record and level holds for the cells."""
+        summed = table.sum(axis=0, keepdims=True) if self.together else table
+        return np.asarray(summed[self.place])
+
+    def exceeding(self, limit: Limit) -> Integers:
+        """How many runs of each exceed."""
+        return self.of(self.tally.exceeding[limit])
+
+    def intensities(self, measure: str) -> Reals:
+        """The intensity of each."""
+        return intensities(self.tally.plan, measure, self.place[0] + self.tally.samples.start, self.record, self.level)
+
+
+def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
+    """The intensity of runs; where the levels are of it, to the last digit."""
+    if measure == plan.measure:
+        return np.asarray(np.array(plan.levels)[level])
+    peaks = np.array([(each.pga, each.pgv) for each in plan.records])[record]
+    factors = plan.factors(sample, record, level)
+    return intensity(measure, factors * peaks[:, 0], factors * peaks[:, 1], plan.scales(sample))
+
+
+def samples_of(plan: Plan, structure: str) -> range:
+    """The places of a structure's samples."""
+    places = [k for k, trial in enumerate(plan.trials) if trial.structure == structure]
+    return range(places[0], places[-1] + 1)
+
+
+def count(
+    store: Store,
+    plan: Plan,
+    structure: str,
+    limits: Sequence[Limit],
+    *,
+    ladders: bool = False,
+    counted: Counted = lambda numbers: None,
+) -> Tally:
+    """Count the finished runs of a structure.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        Its runs.
+    structure : str
+        Which structure.
+    limits : sequence of limit states
+        What is asked of the runs.
+    ladders : bool
+        Whether to find where ladders of levels first exceed.
+    counted : callable, optional
+        Told how far it is.
+    """
+    samples = samples_of(plan, structure)
+    _, records, etas, levels, polarities = plan.shape
+    apart = _drawn_otherwise(plan, samples)
+    shape = (len(samples) if apart else 1, records, levels)
+    runs, exceeding = np.zeros(shape, dtype=np.int64), {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
+    there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
+    rungs = (len(samples), records, etas, polarities)
+    first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in limits if ladders}
+    each = records * plan.block
+    start = samples.start * each
+    for found in store.outcomes(start, samples.stop * each, counted):
+        found = found.select(found.outcome != FAILED)
+        sample, record, eta, level, polarity = plan.places(found.id)
+        sample = sample - samples.start
+        cell = np.ravel_multi_index((sample if apart else np.zeros_like(sample), record, level), shape)
+        _add(runs, cell)
+        if ladders:
+            there.ravel()[found.id - start] = True
+            ladder = np.ravel_multi_index((sample, record, eta, polarity), rungs)
+        for limit in limits:
+            beyond = exceeds(found, limit)
+            _add(exceeding[limit], cell[beyond])
+            if ladders:
+                np.minimum.at(first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
+    return Tally(plan, samples, runs, exceeding, Ladders(first, there) if ladders else None)
+
+
+def exceeds(found: Outcomes, limit: Limit) -> Bools:
+    """Which runs exceed a limit state."""
+    overturned: Bools = found.outcome != STANDS
+    if isinstance(limit, str):
+        return overturned if limit == OVERTURNING else found.uplifts
+    with np.errstate(invalid="ignore"):
+        beyond: Bools = overturned | (found.peak_ratio > limit)
+    return beyond
+
+
+def peaks(store: Store, plan: Plan, structure: str) -> Reals:
+    """Peak phi/phi_cr of each ladder that is complete, shape (m, levels); NaN where it overturns."""
+    samples = samples_of(plan, structure)
+    _, records, etas, levels, polarities = plan.shape
+    each = records * plan.block
+    table = np.full((len(samples), records, etas, levels, polarities), np.nan)
+    there = np.zeros(table.shape, dtype=bool)
+    for found in store.outcomes(samples.start * each, samples.stop * each):
+        found = found.select(found.outcome != FAILED)
+        place = found.id - samples.start * each
+        table.ravel()[place] = np.where(found.outcome == STANDS, found.peak_ratio, np.nan)
+        there.ravel()[place] = True
+    table, there = (np.moveaxis(of, 3, -1).reshape(-1, levels) for of in (table, there))
+    return np.asarray(table[there.all(axis=1)])
+
+
+def _drawn_otherwise(plan: Plan, samples: range) -> bool:
+    """Whether samples differ in more than their restitution, so that one motion is not one intensity for all."""
+    return any(set(plan.trials[k].drawn) - {RESTITUTION} for k in samples)
+
+
+def _add(table: Integers, cell: Integers) -> None:
+    """Count cells into a table; those of one call lie together in it."""
+    if cell.size:
+        low = int(cell.min())
+        found = np.bincount(cell - low)
+        table.ravel()[low : low + found.size] += found
