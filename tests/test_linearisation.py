@@ -304,11 +304,25 @@ def test_wrong_options_are_refused(option, value, words):
     assert words in run("error", EXAMPLES / "block.yaml", option, value, code=2).stderr
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", ["block", "frame", "wall", "arch", "cone"])
+def test_the_ends_of_what_can_be_asked_are_answered(name):
+    ends = ["--at", "1e-6", "--at", "0.999999", "--accel", "1.000001", "--accel", "1e6"]
+    found = json.loads(run("error", EXAMPLES / f"{name}.yaml", *ends, "--json").stdout)
+    assert found["verdict"]
+
+
 def test_wrong_values_are_refused_by_the_library():
     block = Block(width=0.7, height=2.8)
     for amplitude in (0.0, 1.0, float("nan")):
         with pytest.raises(InputError, match="between 0 and 1"):
             linearisation(block, Direction.POSITIVE, amplitude)
+    for amplitude in (1e-300, 9e-7, 1 - 9e-7):
+        with pytest.raises(InputError, match="away from 0 and 1"):
+            linearisation(block, Direction.POSITIVE, amplitude)
+    for acceleration in (1 + 9e-7, 1.1e6):
+        with pytest.raises(InputError, match=r"1\.000001 to 1e"):
+            linearisation(block, Direction.POSITIVE, acceleration=acceleration)
     for acceleration in (1.0, 0.5, float("inf"), float("nan")):
         with pytest.raises(InputError, match="above 1"):
             linearisation(block, Direction.POSITIVE, acceleration=acceleration)

@@ -14,19 +14,15 @@ if TYPE_CHECKING:
     from rocking_cli.studies.linearisation import Linearisation
 
 
-def _fractions(ctx: click.Context, param: click.Parameter, values: tuple[float, ...]) -> tuple[float, ...]:
-    for value in values:
-        if not 0 < value < 1:
-            raise click.BadParameter(f"{value:g} is not a fraction of phi_cr between 0 and 1.", ctx, param)
-    return values
+def _checked(
+    ctx: click.Context, param: click.Parameter, values: tuple[float, ...]
+) -> tuple[float, ...]:  # fmt: skip
+    from rocking_cli.studies.linearisation import why_no_acceleration, why_no_amplitude
 
-
-def _beyond_uplift(ctx: click.Context, param: click.Parameter, values: tuple[float, ...]) -> tuple[float, ...]:
+    why_not = why_no_amplitude if param.name == "amplitudes" else why_no_acceleration
     for value in values:
-        if not value > 1:
-            raise click.BadParameter(
-                f"{value:g} times the uplift acceleration moves nothing: give a number above 1.", ctx, param
-            )
+        if why := why_not(value):
+            raise click.BadParameter(f"{why}.", ctx, param)
     return values
 
 
@@ -34,11 +30,11 @@ def _beyond_uplift(ctx: click.Context, param: click.Parameter, values: tuple[flo
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--at", "amplitudes", type=options.Finite(), multiple=True, default=(0.5,), show_default="0.5", metavar="RATIO",
-    callback=_fractions, help="Amplitude phi/phi_cr of interest; may be repeated.",
+    callback=_checked, help="Amplitude phi/phi_cr of interest; may be repeated.",
 )  # fmt: skip
 @click.option(
     "--accel", "accelerations", type=options.Finite(), multiple=True, default=(2.0,), show_default="2",
-    metavar="TIMES", callback=_beyond_uplift, help="Constant acceleration over that at uplift; may be repeated.",
+    metavar="TIMES", callback=_checked, help="Constant acceleration over that at uplift; may be repeated.",
 )  # fmt: skip
 @options.plot("Draw the errors over their ranges")
 @options.as_json

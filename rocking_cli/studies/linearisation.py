@@ -23,6 +23,8 @@ FEWEST, MOST = 16, 512  # nodes along the motion
 INNER = 20  # nodes of the energy between two rotations
 CURVE = 60  # points of a curve
 STRONGEST = 10.0  # acceleration over uplift to which the curves go
+CLOSEST = 1e-6  # to no motion, and to the critical rotation, that an energy still tells apart
+LARGEST = 1e6  # acceleration over that at uplift
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +64,22 @@ class Linearisation:
     overturning_ratio2: Reals
 
 
+def why_no_amplitude(ratio: float) -> str:
+    """Why a number is no amplitude phi/phi_cr of a free motion that can be followed; empty if it is one."""
+    if 0 < ratio < 1 and not CLOSEST <= ratio <= 1 - CLOSEST:
+        return f"an amplitude must stay {CLOSEST:g} of phi_cr away from 0 and 1, where rounding hides it; got {ratio:g}"
+    return "" if 0 < ratio < 1 else f"an amplitude must be a fraction of phi_cr between 0 and 1, got {ratio:g}"
+
+
+def why_no_acceleration(times: float) -> str:
+    """Why a number is no constant acceleration over that at uplift that can be followed; empty if it is one."""
+    if not (times > 1 and np.isfinite(times)):
+        return f"an acceleration must be above 1 times that of uplift to move anything, got {times:g}"
+    if not 1 + CLOSEST <= times <= LARGEST:
+        return f"an acceleration must be {1 + CLOSEST:.7g} to {LARGEST:g} times that of uplift, got {times:.17g}"
+    return ""
+
+
 def linearisation(
     mechanism: Mechanism, direction: Direction, amplitude: ArrayLike = (), acceleration: ArrayLike = ()
 ) -> Linearisation:
@@ -92,13 +110,10 @@ def linearisation(
         If an integral does not converge, or the mechanism does not overturn under an acceleration.
     """
     r, rho = np.atleast_1d(np.asarray(amplitude, float)), np.atleast_1d(np.asarray(acceleration, float))
-    inside, beyond = (r > 0) & (r < 1), (rho > 1) & np.isfinite(rho)
-    if not inside.all():
-        raise InputError(f"an amplitude must be a fraction of phi_cr between 0 and 1, got {r[~inside][0]:g}")
-    if not beyond.all():
-        raise InputError(
-            f"an acceleration must be above 1 times that of uplift to move anything, got {rho[~beyond][0]:g}"
-        )
+    for values, why_not in ((r, why_no_amplitude), (rho, why_no_acceleration)):
+        for value in values:
+            if why := why_not(value):
+                raise InputError(why)
     block = equivalent_block(mechanism)[direction]
     period, time = free_period(mechanism, direction, r), overturning_time(mechanism, direction, rho)
     lin = block.lambda_lin / block.lambda_
