@@ -122,6 +122,11 @@ class TestHelp:
     def test_a_mistyped_command_gets_a_guess(self):
         assert "did you mean respond?" in run("repsond", code=2).stderr
 
+    @pytest.mark.parametrize("words", [("draw",), ("equiv",), ("respond", "--record"), ("results",)])
+    def test_a_name_that_no_file_can_have_is_wrong_input(self, words):
+        said = run(*words, "9" * 3000 + ".yaml", code=2).stderr
+        assert "long" in said and len(said) < 300
+
     def test_the_version_is_that_of_the_distribution(self):
         from importlib.metadata import version
 

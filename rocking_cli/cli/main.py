@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import sys
@@ -14,8 +15,8 @@ import click
 
 from rocking_cli import __version__
 from rocking_cli.cli import endings, terminal
-from rocking_cli.errors import PluginWarning, RockingError
-from rocking_cli.text import printable
+from rocking_cli.errors import InputError, PluginWarning, RockingError
+from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "respond", "margin", "animate", "pulse", "overturning", "spectrum",
@@ -78,6 +79,9 @@ class LazyGroup(click.Group):
         try:
             return super().main(*args, **extra)  # a reader that has seen enough ends it quietly there
         except OSError as error:
+            if error.errno == errno.ENAMETOOLONG:  # of a file that was named: wrong input
+                terminal.error(f"{one_line(cut(str(error.filename)))}: no file can have a name as long as this")
+                sys.exit(InputError.exit_code)
             terminal.error(f"the system refused: {error.strerror or error}")
             sys.exit(1)
 
