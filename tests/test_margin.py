@@ -9,17 +9,19 @@ import numpy as np
 import pytest
 
 from rocking_cli.dynamics.history import respond
-from rocking_cli.dynamics.model import build_model
+from rocking_cli.dynamics.model import build_model, build_models
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.structure import load_structure, parse_structure
+from rocking_cli.studies import margin as margins
 from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
 from rocking_cli.studies.neighbours import Around
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
+CORNERS = "mechanism: rigid_body\npolygon: [[0, 0], [0.7, 0], [0.69, 2.8], [0, 2.8]]\n"
 FRAME = load_structure(EXAMPLES / "frame.yaml")
 AROUND = Around(20)
 
@@ -32,7 +34,8 @@ def falls(mechanism, motion, factor, etas):
 
 def share(mechanism, motion, factor, polarities):
     """The share next to one factor, of the worse polarity, each neighbour followed alone."""
-    etas = AROUND.etas(build_model(mechanism, "nonlinear"))
+    model = build_model(mechanism, "nonlinear")
+    etas, polarities = AROUND.etas(model), polarities[:1] if model.symmetric else polarities
     draws = list(zip(factor * AROUND.factors(), etas, strict=True))
     return max(np.mean([falls(mechanism, motion, sign * each, eta) for each, eta in draws]) for sign in polarities)
 
@@ -49,6 +52,34 @@ def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, pol
     for k in [0, *partly[:2], partly[-1], FACTORS.size - 1]:
         assert found.overturned[k] == share(mechanism, motion, FACTORS[k], polarities)
     assert found.itself == share(mechanism, motion, 1.0, polarities)
+
+
+def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypatch):
+    followed, done = [], []
+    follow = margins.follow
+    monkeypatch.setattr(margins, "follow", lambda *a, **k: followed.append(len(a[2])) or follow(*a, **k))
+    motion = parse_pulse("sine:0.8g:0.5s").sampled()
+    every = 61 * AROUND.count
+    # A little heavier at one side, so that a reversed motion is another one.
+    leaning = parse_structure(CORNERS, "leaning", "leaning")
+    model = build_model(leaning, "nonlinear")
+    one = margin(model, motion, (1,), around=AROUND)
+    certain = int((one.overturned == 1).sum()) + (one.itself == 1)
+    for each, again in ((BLOCK, 0), (leaning, 61 - certain)):
+        followed.clear()
+        done.clear()
+        margin(build_model(each, "nonlinear"), motion, (1, -1), around=AROUND, progress=done.append)
+        assert followed == [every, again * AROUND.count]
+        assert sum(done) == 2 * every
+    assert certain > 10
+
+
+@pytest.mark.parametrize(
+    ("name", "alike"), [("block", True), ("arch", True), ("wall", True), ("frame", False), ("rigid_body", False)]
+)
+def test_symmetric_structures_are_known(name, alike):
+    models = build_models(load_structure(EXAMPLES / f"{name}.yaml"))
+    assert {each.name: each.symmetric for each in models} == dict.fromkeys(("nonlinear", "linear1", "linear2"), alike)
 
 
 def test_sixty_factors_from_a_fifth_to_five():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -26,6 +27,7 @@ ModelName = Literal["nonlinear", "linear1", "linear2"]
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
 FALLEN = 1e6  # rad: no acceleration turns a linear block back from there; without weight one might, beyond all meaning
+ALIKE = 1e-9  # of the largest: tables of two directions that differ by rounding alone
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 
@@ -87,6 +89,12 @@ class Model:
     def is_linear(self) -> bool:
         """Whether this is an equivalent block."""
         return self.tables is None
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether both directions are alike, so that a reversed motion does the same."""
+        pairs = ((self.numbers[0], self.numbers[1]), *((of[:, 0], of[:, 1]) for of in (self.forces, self.certain)))
+        return all(np.allclose(one, other, rtol=0, atol=ALIKE * np.abs(one).max()) for one, other in pairs)
 
     def q(self, ratio: float) -> float:
         """The kernel's coordinate at a signed rotation given as a fraction of its direction's phi_cr."""

@@ -107,14 +107,18 @@ def margin(
         raise InputError(Problem("a share needs neighbours: at least 1", field="neighbours"))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
         raise InputError("the factors on a motion must be positive and ascending")
-    shape = (len(polarities), factors.size + 1, around.count)
     # The same neighbours at every factor: what differs between two factors is the factor.
-    scales = np.broadcast_to(np.multiply.outer([*factors, 1.0], around.factors()), shape)
-    signs = np.broadcast_to(np.reshape(polarities, (-1, 1, 1)), shape)
-    etas = np.broadcast_to(around.etas(model), (*shape, 2))
-    runs = Runs.of(0, 0, scale=scales.ravel(), polarity=signs.ravel(), eta=etas.reshape(-1, 2))
-    found = follow([model], [motion], runs, threads=threads, progress=progress)
-    shares = found.overturned.reshape(shape).mean(axis=2).max(axis=0)
+    scales, etas = np.multiply.outer([*factors, 1.0], around.factors()), around.etas(model)
+    shares = np.zeros(len(scales))
+    for k, sign in enumerate(polarities):
+        # What falls each time cannot fall more often; a symmetric structure does the same under the motion reversed.
+        left = shares < (0.0 if k and model.symmetric else 1.0)
+        if progress is not None:
+            progress(int((~left).sum()) * around.count)
+        scale = scales[left]
+        runs = Runs.of(0, 0, scale=scale.ravel(), polarity=sign, eta=np.tile(etas, (len(scale), 1)))
+        found = follow([model], [motion], runs, threads=threads, progress=progress)
+        shares[left] = np.maximum(shares[left], found.overturned.reshape(scale.shape).mean(axis=1))
     uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
     least = min((each for each in uplifts if each is not None), default=None)
     return Margin(around, least, factors, shares[:-1], float(shares[-1]))
