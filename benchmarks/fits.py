@@ -82,7 +82,7 @@ def _fits(place: Path) -> float:
 def memory(folder: Path) -> None:
     """Peak memory and time of `rocking results` on stores that were filled without running."""
     print("\n`rocking results` on large stores of two structures\n")
-    print("| study | runs | s | us a run | peak MiB | goal |\n| --- | --- | --- | --- | --- | --- |")
+    print("| study | runs | bytes a run in the store | s | us a run | peak MiB | goal |\n" + "| --- " * 7 + "|")
     asked = "measures: [PGA, PGA/(g lambda), p PGV/(g lambda)]\n" + ASKED
     cloud = "method: cloud\nlevels: {measure: scale, least: 0.2, most: 4, count: 50}\n" + asked
     _large(folder, "cloud, every sample of another shape", 50, cloud, 500)
@@ -103,7 +103,8 @@ def _large(folder: Path, name: str, samples: int, asked: str, goal: float) -> No
     done = subprocess.run([sys.executable, "-c", PEAK, str(place)], check=True, capture_output=True, text=True)
     seconds, peak = map(float, done.stderr.split()[-2:])
     micro = 1e6 * seconds / plan.size
-    print(f"| {name} | {plan.size:,} | {seconds:.1f} | {micro:.1f} | {peak:.0f} | {goal:g} |", flush=True)
+    size = place.stat().st_size / plan.size
+    print(f"| {name} | {plan.size:,} | {size:.0f} | {seconds:.1f} | {micro:.1f} | {peak:.0f} | {goal:g} |", flush=True)
 
 
 def _drawn(plan, runs, random):  # type: ignore[no-untyped-def]

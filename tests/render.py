@@ -17,15 +17,22 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 from matplotlib.ticker import NullFormatter
 from PIL import Image, ImageFilter
+from scipy.special import ndtr
 
 from rocking_cli.dynamics.history import History, respond
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
+from rocking_cli.plotting.fragility import Drawn, draw_curves, draw_surface
 from rocking_cli.plotting.history import draw_history
+from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.structure import load_structure
+from rocking_cli.studies.fragility.assess import Bivariate
+from rocking_cli.studies.fragility.curves import Observations, fit_curve, fit_surface
+from rocking_cli.studies.margin import FACTORS, Margin
+from rocking_cli.studies.neighbours import Around
 from rocking_cli.studies.overturning import OverturningMap, overturning_map
 from rocking_cli.studies.picture import picture
 from rocking_cli.studies.shaken import linear_block, parse_shape
@@ -61,10 +68,43 @@ def _map() -> Figure:
     return draw_map(_plane(), "map", dimensionless=True)
 
 
+def _margin() -> Figure:
+    shares = np.clip(2 * np.log(FACTORS), 0, 1) * np.where((FACTORS > 2) & (FACTORS < 2.6), 0.3, 1.0)  # and an island
+    other = np.clip(np.log(FACTORS / 0.6), 0, 0.95)
+    found = [Margin(Around(), 0.4, FACTORS, each, each[np.searchsorted(FACTORS, 1.0)]) for each in (shares, other)]
+    return draw_margins({"one": found[0], "other": found[1]}, "margin")
+
+
+def _seen(median: float, dispersion: float) -> Observations:
+    """Stripes whose parts are those of a curve, of 40 records at 12 levels."""
+    level, record = np.meshgrid(np.linspace(0.1, 1.2, 12), np.arange(40))
+    part = (record * 17 % 40 + 0.5) / 40  # of each level the same parts, spread over the records
+    exceeded = part < ndtr(np.log(level / median) / dispersion)
+    return Observations.of(level.ravel(), exceeded.ravel(), record.ravel())
+
+
+def _curves(*medians: float) -> Figure:
+    seen = [_seen(each, 0.3 + 0.1 * k) for k, each in enumerate(medians)]
+    return draw_curves([Drawn(f"{k}", fit_curve(each), each) for k, each in enumerate(seen)], "PGA [g]", "curves")
+
+
+def _surface() -> Figure:
+    random = np.random.default_rng(1)
+    x1, x2 = np.exp(random.normal(size=(2, 60)))
+    exceeding = (np.log(x1 * x2) > 0.5 * random.normal(size=60)).astype(int)
+    surface = fit_surface(x1, x2, exceeding, np.arange(60))
+    found = Bivariate("a", "uplift", ("PGA", "PGV"), x1, x2, np.ones(60, int), exceeding, surface)
+    return draw_surface(found, ("PGA [g]", "PGV [m/s]"), "surface")
+
+
 FIGURES: dict[str, Callable[[], Figure]] = {
     **{f"draw_{path.stem}": partial(_structure, path.stem) for path in sorted(EXAMPLES.glob("*.yaml"))},
     "history": _history,
     "map": _map,
+    "margin": _margin,
+    "fragility": partial(_curves, 0.5),
+    "fragility_of_four": partial(_curves, 0.3, 0.5, 0.7, 0.9),
+    "surface": _surface,
 }
 
 

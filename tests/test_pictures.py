@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import pytest
+from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from PIL import Image
@@ -53,6 +54,11 @@ def drop(axes, kind, keep):
         ("history", 1, Line2D, lambda each: each.get_marker() != "|"),  # the impacts
         ("history", 1, Line2D, lambda each: each.get_linestyle() != "--"),  # one of three models
         ("map", 0, Line2D, lambda each: False),  # the contours of the peak
+        ("margin", 0, Line2D, lambda each: each.get_marker() != "*"),  # the motions themselves
+        ("margin", 0, Line2D, lambda each: each.get_marker() != "|"),  # from where they uplift
+        ("fragility", 0, Line2D, lambda each: each.get_marker() != "o"),  # what was observed
+        ("fragility_of_four", 0, Line2D, lambda each: each.get_linewidth() > 1 or each.get_marker() != "None"),  # bands
+        ("surface", 0, QuadContourSet, lambda each: False),  # the probability
     ],
 )
 def test_a_missing_element_is_seen(name, panel, kind, keep):

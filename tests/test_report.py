@@ -312,7 +312,7 @@ class TestSize:
             path.write_text("\n".join(f"{value:.6f}" for value in values) + "\n", encoding="utf-8")
             records += ["--record", path]
         out = tmp_path / "r.html"
-        run("report", *FEW, BLOCK, *records, "--units", "g", "--dt", "0.01", "-o", out)
+        run("report", "--neighbours", "2", BLOCK, *records, "--units", "g", "--dt", "0.01", "-o", out)
         assert out.stat().st_size < LARGEST
         ground = read(out).data[0]["charts"][1]["series"][0]
         written = np.loadtxt(tmp_path / "long0.csv")

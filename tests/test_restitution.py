@@ -350,7 +350,7 @@ def test_a_history_says_which_restitution_it_used(given, said, tmp_path):
     assert said in run("respond", file, *pulse).stdout.splitlines()
     assert said in run("animate", file, *pulse, "--out", tmp_path / "a.html").stdout.splitlines()
     assert said in run("pulse", file, "--ag", "0.4g", "--period", "0.5").stdout.splitlines()
-    run("report", file, *pulse, "-o", tmp_path / "r.html")
+    run("report", "--neighbours", 2, file, *pulse, "-o", tmp_path / "r.html")
     assert said.replace("eta", "η") in (tmp_path / "r.html").read_text(encoding="utf-8")
     for data in (run_json("respond", file, *pulse), run_json("animate", file, *pulse, "--out", tmp_path / "a.html")):
         assert data["restitution"]["source"] == ("given" if given else "kinematics")

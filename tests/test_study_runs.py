@@ -574,7 +574,7 @@ def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
 def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
     with Store.reading(whole[2]) as kept:
         plan, limits = kept.plan(), ["uplift", "overturning"]
-        found = {name: tally.count(kept, plan, name, limits) for name in ("valley bridge", "uncertain")}
+        found = {name: tally.count(kept, plan, name, limits, MEASURES) for name in ("valley bridge", "uncertain")}
         rows = kept.runs(0, plan.total)
     over = {name: {each for each in MEASURES if found[name].decided_by_level(each)} for name in found}
     assert over == {"valley bridge": {"PGA", "PGA/(g lambda)"}, "uncertain": {"PGA/(g lambda)"}}  # its lambda varies
@@ -599,10 +599,10 @@ def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
 def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
     with Store.reading(whole[2]) as kept:
         plan, seen = kept.plan(), []
-        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ladders=True, counted=seen.append)
+        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], MEASURES, ladders=True, counted=seen.append)
         monkeypatch.setattr(store, "READ", 7)
         kept.damaged = [31]
-        piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ladders=True, counted=seen.append)
+        piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], MEASURES, ladders=True, counted=seen.append)
     assert sum(seen) == 2 * 120
     np.testing.assert_array_equal(piecewise.runs, once.runs)
     np.testing.assert_array_equal(piecewise.ladders.there, once.ladders.there)
@@ -729,7 +729,7 @@ def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     assert result.exit_code == 0, result.stderr
     with Store.reading(tmp_path / "study.db") as kept:
         plan, definition = kept.plan(), load_study(path).definition
-        found = tally.count(kept, plan, "uncertain", definition.limit_states, ladders=True)
+        found = tally.count(kept, plan, "uncertain", definition.limit_states, MEASURES[2:3], ladders=True)
         rows = kept.runs(36, plan.total)
         assert tally.peaks(kept, plan, "uncertain").shape == (24, 6)
     (_, _, overturning) = assess.curves(found, "uncertain", definition, None)

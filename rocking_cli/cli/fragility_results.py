@@ -103,9 +103,10 @@ def _fitted(
     structures = assess.structures(plan)
     each = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
     ladders = definition.method == "ida"
+    measures = [*definition.fitted_measures, *(one for pair in definition.bivariate for one in pair)]
     with terminal.progress(plan.size, "runs counted") as counted:
         found = {
-            name: tally.count(store, plan, name, definition.limit_states, ladders=ladders, counted=counted)
+            name: tally.count(store, plan, name, definition.limit_states, measures, ladders=ladders, counted=counted)
             for name in structures
         }
     with terminal.progress(each * len(structures), "fits") as advance:

@@ -32,7 +32,7 @@ class Tally:
     samples : range
         The places of the structure's samples.
     runs : ndarray of int, shape (s, records, levels)
-        How many can be used, of each sample; of all together (s is 1) where these are shaken alike.
+        How many can be used, of each sample; of all together (s is 1) where the measures do not tell them apart.
     exceeding : dict of limit state to ndarray of int, shape (s, records, levels)
         How many of them exceed.
     ladders : Ladders or None
@@ -47,7 +47,7 @@ class Tally:
 
     def over(self, *measures: str) -> Cells:
         """The cells of runs that are alike in some measures, without the empty ones."""
-        together = not any(self._asks_for_sample(measure) for measure in measures)
+        together = not any(_tells_apart(self.plan, self.samples, measure) for measure in measures)
         runs = self.runs.sum(axis=0, keepdims=True) if together else self.runs
         there = np.nonzero(runs)
         return Cells(self, there, runs[there], together)
@@ -57,11 +57,6 @@ class Tally:
         if measure == self.plan.measure:
             return True
         return proportional(measure, self.plan.measure) and not _drawn_otherwise(self.plan, self.samples)
-
-    def _asks_for_sample(self, measure: str) -> bool:
-        """Whether samples under one record at one level differ in a measure."""
-        of_motion = measure in OF_THE_MOTION and self.plan.measure in OF_THE_MOTION
-        return len(self.runs) > 1 and measure != self.plan.measure and not of_motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,6 +152,7 @@ def count(
     plan: Plan,
     structure: str,
     limits: Sequence[Limit],
+    measures: Sequence[str],
     *,
     ladders: bool = False,
     counted: Counted = lambda numbers: None,
@@ -173,6 +169,8 @@ def count(
         Which structure.
     limits : sequence of limit states
         What is asked of the runs.
+    measures : sequence of str
+        What their intensities will be asked for in; `Tally.over` gives no others.
     ladders : bool
         Whether to find where ladders of levels first exceed.
     counted : callable, optional
@@ -180,7 +178,7 @@ def count(
     """
     samples = samples_of(plan, structure)
     _, records, etas, levels, polarities = plan.shape
-    apart = _drawn_otherwise(plan, samples)
+    apart = any(_tells_apart(plan, samples, measure) for measure in measures)
     shape = (len(samples) if apart else 1, records, levels)
     runs, exceeding = np.zeros(shape, dtype=np.int64), {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
     there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
@@ -229,6 +227,12 @@ def peaks(store: Store, plan: Plan, structure: str) -> Reals:
         there.ravel()[place] = True
     table, there = (np.moveaxis(of, 3, -1).reshape(-1, levels) for of in (table, there))
     return np.asarray(table[there.all(axis=1)])
+
+
+def _tells_apart(plan: Plan, samples: range, measure: str) -> bool:
+    """Whether samples under one record at one level differ in a measure."""
+    of_motion = measure in OF_THE_MOTION and plan.measure in OF_THE_MOTION
+    return measure != plan.measure and not of_motion and _drawn_otherwise(plan, samples)
 
 
 def _drawn_otherwise(plan: Plan, samples: range) -> bool:
