@@ -179,6 +179,17 @@ class TestAgainstAnIndependentOptimum:
         information = np.array([[plain[0], mixed], [mixed, plain[1]]]) / h**2
         np.testing.assert_allclose(curve.fit.covariance, np.linalg.inv(information), rtol=1e-4)
 
+    @pytest.mark.parametrize("width", [1e-3, 1e-6, 1e-8])
+    def test_narrow_brackets_are_capacities_known_exactly(self, width):
+        u = np.random.default_rng(7).normal(np.log(MEDIAN), DISPERSION, 60)
+        curve = fit_capacities(np.exp(u), np.exp(u + width))
+        n, deviation = 60, u.std()
+        # The inverse information of a normal sample: of mean deviation^2/n, of the deviation deviation^2/2n.
+        b = 1 / deviation
+        slopes = np.array([[-b, u.mean() * b**2], [0.0, -(b**2)]])  # of a and b by mean and deviation
+        expected = slopes @ np.diag([deviation**2 / n, deviation**2 / (2 * n)]) @ slopes.T
+        np.testing.assert_allclose(curve.fit.covariance, expected, rtol=max(5 * width, 1e-5))
+
     def test_several_capacities_of_a_record_refitted_without_each(self):
         lower, upper = brackets(np.random.default_rng(4), 800, np.geomspace(0.1, 2.0, 12))
         record = np.arange(800) // 4
@@ -422,7 +433,7 @@ class TestKinds:
             ([1, 2, 1], [2, 3, 2], "step", "both outcomes occur at 2"),
             ([3, 3], [np.inf, np.inf], "none", "none of the 2 records"),
             ([0, 0], [1, 1], "none", "at their first level"),
-            ([0, 2], [1, np.inf], "none", "nothing increases"),
+            ([0, 2], [1, np.inf], "none", "below 1 or above 2: levels beyond these"),
         ],
     )
     def test_capacities_without_scatter_or_bounds(self, lower, upper, kind, words):
@@ -509,8 +520,10 @@ class TestUnits:
     def test_nor_do_those_of_capacities(self, c, each):
         lower, upper = brackets(np.random.default_rng(63), 60)
         record = np.arange(60) // each
-        one = fit_capacities(lower, upper, record)
-        other = fit_capacities(rounded(c * lower, 64), rounded(c * upper, 65), record)
+        one = fit_capacities(lower, upper, record, levels=LEVELS)
+        other = fit_capacities(
+            rounded(c * lower, 64), rounded(c * upper, 65), record, levels=rounded(c * LEVELS, 66)
+        )  # fmt: skip
         for name, factor in (("median", c), ("dispersion", 1.0)):
             before, after = getattr(one, name), getattr(other, name)
             expected = [factor * value for value in (before.value, before.low, before.high)]
@@ -541,7 +554,8 @@ class TestUnits:
 
     def test_brackets_that_share_an_end_share_it_however_it_is_rounded(self):
         lower, upper = brackets(np.random.default_rng(69), 200)
-        exact, found = fit_capacities(lower, upper), fit_capacities(rounded(lower, 70), rounded(upper, 71))
+        exact = fit_capacities(lower, upper, levels=LEVELS)
+        found = fit_capacities(rounded(lower, 70), rounded(upper, 71), levels=rounded(LEVELS, 72))
         assert exact.goodness.p_value is not None
         assert found.goodness.p_value == pytest.approx(exact.goodness.p_value, rel=1e-8)
 
@@ -584,6 +598,50 @@ class TestFewRecords:
             assert found.warning.startswith(said) and bool(found.warning) == bool(said)
 
 
+class TestWords:
+    def test_of_outcomes_that_are_all_but_separate(self):
+        x, exceeded = np.geomspace(0.5, 2, 400), np.arange(400) >= 200
+        exceeded[[199, 200]] = exceeded[[200, 199]]
+        why = fit_curve(one_each(x, exceeded)).why
+        assert "all but separate" in why and "cannot be told from none" not in why
+
+    @pytest.mark.parametrize("records", [3, 4])
+    def test_of_few_capacities_whose_increase_nobody_doubts(self, records):
+        levels = np.geomspace(0.1, 2, 200)
+        ends = np.concatenate([[0.0], levels, [np.inf]])
+        place = np.searchsorted(levels, MEDIAN * np.exp(DISPERSION * np.linspace(-1, 1, records)))
+        curve = fit_capacities(ends[place], ends[place + 1], levels=levels)
+        assert f"at 95 % {records} records are too few to bound it" in curve.why
+
+    def test_of_capacities_at_both_ends_only(self):
+        lower, upper = np.array([0.0] * 5 + [2.0] * 5), np.array([1.0] * 5 + [np.inf] * 5)
+        assert "fewer exceed" not in fit_capacities(lower, upper).why
+        more = fit_capacities(np.append(lower, 0.0), np.append(upper, 3.0))
+        assert more.kind in ("none", "lognormal") and "fewer exceed" not in more.why
+
+    @pytest.mark.parametrize(
+        ("upper", "words"), [(np.inf, "none of the 6 ladders of 3 records"), (1.0, "all of the 6")]
+    )
+    def test_of_several_capacities_of_a_record(self, upper, words):
+        lower = np.full(6, 2.0 if np.isinf(upper) else 0.0)
+        assert words in fit_capacities(lower, np.full(6, upper), np.arange(6) // 2).why
+        two = fit_capacities(np.array([1.0, 2, 1, 3]), np.array([2.0, 3, 3, 4]), np.array([0, 0, 1, 1]))
+        assert "the 4 capacities are of 2 records" in two.why
+
+    def test_of_the_measure_that_serves_alone(self):
+        random, seen = np.random.default_rng(58), 0
+        for _ in range(400):
+            record = np.repeat(np.arange(9), 6)
+            x1, x2 = np.exp(random.normal(size=(2, 54)))
+            exceeded = np.log(x1) + 0.4 * np.log(x2) > random.normal(size=54) + random.normal(size=9)[record]
+            found = fit_surface(x1, x2, exceeded, record)
+            if found.p_values is not None and (min(found.p_values) < 0.05) != (max(found.p_values) < 0.05):
+                seen += 1
+                adds = "first" if found.p_values[0] < 0.05 else "second"
+                assert f"a curve over the {adds} alone serves" in found.why
+        assert seen > 20
+
+
 class TestRefused:
     @pytest.mark.parametrize("x", [0.0, -1.0, np.nan, np.inf])
     def test_an_intensity_without_a_logarithm(self, x):
@@ -598,7 +656,7 @@ class TestRefused:
 
     @pytest.mark.parametrize("bracket", [(2.0, 1.0), (1.0, 1.0), (-1.0, 2.0), (np.nan, 1.0)])
     def test_an_empty_bracket(self, bracket):
-        with pytest.raises(InputError, match="record 1"):
+        with pytest.raises(InputError, match="capacity 1"):
             fit_capacities(np.array([0.0, bracket[0]]), np.array([1.0, bracket[1]]))
 
     def test_a_surface_over_nothing(self):
@@ -623,7 +681,7 @@ class TestGoodness:
 
     def test_of_brackets_is_pearsons_with_three_degrees_less_than_cells(self):
         lower, upper = brackets(np.random.default_rng(42), 200)
-        curve = fit_capacities(lower, upper)
+        curve = fit_capacities(lower, upper, levels=LEVELS)
         bounds = np.concatenate([[0.0], LEVELS, [np.inf]])
         cells = np.diff(np.concatenate([[0.0], curve.probability(LEVELS), [1.0]])) * 200
         observed = np.array([(lower == low).sum() for low in bounds[:-1]])
@@ -661,7 +719,7 @@ class TestGoodness:
         capacity = np.where(random.random(120) < 0.5, 0.3, 3.0) * np.exp(0.1 * random.normal(size=120))
         bounds = np.concatenate([[0.0], levels, [np.inf]])
         place = np.searchsorted(levels, capacity)
-        curve = fit_capacities(bounds[place], bounds[place + 1])
+        curve = fit_capacities(bounds[place], bounds[place + 1], levels=levels)
         assert curve.goodness.p_value < 1e-6 and "do not rely on it" in curve.why
 
     def test_what_is_not_tested_says_the_same_reason_everywhere(self):
@@ -670,15 +728,18 @@ class TestGoodness:
         assert curve.goodness.p_value is None and "three are needed" in curve.goodness.why
         assert curve.why.endswith(f"the lognormal curve is not tested: {curve.goodness.why}")
 
-    @pytest.mark.parametrize(("records", "each"), [(10, 4), (50, 1), (50, 4)])
-    def test_of_brackets_rejects_what_is_right_at_its_rate(self, records, each):
-        random = np.random.default_rng([47, records, each])
-        ends = np.concatenate([[0.0], np.geomspace(0.1, 2, 12), [np.inf]])
+    @pytest.mark.parametrize(
+        ("records", "each", "count"), [(20, 4, 12), (50, 1, 12), (50, 4, 12), (100, 1, 500), (30, 1, 40)]
+    )
+    def test_of_brackets_rejects_what_is_right_at_its_rate(self, records, each, count):
+        random, levels = np.random.default_rng([47, records, each]), np.geomspace(0.1, 2, count)
+        ends = np.concatenate([[0.0], levels, [np.inf]])
         p_values = []
         for _ in range(150):
             scatter = 0.8 * random.normal(size=(records, 1)) + 0.6 * random.normal(size=(records, each))
             place = np.searchsorted(ends, MEDIAN * np.exp(DISPERSION * scatter.ravel()))
-            found = fit_capacities(ends[place - 1], ends[place], np.repeat(np.arange(records), each)).goodness
+            record = np.repeat(np.arange(records), each)
+            found = fit_capacities(ends[place - 1], ends[place], record, levels=levels).goodness
             p_values += [found.p_value] if found.p_value is not None else []
             assert found.name.endswith("repeated records") == (each > 1)
         p_values = np.array(p_values)
@@ -692,12 +753,28 @@ class TestGoodness:
         capacity = np.where(low, 0.3, 3.0) * np.exp(0.1 * random.normal(size=180))
         bounds = np.concatenate([[0.0], levels, [np.inf]])
         place = np.searchsorted(levels, capacity)
-        curve = fit_capacities(bounds[place], bounds[place + 1], np.arange(180) // 3)
+        curve = fit_capacities(bounds[place], bounds[place + 1], np.arange(180) // 3, levels=levels)
         assert curve.goodness.p_value < 1e-4 and "do not rely on it" in curve.why
 
-    def test_brackets_that_overlap_have_no_cells(self):
-        curve = fit_capacities(np.array([1.0, 1.5, 2.0, 2.5, 4.0]), np.array([1.8, 2.2, 2.8, 4.5, 5.0]))
-        assert curve.kind == "lognormal" and curve.goodness.p_value is None and "cell" in curve.goodness.why
+    def test_capacities_between_levels_of_their_own_are_not_tested(self):
+        lower, upper = np.array([1.0, 1.5, 2.0, 2.5, 4.0]), np.array([1.8, 2.2, 2.8, 4.5, 5.0])
+        curve = fit_capacities(lower, upper)
+        assert curve.kind == "lognormal" and curve.goodness.p_value is None
+        assert "not the same for all capacities" in curve.goodness.why
+        tried = np.unique(np.concatenate([lower, upper]))  # and with these no cell has two
+        assert "cells with" in fit_capacities(lower, upper, levels=tried).goodness.why
+
+    def test_many_runs_of_few_records_are_few(self):
+        # Each group has one record, whatever it does: nothing can be told, and nothing is.
+        x, record = np.geomspace(0.5, 2, 12).repeat(100), np.arange(12).repeat(100)
+        part = np.array([0.05] * 3 + [0.95] * 3 + [0.3] * 3 + [0.95] * 3).repeat(100)
+        curve = fit_curve(Runs(x, np.random.default_rng(0).random(1200) < part, record))
+        assert curve.goodness.p_value is None and "not tested" in curve.why
+        assert "do not reject" not in curve.why
+
+    def test_no_group_is_none(self):
+        goodness = fit_curve(one_each(np.linspace(1, 2, 20), np.arange(20) == 15)).goodness
+        assert goodness.why.startswith("0 groups with")
 
 
 class TestSurface:

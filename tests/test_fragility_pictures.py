@@ -179,7 +179,7 @@ def test_a_band_that_the_data_leave_open_is_not_painted_and_said():
     seen = Observations.of(x, random.random(40) < 0.4 + 0.1 * (x > 1), np.arange(40))
     figure = rendered(draw_curves([drawn("uplift", seen)], "PGA [g]", "a block"))
     assert not [each for each in figure.axes[0].collections if each.get_alpha() == 0.14]
-    assert words(figure)[-1] == "no band: the slope of uplift cannot be told from none"
+    assert words(figure)[-1] == "no band: the data leave that of uplift open"
 
 
 def test_bands_of_several_are_their_edges_and_labels_are_whole():

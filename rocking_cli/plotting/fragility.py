@@ -108,7 +108,7 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
 def _remarks(drawn: Sequence[Drawn]) -> list[str]:
     """What to be careful about in a picture, each thing once."""
     unbounded = [each.name for each in drawn if _is_open(each.curve)]
-    open_ = f"no band: the slope of {', '.join(unbounded)} cannot be told from none" if unbounded else ""
+    open_ = f"no band: the data leave that of {', '.join(unbounded)} open" if unbounded else ""
     return list(dict.fromkeys(each for each in (*(each.curve.warning for each in drawn), open_) if each))
 
 

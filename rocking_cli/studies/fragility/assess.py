@@ -84,7 +84,10 @@ def curves(
             if tally.ladders is None:
                 curve = fit_curve(seen, confidence=confidence)
             else:
-                curve = fit_capacities(*_capacities(tally, measure, limit, cells), confidence=confidence)
+                tried = np.unique(x) if level is not None else None
+                curve = fit_capacities(
+                    *_capacities(tally, measure, limit, cells), levels=tried, confidence=confidence
+                )  # fmt: skip
             rate = None
             if hazard is not None and curve.kind != "none" and definition.hazard_measure == measure:
                 rate = annual_rate(curve, hazard)

@@ -65,7 +65,7 @@ class Curve:
     @property
     def warning(self) -> str:
         """What to say where records are so few that intervals may not hold as they say; empty elsewhere."""
-        return few_records(self.records)
+        return few_records(self.records) if self.fit is not None else ""
 
     @property
     def median(self) -> Estimate | None:
@@ -160,8 +160,13 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
 
 
 def fit_capacities(
-    lower: Reals, upper: Reals, record: Integers | None = None, *, confidence: float = 0.95
-) -> Curve:  # fmt: skip
+    lower: Reals,
+    upper: Reals,
+    record: Integers | None = None,
+    *,
+    levels: Reals | None = None,
+    confidence: float = 0.95,
+) -> Curve:
     """Fit a lognormal curve to the capacities of records: incremental dynamic analysis.
 
     Parameters
@@ -171,6 +176,8 @@ def fit_capacities(
         does, infinite if none does. The capacity is known to lie between them, and taken as no more than that.
     record : ndarray of int, shape (n,), optional
         The record each is of, where one has several: of either polarity, of several samples. They are not independent.
+    levels : ndarray, shape (m,), optional
+        The levels that were tried, where they are the same for all; without them the curve is not tested.
     confidence : float
         Of the intervals and the band.
 
@@ -184,12 +191,13 @@ def fit_capacities(
     InputError
         If a bracket is empty.
     """
-    ends = one_of_each(np.concatenate([lower, upper]))
-    lower, upper = ends[: lower.size], ends[lower.size :]
+    ends = one_of_each(np.concatenate([lower, upper, np.zeros(0) if levels is None else levels]))
+    lower, upper, tried = np.split(ends, [lower.size, 2 * lower.size])
     wrong = ~((lower >= 0) & (lower < upper))
     if wrong.any():
         k = int(wrong.argmax())
-        raise InputError(f"the capacity of record {k} lies between {lower[k]:g} and {upper[k]:g}: no such interval")
+        raise InputError(f"capacity {k} lies between {lower[k]:g} and {upper[k]:g}: no such interval")
+    ends = ends[: 2 * lower.size]
     who = np.unique(np.arange(lower.size) if record is None else record, return_inverse=True)[1]
     bounds, place = np.unique(ends, return_inverse=True)
     pairs, place = np.unique(place[: lower.size] * bounds.size + place[lower.size :], return_inverse=True)
@@ -198,22 +206,29 @@ def fit_capacities(
     above = np.isfinite(upper)
     bare = Curve("none", "", confidence, lower.size, int(above.sum()), records=seen.records)
     if not bare.exceedances:
-        return replace(bare, why=f"none of the {bare.runs} records exceeds at any level")
+        return replace(bare, why=f"none of the {_capacities(bare)} exceeds at any level")
     if not (lower > 0).any():
-        return replace(bare, why=f"all of the {bare.runs} records exceed at their first level: take lower ones")
+        return replace(bare, why=f"all of the {_capacities(bare)} exceed at their first level: take lower ones")
+    highest, lowest = upper[above].max(), lower[lower > 0].min()
+    if highest <= lowest:  # no capacity lies between two levels
+        why = f"every capacity lies below {highest:.4g} or above {lowest:.4g}: levels beyond these are needed"
+        return replace(bare, why=why)
     special = _step_or_none(bare, lower[lower > 0], upper[above])
     if special is not None:
         return special
     with np.errstate(divide="ignore"):
         logs = np.log(bounds[pairs // bounds.size]), np.log(bounds[pairs % bounds.size])
-    fit = too_few(seen, 2) or fit_brackets(*logs, seen, confidence)
+    fit = too_few(seen, 2, "capacities") or fit_brackets(*logs, seen, confidence)
     if isinstance(fit, str):
         return replace(bare, why=fit)
-    if fit.coefficients[1] <= 0:
-        return replace(bare, why=_DECREASING)
-    goodness = goodness_of_brackets(fit, *logs, seen)
+    goodness = goodness_of_brackets(fit, *logs, seen, None if levels is None else np.log(np.unique(tried)))
     curve = replace(bare, kind="lognormal", fit=fit, goodness=goodness, aic={"lognormal": fit.aic})
     return replace(curve, why=f"capacities are taken as lognormal; {_tested(curve)}")
+
+
+def _capacities(bare: Curve) -> str:
+    """What there is a capacity of."""
+    return f"{bare.runs} ladders of {bare.records} records" if bare.runs > bare.records else f"{bare.runs} records"
 
 
 def _design(kind: Kind, x: Reals) -> Reals:
@@ -285,8 +300,22 @@ def _tested(curve: Curve) -> str:
     else:
         said = f"the data do not reject a {curve.kind} curve (p = {p:.2g})"
     if curve.fit.intervals[1].low <= 0:
-        said += f"; at {curve.confidence:.0%} its increase cannot be told from none"
+        said += f"; at {100 * curve.confidence:g} % {_why_open(curve)}"
     return said
+
+
+def _why_open(curve: Curve) -> str:
+    """Why standard errors do not bound a slope: it may be none, or be steeper than they can tell."""
+    from scipy.special import chdtrc
+
+    assert curve.fit is not None
+    if curve.fit.ladders:
+        return f"{curve.records} records are too few to bound it"
+    part = curve.exceedances / curve.runs
+    flat = curve.runs * (part * np.log(part) + (1 - part) * np.log1p(-part))
+    if curve.records == curve.runs and chdtrc(1, 2 * (curve.fit.log_likelihood - flat)) < 1 - curve.confidence:
+        return "its bounds are open: the outcomes are all but separate, and standard errors fail there"
+    return "its increase cannot be told from none"
 
 
 def _root_interval(fit: Fit) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -26,7 +26,7 @@ SHORTEST = 1e-10  # part of a step
 FLAT = 1e-13  # smallest over largest eigenvalue of an information that tells nothing in one direction
 AT_ONCE = 1 << 16  # terms worked on at a time: some ten megabytes
 NO_MAXIMUM = "the likelihood found no maximum: the data hardly tell a slope"
-NO_ERRORS = "the errors of the fit cannot be told: one record holds most of what the data say"
+NO_ERRORS = "the errors of the fit cannot be told: without one record, or at all, the data hardly tell a slope"
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,8 @@ class Fit:
         Of the intervals.
     degrees : float
         Of freedom of Student's distribution, on which the intervals are based; infinite: the normal one.
+    ladders : bool
+        Whether it is of capacities, which increase by definition, and not of runs.
     """
 
     link: Link
@@ -72,6 +74,7 @@ class Fit:
     log_likelihood: float
     confidence: float
     degrees: float = np.inf
+    ladders: bool = False
 
     @property
     def aic(self) -> float:
@@ -133,12 +136,12 @@ class Counts:
         return bool(self.records < self.number.sum())
 
 
-def too_few(seen: Counts, coefficients: int) -> str:
-    """What to say if records repeat and are too few to tell how runs of one record are alike; else empty."""
+def too_few(seen: Counts, coefficients: int, what: str = "runs") -> str:
+    """What to say if records repeat and are too few to tell how what is of one record is alike; else empty."""
     if not seen.repeated or seen.records > coefficients:
         return ""
     return (
-        f"the {seen.number.sum():.0f} runs are of {seen.records} record{'s' * (seen.records > 1)}: "
+        f"the {seen.number.sum():.0f} {what} are of {seen.records} record{'s' * (seen.records > 1)}: "
         f"{coefficients + 1} are needed at least"
     )
 
@@ -203,7 +206,8 @@ def fit_brackets(lower: Reals, upper: Reals, seen: Counts, confidence: float) ->
         Why there is none.
     """
     start, degrees = np.array([0.0, 1.0]), seen.records - 1.0
-    return _fitted("probit", Brackets(lower, upper), seen, start, confidence, degrees)
+    found = _fitted("probit", Brackets(lower, upper), seen, start, confidence, degrees)
+    return found if isinstance(found, str) else replace(found, ladders=True)
 
 
 def _fitted(
@@ -253,7 +257,8 @@ def _maximum(terms: Terms, number: Reals, start: Reals) -> tuple[Reals, Sums] | 
             return None
         step = np.linalg.solve(sums.information, sums.gradient)
         if float(sums.gradient @ step) < DECREMENT * number.sum():
-            return at + step, _sums(terms, number, at + step)
+            last = _sums(terms, number, at + step)
+            return (at + step, last) if np.isfinite(last.value) else None
         part = 1.0
         while not (new := _sums(terms, number, at + part * step)).value >= sums.value and part > SHORTEST:
             part /= 2

@@ -19,7 +19,7 @@ from rocking_cli.studies.fragility.likelihood import (
 )
 from rocking_cli.studies.fragility.observed import Observations
 
-LEAST = 2.0 - 1e-6  # runs expected on either side in a group, or records in a cell: two less rounding are two
+LEAST = 2.0 - 1e-6  # records expected on either side in a group, or in a cell: two less rounding are two
 BY_RECORD = ", corrected for repeated records"
 
 
@@ -69,11 +69,14 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     eta = np.clip(design @ fit.coefficients, -FARTHEST, FARTHEST)[place]
     p, q, slope = cumulative(fit.link, eta), cumulative(fit.link, -eta), density(fit.link, eta)
     name = "Pearson chi-square over the intensities" if seen.stripes else "Hosmer-Lemeshow"
-    group = _merged(seen.group, number * p, number * q)
-    count = int(group.max()) + 1
+    table = np.zeros((int(seen.group.max()) + 1, seen.records))
+    np.add.at(table, (seen.group, record), number)
+    part = totals(seen.group, number * p) / totals(seen.group, number)
+    groups, count = _merged(table, part)
     if count < 3:
-        why = f"{count} group{'s' * (count > 1)} with two or more expected on either side, three are needed"
+        why = f"{count} group{'s' * (count != 1)} with two or more records expected on either side, three are needed"
         return Goodness(name, why=why)
+    group = groups[seen.group]
     rest, weight = seen.exceeding - number * p, slope / (p * q)
     variance = totals(group, number * p * q)
     rows = standardised(design)[0][place]
@@ -91,7 +94,7 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     return _weighted(name, totals(group, rest), variance, covariance)
 
 
-def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts) -> Goodness:
+def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, levels: Reals | None) -> Goodness:
     """Test a distribution of capacities against their number in cells whose bounds cut no bracket.
 
     Parameters
@@ -102,6 +105,8 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts) -> 
         The different brackets of u; minus and plus infinity where open.
     seen : Counts
         How many capacities of each record lie in each.
+    levels : ndarray, shape (m,), optional
+        All that were tried, finite: the bounds of cells may not be chosen by where capacities lie.
 
     Notes
     -----
@@ -109,19 +114,20 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts) -> 
     up of it, and where the cells are the brackets it has m - 3 eigenvalues, all one.
     """
     name = "chi-square of the capacities"
+    if levels is None:
+        return Goodness(name, why="the levels that were tried are not the same for all capacities")
     total = seen.number.sum()
-    ends = np.unique(np.concatenate([lower, upper]))
-    ends = ends[np.isfinite(ends)]
-    whole = np.array([end for end in ends if not ((lower < end) & (end < upper)).any()])
+    begun, ended = np.searchsorted(np.sort(lower), levels, "left"), np.searchsorted(np.sort(upper), levels, "right")
+    whole = levels[begun == ended]  # no bracket has them within
     # P and its derivatives by the coefficients at the bounds of the cells, 0 and 1 at infinity.
     eta = fit.coefficients[0] + fit.coefficients[1] * whole
     expected = total * np.diff(cumulative(fit.link, eta), prepend=0.0, append=1.0)
     slope = density(fit.link, eta)
     slopes = np.pad(np.column_stack([slope, slope * whole]), ((1, 1), (0, 0)))
-    cell = _merged(np.arange(expected.size), expected, expected)
-    count = int(cell.max()) + 1
+    of_records = totals(seen.record, seen.number)
+    cell, count = _merged(np.outer(expected / total, of_records))
     if count < 4:
-        why = f"{count} cell{'s' * (count > 1)} with two or more capacities expected, four are needed"
+        why = f"{count} cell{'s' * (count != 1)} with the capacities of two or more records expected, four are needed"
         return Goodness(name, why=why)
     by_coefficients = _sums(cell, np.full(cell.size, total), np.diff(slopes, axis=0), count)
     expected = totals(cell, expected)
@@ -131,7 +137,6 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts) -> 
         terms = Brackets(lower, upper)
         found = terms.at(np.linalg.solve(terms.back, fit.coefficients), slice(None))
         information = np.einsum("n,nkl->kl", totals(seen.term, seen.number), found.information)
-        of_records = totals(seen.record, seen.number)
         adds = -np.outer(of_records, expected / total)
         np.add.at(adds, (seen.record, among), seen.number)
         scores = _sums(seen.record, seen.number, found.score[seen.term], seen.records)
@@ -162,14 +167,31 @@ def _weighted(name: str, rest: Reals, variance: Reals, covariance: Reals) -> Goo
     return Goodness(name, statistic, degrees, float(chdtrc(degrees, statistic)))
 
 
-def _merged(group: Integers, p: Reals, q: Reals) -> Integers:
-    """Join neighbouring groups, from the lowest, until each expects enough on either side."""
-    expected = np.array([np.bincount(group, weights=each) for each in (p, q)])
-    new = np.zeros(expected.shape[1], dtype=np.int64)
-    number, gathered = 0, np.zeros(2)
-    for k, each in enumerate(expected.T):
+def _merged(table: Reals, part: Reals | None = None) -> tuple[Integers, int]:
+    """Join neighbouring groups, from the lowest, until each expects enough records on either side.
+
+    Parameters
+    ----------
+    table : ndarray, shape (groups, records)
+        How many runs each group has of each record. As they are alike they count as (sum n)^2/sum n^2 records.
+    part : ndarray, shape (groups,), optional
+        The part of them that is expected on one side; on the other is the rest. Without it all are on one side.
+
+    Returns
+    -------
+    ndarray of int, shape (groups,)
+        Which of the new groups each belongs to.
+    int
+        How many of these there are.
+    """
+    new = np.zeros(len(table), dtype=np.int64)
+    number, gathered, there = 0, np.zeros(table.shape[1]), 0.0
+    for k, row in enumerate(table):
         new[k] = number
-        gathered = gathered + each
-        if (gathered >= LEAST).all():
-            number, gathered = number + 1, np.zeros(2)
-    return np.minimum(new, max(number - 1, 0))[group]  # what is left over joins the last
+        gathered = gathered + row
+        there += row.sum() * (1.0 if part is None else part[k])
+        runs, squares = gathered.sum(), (gathered**2).sum()
+        sides = (there,) if part is None else (there, runs - there)
+        if squares > 0 and min(sides) * runs / squares >= LEAST:
+            number, gathered, there = number + 1, np.zeros(table.shape[1]), 0.0
+    return np.minimum(new, max(number - 1, 0)), number  # what is left over joins the last

@@ -125,20 +125,15 @@ class Brackets:
         flip = low > 0  # the tail in which a difference of small numbers loses nothing
         top, bottom = log_ndtr(np.where(flip, -low, high)), log_ndtr(np.where(flip, -high, low))
         value = top + np.log(-np.expm1(bottom - top))
-        # phi/[Phi(high) - Phi(low)] at either end, and minus the derivatives of the logarithm by high and low.
+        # phi/[Phi(high) - Phi(low)] at either end.
         at_low, at_high = (np.exp(-end * end / 2 - value) / np.sqrt(2 * np.pi) for end in (low, high))
         low, high = (np.where(np.isfinite(end), end, 0.0) for end in (low, high))
-        by_high, by_low = high * at_high + at_high**2, at_low**2 - low * at_low
-        both = at_high * at_low
         score = np.stack([at_high - at_low, at_high * v - at_low * u], axis=-1)
-        mixed = by_high * v + by_low * u - both * (u + v)
-        information = np.stack(
-            [
-                np.stack([by_high + by_low - 2 * both, mixed], axis=-1),
-                np.stack([mixed, by_high * v * v + by_low * u * u - 2 * both * u * v], axis=-1),
-            ],
-            axis=-2,
-        )
+        # In this form little cancels where a bracket is narrow.
+        information = score[:, :, None] * score[:, None, :]
+        for weight, end in ((high * at_high, v), (-low * at_low, u)):
+            row = np.stack([np.ones_like(end), end], axis=-1)
+            information += weight[:, None, None] * row[:, :, None] * row[:, None, :]
         return Slopes(value, score, information)
 
 

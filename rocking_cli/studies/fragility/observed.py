@@ -155,9 +155,8 @@ class Observations:
         runs = np.bincount(group, number)
         exceeding = np.bincount(group, self.exceeding)
         keys, which = np.unique(group * self.records + self.counts.record, return_inverse=True)
-        each = np.bincount(which, number)
         records = np.bincount(keys // self.records)
-        trials = runs**2 / np.bincount(keys // self.records, weights=each**2)
+        trials = runs**2 / np.bincount(keys // self.records, weights=np.bincount(which, number) ** 2)
         level = (1 + confidence) / 2
         several = np.maximum(records - 1, 1)
         quantile = stdtrit(several, level) if self.repeated else np.full(runs.size, ndtri(level))

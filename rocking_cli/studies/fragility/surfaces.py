@@ -54,7 +54,7 @@ class Surface:
     @property
     def warning(self) -> str:
         """What to say where records are so few that intervals may not hold as they say; empty elsewhere."""
-        return few_records(self.records)
+        return few_records(self.records) if self.fit is not None else ""
 
     @property
     def coefficients(self) -> list[Estimate] | None:
@@ -115,6 +115,8 @@ def fit_surface(
     design = _design(x1, x2)
     if (np.ptp(design[:, 1:], axis=0) < SAME).any():
         return replace(bare, why="one of the measures is the same in all runs: take a curve over the other one")
+    if bare.runs <= design.shape[1]:
+        return replace(bare, why=f"{bare.runs} runs cannot tell {design.shape[1]} coefficients")
     correlation = float(np.corrcoef(design[:, 1], design[:, 2])[0, 1])
     if 1 - abs(correlation) < PARALLEL:
         return replace(
@@ -168,7 +170,8 @@ def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> s
         for name, other, p in (("second", "first", p_values[1]), ("first", "second", p_values[0]))
     ]
     if max(p_values) >= ADDS:
-        better = "first" if aic["first"] <= aic["second"] else "second"
+        alike = min(p_values) >= ADDS  # neither adds to the other: then the likelier one
+        better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < ADDS) else "second"
         said.append(f"a curve over the {better} alone serves")
     falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]
     said += [f"at a given other measure fewer exceed as the {name} grows" for name in falls]
