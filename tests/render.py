@@ -69,9 +69,10 @@ def _map() -> Figure:
 
 
 def _margin() -> Figure:
-    shares = np.clip(2 * np.log(FACTORS), 0, 1) * np.where((FACTORS > 2) & (FACTORS < 2.6), 0.3, 1.0)  # and an island
-    other = np.clip(np.log(FACTORS / 0.6), 0, 0.95)
-    found = [Margin(Around(), 0.4, FACTORS, each, each[np.searchsorted(FACTORS, 1.0)]) for each in (shares, other)]
+    factors = np.union1d(FACTORS, 1.0)
+    shares = np.clip(2 * np.log(factors), 0, 1) * np.where((factors > 2) & (factors < 2.6), 0.3, 1.0)  # and an island
+    other = np.clip(np.log(factors / 0.6), 0, 0.95)
+    found = [Margin(Around(), 0.4, factors, each) for each in (shares, other)]
     return draw_margins({"one": found[0], "other": found[1]}, "margin")
 
 

@@ -822,7 +822,7 @@ class TestSurface:
         alone = fit_surface(x1, x2, np.log(x1) > random.normal(size=400), record)
         assert alone.p_values[1] > 0.05 and "adds nothing" in alone.why and "the first alone serves" in alone.why
         falls = fit_surface(x1, x2, np.log(x1) - np.log(x2) > random.normal(size=400), record)
-        assert "fewer exceed as the second grows" in falls.why
+        assert "fewer exceed as the second one grows" in falls.why
 
     def test_chance_gains_are_as_rare_as_said(self):
         random = np.random.default_rng(55)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -39,7 +40,7 @@ def marks(axes):
 
 def words(figure):
     (legend,) = figure.legends
-    return [text.get_text() for text in legend.get_texts()]
+    return [" ".join(text.get_text().replace("\u00a0", " ").split()) for text in legend.get_texts()]
 
 
 def rendered(figure):
@@ -91,6 +92,25 @@ def test_a_cloud_of_many_runs_is_a_few_marks():
     assert len(marks(axes)[0]) == 10
 
 
+@pytest.mark.parametrize(("levels", "every"), [(25, 1), (26, 2), (50, 2)])
+def test_of_many_intensities_some_are_marked_as_they_are(levels, every):
+    x = np.tile(np.linspace(0.1, 2, levels), 20)
+    exceeded = x > np.exp(0.4 * np.random.default_rng(5).normal(size=x.size))
+    seen = Observations.of(x, exceeded, np.repeat(np.arange(20), levels))
+    figure = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a block"))
+    np.testing.assert_allclose(marks(figure.axes[0])[0][:, 1], seen.parts(0.95).part[::every])
+    assert (f"one of {every} intensities is marked" in words(figure)[1]) == (every > 1)
+
+
+def test_a_surface_of_few_records_carries_the_warning():
+    random = np.random.default_rng(6)
+    x1, x2 = np.exp(random.normal(size=(2, 90)))
+    exceeded = np.log(x1) + np.log(x2) > random.normal(size=90)
+    found = replace(bivariate(x1, x2, exceeded), surface=fit_surface(x1, x2, exceeded, np.arange(90) % 9))
+    said = words(rendered(draw_surface(found, ("a", "b"), "a frame")))[-1]
+    assert said == found.surface.warning != ""
+
+
 def test_a_step_a_curve_and_nothing_share_a_picture():
     entries = [
         drawn("uplift $1", stripes([0, 20, 20, 20])),
@@ -102,6 +122,7 @@ def test_a_step_a_curve_and_nothing_share_a_picture():
     said = words(figure)
     assert "step, between 0.2 and 0.4" in said[0] and "lognormal" in said[1]
     assert "no curve, none of the 80 runs exceed" in said[2]
+    assert said[4].startswith(r"the shade of a step lies between two levels, without a confidence: uplift \$1")
     curves = [line for line in axes.get_lines() if len(line.get_xdata()) > 10 and line.get_linewidth() > 1]
     assert len(curves) == 2
     assert not axes.texts
@@ -161,7 +182,7 @@ def test_runs_without_a_surface_are_drawn_with_the_reason():
     x = np.geomspace(0.1, 1, 20)
     figure = rendered(draw_surface(bivariate(x, x**2, x > 0.3), ("PGA [g]", "PGV [m/s]"), "a frame"))
     assert len(figure.axes[0].collections) == 2
-    assert words(figure)[2].replace("\n    ", " ") == f"no surface: {bivariate(x, x**2, x > 0.3).surface.why}"
+    assert words(figure)[2] == f"no surface: {bivariate(x, x**2, x > 0.3).surface.why}"
 
 
 def test_of_very_many_runs_an_even_share_is_drawn():
@@ -170,7 +191,7 @@ def test_of_very_many_runs_an_even_share_is_drawn():
     figure = rendered(draw_surface(bivariate(x1, x2, x1 * x2 > 3 * random.random(20_000)), ("a", "b"), "a frame"))
     below, above, _ = figure.axes[0].collections
     assert 2500 < len(below.get_offsets()) + len(above.get_offsets()) <= 3001
-    assert words(figure)[-1] == "every 7th is drawn"
+    assert words(figure)[-1] == "one of 7 is drawn"
 
 
 def test_a_band_that_the_data_leave_open_is_not_painted_and_said():
@@ -193,7 +214,8 @@ def test_bands_of_several_are_their_edges_and_labels_are_whole():
     for line, each in zip(thin[::2], entries, strict=False):
         np.testing.assert_array_equal(line.get_ydata(), each.curve.band(line.get_xdata())[0])
     for said, each in zip(words(figure), entries, strict=False):
-        assert max(map(len, said.split("\n"))) <= 96 and "..." not in said
-        assert said.replace("\n    ", " ").startswith(f"{each.name}: ")
+        assert said.startswith(f"{each.name}: ") and "..." not in said
+    lines = [line for text in figure.legends[0].get_texts() for line in text.get_text().split("\n")]
+    assert max(map(len, lines)) <= 96 and not any(" %" in line for line in lines)
     edge = figure.bbox.width
     assert all(text.get_window_extent().x1 <= edge for text in figure.legends[0].get_texts())

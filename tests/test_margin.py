@@ -48,9 +48,9 @@ def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, pol
     motion = parse_pulse(pulse).sampled()
     found = margin(build_model(mechanism, "nonlinear"), motion, polarities, around=AROUND)
     partly = np.flatnonzero((found.overturned > 0) & (found.overturned < 1))
-    assert found.factors is FACTORS and partly.size
-    for k in [0, *partly[:2], partly[-1], FACTORS.size - 1]:
-        assert found.overturned[k] == share(mechanism, motion, FACTORS[k], polarities)
+    assert found.factors.tolist() == sorted([*FACTORS, 1.0]) and partly.size
+    for k in [0, *partly[:2], partly[-1], FACTORS.size]:
+        assert found.overturned[k] == share(mechanism, motion, found.factors[k], polarities)
     assert found.itself == share(mechanism, motion, 1.0, polarities)
 
 
@@ -64,7 +64,7 @@ def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypat
     leaning = parse_structure(CORNERS, "leaning", "leaning")
     model = build_model(leaning, "nonlinear")
     one = margin(model, motion, (1,), around=AROUND)
-    certain = int((one.overturned == 1).sum()) + (one.itself == 1)
+    certain = int((one.overturned == 1).sum())
     for each, again in ((BLOCK, 0), (leaning, 61 - certain)):
         followed.clear()
         done.clear()
@@ -87,7 +87,7 @@ def test_sixty_factors_from_a_fifth_to_five():
 
 
 def made(*shares) -> Margin:
-    return Margin(AROUND, 0.5, np.arange(1.0, len(shares) + 1), np.array(shares, dtype=float), 0.0)
+    return Margin(AROUND, 0.5, np.arange(1.0, len(shares) + 1), np.array(shares, dtype=float))
 
 
 class TestLevels:
@@ -109,17 +109,22 @@ class TestWords:
 
     def test_each_level_in_turn(self):
         assert in_words(made(0, 0.2, 0.6)) == (
-            "Of the motions next to each factor 10 % at 2, 50 % at 3, 90 % at none up to 3 overturn."
+            "Of the motions next to a factor at least 10 % first at 2, 50 % at 3 and 90 % at none up to 3 overturn; "
+            "factors are 75 % apart."
         )
 
     def test_islands_are_told(self):
-        assert in_words(made(0, 0.2, 0.0, 1.0)).endswith("Overturning comes and goes: at 3 fewer than 10 % do again.")
+        assert in_words(made(0, 0.2, 0.0, 1.0)).endswith("Overturning comes and goes: at 3 none does again.")
+        assert in_words(made(0, 0.6, 0.3, 1.0)).endswith("comes and goes: at 3 only 30 % do again.")
+        assert in_words(made(0, 0.6, 1.0, 0.7, 0.8)).endswith("comes and goes: at 4 only 70 % do again.")
         assert "comes and goes" not in in_words(made(0, 0.2, 0.6, 1.0))
 
     def test_the_numbers_are_those_of_the_shares(self):
         motion = parse_pulse("ricker:0.7g:0.9s").sampled()
         found = margin(build_model(BLOCK, "nonlinear"), motion, around=AROUND)
-        for level, factor in re.findall(r"(\d+) % at ([\d.]+)", in_words(found).split(" Overturning")[0]):
+        said = re.findall(r"(\d+) % (?:first )?at ([\d.]+)", in_words(found).split("; factors")[0])
+        assert [level for level, _ in said] == ["10", "50", "90"]
+        for level, factor in said:
             k = int(np.abs(found.factors - float(factor)).argmin())
             assert found.overturned[k] >= int(level) / 100 > found.overturned[:k].max()
 
@@ -151,7 +156,7 @@ class TestCommand:
         model = build_model(load_structure(self.BLOCK), "nonlinear")
         found = margin(model, parse_pulse("sine:0.5g:0.8s").sampled(), around=AROUND)
         theirs = data["motions"][1]
-        assert theirs["shares"] == found.overturned.tolist() and theirs["factors"] == FACTORS.tolist()
+        assert theirs["shares"] == found.overturned.tolist() and theirs["factors"] == sorted([*FACTORS.tolist(), 1.0])
         assert theirs["overturned"] == found.itself and theirs["uplift"] == found.uplift
         assert set(theirs["levels"]) == {"10", "50", "90"}
         assert theirs["levels"]["50"]["first"] == found.first(0.5)

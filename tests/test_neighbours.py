@@ -152,7 +152,13 @@ class TestWithoutShaking:
 
     def test_a_release_alone_has_neighbours_too(self):
         found = neighbours(build_model(BLOCK, "nonlinear"), None, release=0.5)
-        assert found.overturned == 0 and found.peak_ratio == pytest.approx((0.5, 0.5, 0.5), rel=1e-9)
+        expected = 0.5 * np.quantile(Around().factors(), (0.16, 0.5, 0.84), method="inverted_cdf")
+        assert found.overturned == 0 and found.peak_ratio == pytest.approx(tuple(expected), rel=1e-9)
+
+    @pytest.mark.parametrize("sign", [1, -1])
+    def test_a_release_next_to_the_critical_rotation_falls_as_often_as_it_is_beyond_it(self, sign):
+        found = neighbours(build_model(FRAME, "nonlinear"), None, release=0.99 * sign)
+        assert found.overturned == (0.99 * Around().factors() > 1).mean() == pytest.approx(0.245, abs=0.01)
 
 
 @pytest.mark.parametrize(("off", "said"), [(1e-9, "None governs: one, other do alike."), (1e-4, "other governs: 40 %")])
@@ -161,6 +167,10 @@ def test_what_differs_by_rounding_does_not_govern(off, said):
 
 
 class TestWords:
+    def test_where_nothing_can_lift_it(self):
+        found = neighbours(build_model(BLOCK, "nonlinear"), parse_pulse("sine:0.1g:1s").sampled())
+        assert str(found) == "None of 200 motions within 2 % of this one lifts it."
+
     def sentence(self, overturned, peaks):
         return str(Neighbours(Around(), "nonlinear", overturned, peaks, 1.0))
 
@@ -185,6 +195,9 @@ class TestWords:
         runs = Runs.of(0, 0, scale=around.factors(), eta=around.etas(model))
         fallen = respond_many([model], [motion], runs).overturned.mean()
         said = str(neighbours(model, motion, around))
+        if not can_lift(model, motion, 1.05):
+            assert said == "None of 400 motions within 5 % of this one lifts it." and fallen == 0
+            return
         assert "Of 400 motions within 5 % of this one" in said
         share = re.search(r"one ([\d.]+) % overturn", said)
         told = float(share[1]) / 100 if share else {"all": 1.0, "none": 0.0}[re.search(r"one (all|none)", said)[1]]

@@ -79,12 +79,6 @@ class TestGroups:
         np.testing.assert_array_equal(once.exceeding, one_by_one.exceeding)
         assert (once.runs, once.exceedances) == (runs.sum(), exceeding.sum())
 
-    def test_fewer_are_neighbours_taken_together(self):
-        seen = scaled(6, 1, np.linspace(0.1, 1, 13))
-        found = seen.parts(0.95, at_most=4)
-        assert (found.runs.tolist(), found.records.tolist()) == ([24, 24, 24, 6], [6] * 4)
-        np.testing.assert_allclose(found.x, [np.linspace(0.1, 1, 13)[k : k + 4].mean() for k in (0, 4, 8, 12)])
-
     def test_more_intensities_than_can_be_looked_at_are_looked_at_in_tenths(self):
         assert scaled(5, 1, np.linspace(0.1, 1, STRIPES)).stripes
         many = scaled(5, 1, np.linspace(0.1, 1, STRIPES + 1))

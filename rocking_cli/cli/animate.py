@@ -104,6 +104,7 @@ def command(
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.dynamics.history import RTOL, TAIL
     from rocking_cli.files import keep_apart
+    from rocking_cli.names import percent
     from rocking_cli.studies import neighbours as near
     from rocking_cli.studies.film import Film
     from rocking_cli.studies.picture import picture
@@ -136,7 +137,8 @@ def command(
             terminal.error(f"{motion.name}: {error}")
             refused += 1
             continue
-        rows.append([motion.name, film.verdict])
+        beside = near.neighbours(models[0], motion, around) if around.count else None
+        rows.append([motion.name, film.verdict, "-" if beside is None else percent(beside.overturned)])
         if as_json:
             terminal.print_json(
                 {
@@ -147,9 +149,7 @@ def command(
                     "outcome": history.outcome.name.lower(),
                     "peak_ratio": history.peak_ratio,
                     "restitution": responses.restitution_json(mechanism, blocks),
-                    "neighbours": responses.neighbours_json(near.neighbours(models[0], motion, around))
-                    if around.count
-                    else None,
+                    "neighbours": responses.neighbours_json(beside) if beside is not None else None,
                     "verdict": film.verdict,
                     "start": film.start,
                     "end": film.end,
@@ -159,8 +159,10 @@ def command(
             )
         elif not several:
             terminal.result(film.verdict)
+            if beside is not None:
+                terminal.result(str(beside))
     if several and not as_json:
-        terminal.table(structures.label(mechanism), ["under", model], rows)
+        terminal.table(structures.label(mechanism), ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
     if rows and not as_json:
         terminal.result(responses.restitution_used(mechanism, blocks))
     if missing or refused:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processors to use.  [default: all]")
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the dask.distributed cluster of this scheduler.")
 @click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
-@click.option("--restart", is_flag=True, help="Begin anew; the store there is is kept, renamed.")
+@click.option("--restart", is_flag=True, help="Begin anew; the present store is kept under another name.")
 @click.option("--pictures", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.as_json
 @click.pass_context

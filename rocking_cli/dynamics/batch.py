@@ -169,7 +169,7 @@ def respond_many(
     motions: Sequence[GroundMotion | None],
     runs: Runs,
     *,
-    release: float | None = None,
+    release: float | Reals | None = None,
     threads: int | None = None,
     rtol: float = RTOL,
     only_peaks: bool = False,
@@ -185,8 +185,8 @@ def respond_many(
         The ground motions, before scaling; None for no shaking.
     runs : Runs
         Which histories.
-    release : float, optional
-        Start all of them at rest, tilted by this fraction of the critical rotation; negative: anticlockwise.
+    release : float or ndarray, shape (n,), optional
+        Start all, or each, of them at rest, tilted by this fraction of the critical rotation; negative: anticlockwise.
     threads : int, optional
         How many at a time; without it, one for each processor.
     rtol : float
@@ -233,7 +233,10 @@ def respond_many(
     rows[:, kernels.V_FACTOR] = abs(runs.scale)
     rows[:, kernels.SIZE] = runs.size
     if release is not None:
-        rows[:, kernels.START] = np.array([model.q(release) for model in models])[runs.model]
+        tilts = np.broadcast_to(np.asarray(release, dtype=np.float64), len(runs))
+        different, which = np.unique(tilts, return_inverse=True)
+        starts = np.array([[model.q(float(tilt)) for tilt in different] for model in models])
+        rows[:, kernels.START] = starts[runs.model, which]
     rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
     marks = np.empty((len(runs), kernels.MARKS))
     if len(runs):

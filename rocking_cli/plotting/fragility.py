@@ -22,7 +22,7 @@ Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
 WIDEST = 30.0  # ratio of the ends of an axis from which on it is logarithmic
 FINE = 400  # points of a curve
-MARKS = {True: 20, False: 8}  # observed parts at most, of one curve alone and of each of several
+MARKS = {True: 25, False: 10}  # observed parts at most, of one curve alone and of each of several
 FILLED = 2  # bands in one picture that are filled: of more the edges are drawn
 SHADED = 0.14  # how dark they are
 WIDEST_LINE = 96  # characters of a line of the legend
@@ -92,6 +92,9 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
     handles = [_key(each, style.distinct(k)) for k, each in enumerate(drawn)]
     bands = "shades" if len(drawn) <= FILLED else "thin lines"
     marks = f"marks: observed parts; bars and {bands}: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
+    most = max(int(each.observations.group.max()) + 1 for each in drawn)
+    if (every := _every(most, alone=len(drawn) == 1)) > 1:
+        marks += f"; one of {every} intensities is marked"
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in (marks, *_remarks(drawn))]
     figure.legend(
         handles=handles,
@@ -108,8 +111,10 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
 def _remarks(drawn: Sequence[Drawn]) -> list[str]:
     """What to be careful about in a picture, each thing once."""
     unbounded = [each.name for each in drawn if _is_open(each.curve)]
+    steps = [each.name for each in drawn if each.curve.step is not None]
+    step = f"the shade of a step lies between two levels, without a confidence: {', '.join(steps)}" if steps else ""
     open_ = f"no band: the data leave that of {', '.join(unbounded)} open" if unbounded else ""
-    return list(dict.fromkeys(each for each in (*(each.curve.warning for each in drawn), open_) if each))
+    return list(dict.fromkeys(each for each in (step, *(each.curve.warning for each in drawn), open_) if each))
 
 
 def _is_open(curve: Curve) -> bool:
@@ -119,23 +124,31 @@ def _is_open(curve: Curve) -> bool:
 
 def _lines(text: str) -> str:
     """A text in lines that are no wider than a picture."""
-    return "\n".join(wrap(style.plain(text), WIDEST_LINE, subsequent_indent="    "))
+    whole = style.plain(text).replace(" %", "\u00a0%")  # a number and its sign stay together
+    return "\n".join(wrap(whole, WIDEST_LINE, subsequent_indent="    "))
 
 
 def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, alone: bool) -> None:
     """Mark the part that exceeds in each group, at the mean intensity, with its interval; faint beside others."""
-    seen = each.observations.parts(each.curve.confidence, MARKS[alone])
-    axes.vlines(seen.x, seen.low, seen.high, color=look["color"], linewidth=style.CURVE, alpha=1.0 if alone else 0.4)
+    seen = each.observations.parts(each.curve.confidence)
+    some = slice(None, None, _every(seen.x.size, alone=alone))
+    x, part, low, high = (values[some] for values in (seen.x, seen.part, seen.low, seen.high))
+    axes.vlines(x, low, high, color=look["color"], linewidth=style.CURVE, alpha=1.0 if alone else 0.4)
     axes.plot(
-        seen.x, seen.part, linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
+        x, part, linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
         markerfacecolor="white", zorder=4,
     )  # fmt: skip
     if alone:
-        for place, n, m, top in zip(seen.x, seen.exceeding, seen.runs, seen.high, strict=True):
+        for place, n, m, top in zip(x, seen.exceeding[some], seen.runs[some], high, strict=True):
             axes.annotate(
                 f"{n}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center",
-                fontsize=style.SMALL, color=style.INK,
+                fontsize=style.SMALL if x.size <= CROWDED else style.TINY, color=style.INK,
             )  # fmt: skip
+
+
+def _every(groups: int, *, alone: bool) -> int:
+    """Of so many groups in a picture each is marked, or only every second, third, ..."""
+    return -(-groups // MARKS[alone])
 
 
 def _draw_curve(axes: Axes, each: Drawn, look: dict[str, Any], fine: Reals, *, filled: bool) -> None:
@@ -277,8 +290,9 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
             name.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
             name.set_clip_on(True)
         handles.append(Line2D([], [], color=style.INK, label="probability of exceedance"))
-    if every > 1:
-        handles.append(Line2D([], [], linestyle="none", label=f"every {every}th is drawn"))
+    said = [surface.warning] if surface.warning else []
+    said += [f"one of {every} is drawn"] if every > 1 else []
+    handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in said]
     for axis in (axes.xaxis, axes.yaxis):
         _plain_numbers(axis)
     axes.set_xlim(across[0], across[-1])
@@ -286,7 +300,7 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     axes.set_xlabel(labels[0], fontsize=style.LABEL)
     axes.set_ylabel(labels[1], fontsize=style.LABEL)
     style.tidy(axes)
-    columns = 1 if surface.kind == "none" else 2
+    columns = 1 if surface.kind == "none" or said else 2
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=style.TICK, frameon=False)
     return figure
 

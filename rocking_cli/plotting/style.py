@@ -17,7 +17,7 @@ WIDTH = 7.2  # inches: the width of a page of text
 DPI = 150
 LONGEST = 95  # characters of a heading
 INK, FAINT, SHADE, GRID = "#222222", "#9a9a9a", "#eeeeee", "#dddddd"
-TITLE, LABEL, TICK, SMALL = 10, 9, 8, 7  # sizes of type [pt]
+TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
 HAIR, THIN, CURVE, MEDIUM, BOLD = 0.4, 0.6, 0.7, 1.0, 1.6  # weights of line [pt]
 LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 # A structure: bodies apart by darkness too, marks in ink, what is measured in blue, thrust in a dash of its own.

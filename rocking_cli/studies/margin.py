@@ -36,18 +36,20 @@ class Margin:
     uplift : float or None
         The least factor that lifts the structure, exact (its vertical component apart); None if none does.
     factors : ndarray, shape (n,)
-        Ascending.
+        Ascending; 1, the motion itself, is one of them.
     overturned : ndarray, shape (n,)
         The share that overturns next to each; of two polarities that of the worse.
-    itself : float
-        The share next to the motion itself, at a factor of 1.
     """
 
     around: Around
     uplift: float | None
     factors: Reals
     overturned: Reals
-    itself: float
+
+    @property
+    def itself(self) -> float:
+        """The share next to the motion itself, at a factor of 1."""
+        return float(self.overturned[np.searchsorted(self.factors, 1.0)])
 
     def first(self, level: float) -> float | None:
         """The least of the factors next to which this share overturns; None if there is none."""
@@ -89,11 +91,12 @@ def margin(
     around : Around, optional
         How to draw the neighbours of each factor.
     factors : ndarray, shape (n,)
-        On the motion, positive and ascending.
+        On the motion, positive and ascending; 1 is added.
     threads : int, optional
         How many at a time; without it, one for each processor.
     progress : callable, optional
-        Called with the number of histories done since the last call, of n + 1 times neighbours times polarities.
+        Called with the number of histories done since the last call, of factors (with 1) times neighbours times
+        polarities.
 
     Raises
     ------
@@ -107,8 +110,9 @@ def margin(
         raise InputError(Problem("a share needs neighbours: at least 1", field="neighbours"))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
         raise InputError("the factors on a motion must be positive and ascending")
+    factors = np.union1d(factors, 1.0)
     # The same neighbours at every factor: what differs between two factors is the factor.
-    scales, etas = np.multiply.outer([*factors, 1.0], around.factors()), around.etas(model)
+    scales, etas = np.multiply.outer(factors, around.factors()), around.etas(model)
     shares = np.zeros(len(scales))
     for k, sign in enumerate(polarities):
         # What falls each time cannot fall more often; a symmetric structure does the same under the motion reversed.
@@ -121,7 +125,7 @@ def margin(
         shares[left] = np.maximum(shares[left], found.overturned.reshape(scale.shape).mean(axis=1))
     uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
     least = min((each for each in uplifts if each is not None), default=None)
-    return Margin(around, least, factors, shares[:-1], float(shares[-1]))
+    return Margin(around, least, factors, shares)
 
 
 def in_words(found: Margin) -> str:
@@ -133,20 +137,19 @@ def in_words(found: Margin) -> str:
         At least one factor.
     """
     low, high = found.factors[[0, -1]]
-    reached = {level: found.first(level) for level in LEVELS}
-    if reached[LEVELS[0]] is None:
+    reached = [(level, first) for level in LEVELS if (first := found.first(level)) is not None]
+    if not reached:
         return f"At no factor from {low:.2g} to {high:.2g} do {percent(LEVELS[0])} of the motions next to it overturn."
-    parts = [
-        f"{percent(level)} at {f'{factor:.3g}' if factor is not None else f'none up to {high:.2g}'}"
-        for level, factor in reached.items()
-    ]
-    said = f"Of the motions next to each factor {', '.join(parts)} overturn."
-    again = {
-        level: last
-        for level, first in reached.items()
-        if first is not None and (last := found.last_below(level)) is not None and last > first
-    }
-    if again:
-        level, last = max(again.items(), key=lambda each: each[1])
-        said += f" Overturning comes and goes: at {last:.3g} fewer than {percent(level)} do again."
-    return said
+    parts = [f"{percent(level)} {'first ' if not k else ''}at {first:.3g}" for k, (level, first) in enumerate(reached)]
+    parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
+    said = f"Of the motions next to a factor at least {', '.join(parts[:-1])} and {parts[-1]} overturn"
+    if found.factors.size > 2:
+        said += f"; factors are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
+    for level, first in reached:
+        above = found.factors > first
+        least = float(found.overturned[above].min(initial=1.0))
+        if least < level:
+            at = found.factors[above][found.overturned[above].argmin()]
+            again = f"only {percent(least)} do" if least else "none does"
+            return f"{said}. Overturning comes and goes: at {at:.3g} {again} again."
+    return f"{said}."

@@ -97,6 +97,8 @@ class Neighbours:
         do not stay up.
     as_itself : float
         The share that ends as the motion itself does, overturned or not.
+    lifted : bool
+        Whether any of them could lift the structure.
     """
 
     around: Around
@@ -104,6 +106,7 @@ class Neighbours:
     overturned: float
     peak_ratio: tuple[float, float, float]
     as_itself: float
+    lifted: bool = True
 
     @property
     def sensitive(self) -> bool:
@@ -114,6 +117,8 @@ class Neighbours:
         low, middle, high = self.peak_ratio
         near = percent(self.around.amplitude)
         said = f"Of {self.around.count} motions within {near} of this one {_share(self.overturned)}"
+        if not self.lifted:
+            return f"None of {self.around.count} motions within {near} of this one lifts it."
         if np.isinf(low):  # so do nearly all
             return f"{said}."
         if high == 0:
@@ -143,7 +148,7 @@ def neighbours(
     around : Around, optional
         How to draw them.
     release : float, optional
-        Start at rest, tilted by this fraction of the critical rotation.
+        Start at rest, tilted by this fraction of the critical rotation; it is varied as the motion is.
     rtol, threads
         See `respond_many`.
 
@@ -158,12 +163,11 @@ def neighbours(
     if not around.count:
         raise InputError(Problem("must be at least 1", field="neighbours"))
     if release is None and motion is not None and not can_lift(model, motion, 1 + around.amplitude):
-        return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0)
+        return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False)
     factors = np.concatenate([[1.0], around.factors()])
     etas = np.concatenate([[model.eta], around.etas(model)])
-    found = follow(
-        [model], [motion], Runs.of(0, 0, scale=factors, eta=etas), release=release, rtol=rtol, threads=threads
-    )
+    runs, tilts = Runs.of(0, 0, scale=factors, eta=etas), None if release is None else release * factors
+    found = follow([model], [motion], runs, release=tilts, rtol=rtol, threads=threads)
     itself, others = found.overturned[0], found.overturned[1:]
     peaks = np.where(others, np.inf, found.peak_ratio[1:])
     # A value that was reached, never one between two: half of infinity is no rotation.
@@ -208,7 +212,7 @@ def governing(severities: Mapping[str, Severity]) -> str:
 
 
 def follow(
-    models: list[Model], motions: list[GroundMotion | None], runs: Runs, *, release: float | None = None, **how: object
+    models: list[Model], motions: list[GroundMotion | None], runs: Runs, *, release: Reals | None = None, **how: object
 ) -> Responses:
     """`respond_many`, to the final peaks; a motion that cannot be followed is an error."""
     found = respond_many(models, motions, runs, release=release, only_peaks=True, **how)  # type: ignore[arg-type]

@@ -127,15 +127,13 @@ class Observations:
         tenth = np.searchsorted(place, place) * GROUPS // place.size  # one intensity stays together
         return np.unique(tenth, return_inverse=True)[1].astype(np.int64)
 
-    def parts(self, confidence: float, at_most: int = STRIPES) -> Parts:
+    def parts(self, confidence: float) -> Parts:
         """The part of the runs that exceeds, in each group.
 
         Parameters
         ----------
         confidence : float
             Of the intervals.
-        at_most : int
-            How many groups: neighbours are taken together where there are more.
 
         Returns
         -------
@@ -151,7 +149,7 @@ class Observations:
         from scipy.special import ndtri, stdtrit
 
         number = self.counts.number
-        group = self.group // -(-(int(self.group.max()) + 1) // at_most)
+        group = self.group
         runs = np.bincount(group, number)
         exceeding = np.bincount(group, self.exceeding)
         keys, which = np.unique(group * self.records + self.counts.record, return_inverse=True)

@@ -174,5 +174,5 @@ def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> s
         better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < ADDS) else "second"
         said.append(f"a curve over the {better} alone serves")
     falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]
-    said += [f"at a given other measure fewer exceed as the {name} grows" for name in falls]
+    said += [f"at one value of the other measure fewer exceed as the {name} one grows" for name in falls]
     return "; ".join(said)
