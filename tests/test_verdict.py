@@ -318,7 +318,7 @@ def test_every_command_calls_an_outcome_the_same(pulse, word, tmp_path):
     smaller = run("spectrum", block, "--pulse", pulse, "--sizes", "5:6:2").stdout
     texts = {
         "respond": run("respond", block, "--pulse", pulse, "--neighbours", 0).stdout,
-        "animate": run("animate", block, "--pulse", pulse, "--out", tmp_path / "a.html").stdout,
+        "animate": run("animate", block, "--pulse", pulse, "--neighbours", 0, "--out", tmp_path / "a.html").stdout,
         "report": run("report", "--neighbours", 20, block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
         "spectrum": re.findall(r" s: (it .*?\w)\.", smaller)[0],
         "pulse": run("pulse", block, "--ag", amplitude, "--period", period[:-1]).stdout,
