@@ -20,11 +20,11 @@ import numpy as np
 from by_solve_ivp import BySolveIvp
 
 from rocking_cli import GroundMotion, Model, Runs, build_models, load_structure, read_record, respond_many
+from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import kernels as at
 from rocking_cli.dynamics.compiled import compile_kernel
 from rocking_cli.dynamics.deck import Deck, lay_out
 from rocking_cli.dynamics.history import RTOL, follow
-from rocking_cli.registry import Registry
 
 PROJECT = Path(__file__).resolve().parents[1]
 ACCEL = PROJECT / "examples" / "accel.csv"

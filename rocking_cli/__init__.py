@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rocking_cli.core import Mechanism as Mechanism
     from rocking_cli.core import RigidMotion as RigidMotion
     from rocking_cli.core import equivalent_block as equivalent_block
+    from rocking_cli.core.registry import Registry as Registry
     from rocking_cli.dynamics.batch import Responses as Responses
     from rocking_cli.dynamics.batch import Runs as Runs
     from rocking_cli.dynamics.batch import respond_many as respond_many
@@ -50,7 +51,6 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.pulses import Pulse as Pulse
     from rocking_cli.excitation.pulses import parse_pulse as parse_pulse
     from rocking_cli.excitation.records import read_record as read_record
-    from rocking_cli.registry import Registry as Registry
     from rocking_cli.structure import load_structure as load_structure
 
 __version__ = "0.1.0"
@@ -69,7 +69,7 @@ _HOME = {
     "excitation.pulse_fit": ["PulseFit", "fit_pulse"],
     "excitation.pulses": ["Pulse", "parse_pulse"],
     "excitation.records": ["read_record"],
-    "registry": ["Registry"],
+    "core.registry": ["Registry"],
     "structure": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}

@@ -8,11 +8,10 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from rocking_cli.core import Mechanism
-from rocking_cli.field_problems import problems
-from rocking_cli.plugins import did_you_mean
-from rocking_cli.registry import Registry
-from rocking_cli.text import cut, one_line
-from rocking_cli.yaml_file import Document, parse, read_text
+from rocking_cli.core.registry import Registry
+from rocking_cli.io.field_problems import problems
+from rocking_cli.io.yaml_file import Document, parse, read_text
+from rocking_cli.text import cut, did_you_mean, one_line
 
 
 def load_structure(path: str | Path, registry: Registry | None = None) -> Mechanism:

@@ -39,10 +39,10 @@ from rocking_cli.core import (
     polygon,
 )
 from rocking_cli.core.coefficients import coefficients, jump
+from rocking_cli.core.registry import conformance
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.errors import RockingError
-from rocking_cli.plugin_errors import own_traceback
-from rocking_cli.registry import conformance
+from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.studies.picture import picture
 
 Reals = NDArray[np.float64]

@@ -56,3 +56,11 @@ def quoted_line(line: str, column: int | None) -> list[str]:
         before = f"...{before[3 - BEFORE :]}"
     lines = [before + cut(after, AFTER)]
     return lines if column is None else [*lines, " " * len(before) + "^"]
+
+
+def did_you_mean(word: str, known: list[str]) -> str | None:
+    """A hint with the known word nearest to a mistyped one, or the list of all."""
+    from difflib import get_close_matches
+
+    close = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
+    return f"did you mean {close[0]}?" if close else f"known: {', '.join(sorted(known))}" if known else None

@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import COMMANDS, main
-from rocking_cli.registry import Registry
+from rocking_cli.core.registry import Registry
 from rocking_cli.structure import parse_structure
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 

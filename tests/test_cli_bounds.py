@@ -13,8 +13,8 @@ from rocking_cli.cli import motions, respond
 from rocking_cli.cli.main import main
 from rocking_cli.dynamics import history
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.record_csv import write_record_csv
-from rocking_cli.table_csv import write_table_csv
+from rocking_cli.excitation.record_csv import write_record_csv
+from rocking_cli.io.tables import write_csv
 from tests.conftest import EXAMPLES
 
 ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
@@ -136,7 +136,7 @@ def test_the_first_structure_of_equivalent_must_be_there():
 class TestWritten:
     def test_there_is_no_minus_zero_in_a_table(self):
         stream = io.BytesIO()
-        write_table_csv(stream, {"a": [-0.0, 0.0, -1.5]})
+        write_csv(stream, [{"a": [-0.0, 0.0, -1.5]}])
         assert stream.getvalue() == b"a\n0\n0\n-1.5\n"
 
     def test_nor_in_a_record(self):

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from rocking_cli.cli.main import main
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
+from rocking_cli.excitation.record_csv import write_record_csv
 from rocking_cli.excitation.records import read_record
-from rocking_cli.record_csv import write_record_csv
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 

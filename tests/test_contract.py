@@ -26,10 +26,10 @@ from rocking_cli.core import (
     rectangle,
     rotation,
 )
+from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.tables import tabulate
 from rocking_cli.errors import MechanismError, PluginError
-from rocking_cli.plugin_errors import own_traceback
-from rocking_cli.registry import Registry
+from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.testing import CHECKS, MechanismContract, contract
 from tests.conftest import EXAMPLES

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from rocking_cli.errors import InputError, Refused
-from rocking_cli.files import check_writable, keep_apart, read_bytes, write_whole
+from rocking_cli.io.files import check_writable, keep_apart, read_bytes, write_whole
 
 
 def test_a_file_is_written_with_the_usual_rights(tmp_path):

@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 
 from mechanisms.block import Block
-from rocking_cli import history_columns, history_csv
 from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.io import tables
+from rocking_cli.io.tables import write_csv
+from rocking_cli.views.history_table import blocks
 
 BLOCK = Block(width=0.7, height=2.8)
 PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)))
@@ -24,14 +26,17 @@ class Sink(io.RawIOBase):
 
     size = 0
 
+    def writable(self):
+        return True
+
     def write(self, data):
         self.size += len(data)
         return len(data)
 
 
-def rows(histories, motion):
+def rows(histories, motion, **options):
     stream = io.BytesIO()
-    history_csv.write_history_csv(stream, histories, motion)
+    write_csv(stream, blocks(histories, motion, **options))
     return list(csv.reader(io.StringIO(stream.getvalue().decode())))
 
 
@@ -55,7 +60,8 @@ def test_the_columns_are_time_ground_and_three_of_each_model():
 def test_blocks_of_any_size_give_the_same_lines(size, monkeypatch):
     histories = respond(BLOCK, PULSE.scaled(1.5))
     whole = rows(histories, PULSE)
-    monkeypatch.setattr(history_csv, "ROWS", size)
+    assert rows(histories, PULSE, rows=size) == whole
+    monkeypatch.setattr(tables, "ROWS", size)
     assert rows(histories, PULSE) == whole
     assert len(whole) == 1 + max(run.time.size for run in histories.values())
 
@@ -76,8 +82,8 @@ def test_a_long_history_never_stands_in_memory_as_text():
     long = replace(one, time=np.arange(size) * 0.01, **many)
     sink = Sink()
     tracemalloc.start()
-    history_csv.write_history_csv(sink, {"nonlinear": long}, None)
+    write_csv(sink, blocks({"nonlinear": long}, None))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert sink.size > 4_000_000 and peak < 0.75 * sink.size
-    assert next(history_columns.blocks({"nonlinear": long}, None, 10))[0].size == 10
+    assert next(blocks({"nonlinear": long}, None, 10))["t [s]"].size == 10

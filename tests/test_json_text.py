@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rocking_cli.cli import terminal
-from rocking_cli.json_text import json_text
+from rocking_cli.io.json_text import json_text
 from rocking_cli.plotting.moving import as_script
 from tests.conftest import PROJECT
 

@@ -296,7 +296,7 @@ class Incomplete(Pulse):
 
 def install(monkeypatch, *points):
     entries = [EntryPoint(name=name, value=value, group=GROUP) for name, value in points]
-    monkeypatch.setattr("rocking_cli.plugins.entry_points", lambda group: entries)
+    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: entries)
 
 
 class TestPlugins:

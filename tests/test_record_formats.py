@@ -623,8 +623,8 @@ def test_a_file_of_no_format_lists_what_was_tried(write):
 
 def test_a_broken_reader_is_named(monkeypatch):
     point = SimpleNamespace(name="odd", value="elsewhere:odd", dist=None, load=lambda: SimpleNamespace(sniff=len))
-    monkeypatch.setattr("rocking_cli.plugins.entry_points", lambda group: [point] if group == GROUP else [])
-    monkeypatch.setattr("rocking_cli.plugins._LEFT_OUT", set())
+    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: [point] if group == GROUP else [])
+    monkeypatch.setattr("rocking_cli.plugins.installed._LEFT_OUT", set())
     why = r"elsewhere:odd.* is not a record reader: it has no read, TITLE, SIGN"
     with pytest.warns(PluginWarning, match=f"{why}; it is left out"):
         readers = load_readers()

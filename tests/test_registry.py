@@ -13,8 +13,9 @@ import pytest
 
 from mechanisms.block import Block
 from rocking_cli.core import Mechanism
+from rocking_cli.core.registry import GROUP, Registry, conformance
 from rocking_cli.errors import InputError, MechanismError
-from rocking_cli.registry import GROUP, Registry, conformance, load
+from rocking_cli.plugins.installed import load
 from rocking_cli.testing import CHECKS
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -320,7 +321,7 @@ def test_a_plugin_that_cannot_be_imported_says_whose_it_is():
 
 def test_a_plugin_that_is_no_mechanism_says_so():
     with pytest.raises(MechanismError, match="must be a class derived from"):
-        load(entry("json:dumps"))
+        Registry.accept(load(entry("json:dumps")), entry("json:dumps"))
 
 
 def test_a_plugin_that_fails_or_miscounts_is_called_by_its_name():
@@ -366,14 +367,14 @@ def test_a_name_that_differs_from_the_entry_point_is_a_fault():
 
 def test_a_name_claimed_twice_is_an_error_that_names_both(monkeypatch):
     points = [entry("mechanisms.block:Block", "block"), entry("elsewhere:Block", "block")]
-    monkeypatch.setattr("rocking_cli.plugins.entry_points", lambda group: points)
+    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: points)
     with pytest.raises(MechanismError, match=r"mechanisms\.block:Block.*elsewhere:Block"):
         Registry()["block"]
 
 
 def test_the_same_entry_listed_twice_is_one(monkeypatch):
     monkeypatch.setattr(
-        "rocking_cli.plugins.entry_points", lambda group: [entry("mechanisms.block:Block", "block")] * 2
+        "rocking_cli.plugins.installed.entry_points", lambda group: [entry("mechanisms.block:Block", "block")] * 2
     )
     assert Registry()["block"] is Block
 

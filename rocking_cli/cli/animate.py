@@ -103,7 +103,7 @@ def command(
     from rocking_cli.cli import responses, structures
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.dynamics.history import RTOL, TAIL
-    from rocking_cli.files import keep_apart
+    from rocking_cli.io.files import keep_apart
     from rocking_cli.names import percent
     from rocking_cli.studies import neighbours as near
     from rocking_cli.studies.film import Film
@@ -171,7 +171,7 @@ def command(
 
 def _write(out: Path, film: Film, title: str, speed: float | None, fps: float) -> dict[str, float | int | None]:
     """Write the page or the GIF; how fast it shows the motion, and the number of frames of a GIF."""
-    from rocking_cli.files import write_whole
+    from rocking_cli.io.files import write_whole
 
     frames = None
     if out.suffix.lower() == ".html":
@@ -191,7 +191,7 @@ def _write_gif(out: Path, film: Film, title: str, speed: float, fps: float) -> i
     """Write the GIF; its number of frames."""
     import numpy as np
 
-    from rocking_cli.files import write_whole
+    from rocking_cli.io.files import write_whole
     from rocking_cli.plotting.animation import frame_time, write_gif
 
     step = speed * frame_time(fps)

@@ -45,7 +45,7 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
     """
     from rocking_cli.cli import structures
     from rocking_cli.errors import InputError, Problem
-    from rocking_cli.files import check_writable, keep_apart
+    from rocking_cli.io.files import check_writable, keep_apart
 
     if plot is None and not as_json:
         plot = Path(f"{Path(file).stem if file else 'rocking'}.png")

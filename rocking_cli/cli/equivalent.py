@@ -83,10 +83,10 @@ def command(
 
     from rocking_cli.cli import structures, work
     from rocking_cli.excitation.base import STANDARD_GRAVITY
-    from rocking_cli.files import keep_apart, write_whole
+    from rocking_cli.io.files import keep_apart
+    from rocking_cli.io.tables import write_table
     from rocking_cli.studies.equivalent import equivalent, judge
     from rocking_cli.studies.shaken import parse_shape
-    from rocking_cli.table_csv import write_table_csv
 
     keep_apart([("--out", out), ("--plot", plot)], files)
     given = replace(parse_shape(pulse), amplitude=ag * STANDARD_GRAVITY, period=period)
@@ -97,7 +97,7 @@ def command(
     work.say_if_compiling()
     found = equivalent(mechanisms, given, polarity=int(polarity), kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
     if out is not None:
-        write_whole(out, lambda stream: write_table_csv(stream, _columns(found)))
+        write_table(out, [_columns(found)])
         terminal.note(f"wrote {out}")
     title = f"{given.title}, a = {found.a:.4g}, omega = {found.omega:.4g}"
     if plot is not None:

@@ -58,7 +58,7 @@ def command(
     from rocking_cli.cli import structures
     from rocking_cli.core import equivalent_block
     from rocking_cli.errors import RockingError
-    from rocking_cli.files import keep_apart
+    from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.linearisation import compare
     from rocking_cli.studies.trust import errors, trust
 

@@ -107,7 +107,7 @@ def _write(paper: PaperFigure, folder: Path, suffix: str) -> list[Path]:
     import io
 
     from rocking_cli.cli.pictures import save
-    from rocking_cli.files import check_writable, write_whole
+    from rocking_cli.io.files import check_writable, write_whole
     from rocking_cli.plotting.paper_figures import draw_paper_figure
 
     picture, data = (folder / f"figure{paper.number}.{end}" for end in (suffix, "csv"))

@@ -57,7 +57,7 @@ def command(
     from rocking_cli.cli import fragility_results as results
     from rocking_cli.cli import structures
     from rocking_cli.cli.fragility_pictures import ready
-    from rocking_cli.files import check_writable, keep_apart
+    from rocking_cli.io.files import check_writable, keep_apart
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
 

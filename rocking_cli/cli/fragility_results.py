@@ -141,13 +141,10 @@ def _useless(plan: Plan) -> list[str]:
 
 
 def _write(out: Path, store: Store, plan: Plan) -> None:
-    from rocking_cli.files import write_whole
+    from rocking_cli.io.tables import write_table
     from rocking_cli.studies.fragility.table import blocks
-    from rocking_cli.table_csv import write_blocks_csv
-    from rocking_cli.table_parquet import write_blocks_parquet
 
-    write = write_blocks_parquet if out.suffix.lower() == ".parquet" else write_blocks_csv
-    write_whole(out, lambda stream: write(stream, blocks(store, plan)))
+    write_table(out, blocks(store, plan))
     terminal.note(f"wrote {out}")
 
 

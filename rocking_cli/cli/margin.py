@@ -75,7 +75,7 @@ def command(
     from rocking_cli.cli import margin_results as results
     from rocking_cli.cli import shaking, structures
     from rocking_cli.dynamics.model import build_model
-    from rocking_cli.files import keep_apart
+    from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.neighbours import Around
 
     paths, missing = motions.find(records)

@@ -11,7 +11,7 @@ from rocking_cli.errors import InputError, MechanismError
 
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
-    from rocking_cli.registry import Registry
+    from rocking_cli.core.registry import Registry
     from rocking_cli.testing import Verdict
 
 LOADS = "The plugin can be loaded, and is a mechanism."

@@ -38,7 +38,7 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
       rocking mechanisms arch
       rocking mechanisms --check arch
     """
-    from rocking_cli.registry import Registry
+    from rocking_cli.core.registry import Registry
 
     if checked and name is None:
         raise click.UsageError("--check needs the NAME of a mechanism.")

@@ -21,8 +21,8 @@ def command(name: str, as_json: bool) -> None:
     Example:
       rocking new arch > arch.yaml
     """
+    from rocking_cli.core.registry import Registry
     from rocking_cli.errors import RockingError
-    from rocking_cli.registry import Registry
     from rocking_cli.structure import parse_structure
 
     registry = Registry()

@@ -68,7 +68,7 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
     """A callback for an output file: its suffix must be one of these, and its folder must take a file."""
 
     def check(ctx: click.Context, param: click.Parameter, value: str | None) -> Path | None:
-        from rocking_cli.files import check_writable
+        from rocking_cli.io.files import check_writable
 
         if value is None:
             return None

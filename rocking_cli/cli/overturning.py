@@ -99,7 +99,7 @@ def command(
     _check(files, compare, model, dimensionless, given)
     from rocking_cli.cli import overturning_results as results
     from rocking_cli.cli import structures, work
-    from rocking_cli.files import keep_apart
+    from rocking_cli.io.files import keep_apart
     from rocking_cli.studies import overturning as study
     from rocking_cli.studies.shaken import linear_block, parse_shape, shaken
 

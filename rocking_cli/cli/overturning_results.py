@@ -14,10 +14,9 @@ from rocking_cli.cli import terminal
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.core import Mechanism
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.files import write_whole
+from rocking_cli.io.tables import write_table
 from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
 from rocking_cli.studies.shaken import Reals, Shaken
-from rocking_cli.table_csv import write_table_csv
 
 ROWS = 9  # of a table: the curves themselves are in --out and --json
 FROM_KINEMATICS = " (from kinematics, not measured)"
@@ -35,7 +34,7 @@ def give_map(
 ) -> None:
     """Write a map to the files asked for, and print it."""
     if out is not None:
-        write_whole(out, lambda stream: write_table_csv(stream, _map_columns(found, mechanism)))
+        write_table(out, [_map_columns(found, mechanism)])
         terminal.note(f"wrote {out}")
     if plot is not None:
         from rocking_cli.plotting.overturning import draw_map
@@ -156,7 +155,7 @@ def give_comparison(
 ) -> None:
     """Write curves to the files asked for, and print them."""
     if out is not None:
-        write_whole(out, lambda stream: write_table_csv(stream, _comparison_columns(found)))
+        write_table(out, [_comparison_columns(found)])
         terminal.note(f"wrote {out}")
     title = f"{_pulse(found)}, {found.structures[0].model.name}"
     if plot is not None:

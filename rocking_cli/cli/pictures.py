@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def save(path: Path, figure: Figure) -> None:
     """Write a figure whole or not at all, in the format of the path's suffix."""
-    from rocking_cli.files import write_whole
+    from rocking_cli.io.files import write_whole
     from rocking_cli.plotting import style
 
     write_whole(path, lambda stream: style.save(figure, stream, format=path.suffix[1:].lower()))

@@ -95,7 +95,7 @@ def command(
     if plot is not None and (len(files) > 1 or polarity == "both"):
         raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
     from rocking_cli.excitation.records.opening import name_of
-    from rocking_cli.files import keep_apart
+    from rocking_cli.io.files import keep_apart
 
     signs = POLARITIES[polarity]
     clean = _clean_paths(files, channel, signs) if to else {}
@@ -152,7 +152,7 @@ def _clean_paths(files: Sequence[str], channel: str | None, signs: Sequence[int]
 
 def _spare_others(paths: Iterable[Path]) -> None:
     """Refuse to replace a file that is no clean record: its name was not given, so nobody meant it."""
-    from rocking_cli.record_csv import is_record_csv
+    from rocking_cli.excitation.record_csv import is_record_csv
 
     for path in paths:
         if path.exists() and not is_record_csv(path):
@@ -195,8 +195,8 @@ def _examine(
 
 
 def _write(path: Path, motion: GroundMotion) -> None:
-    from rocking_cli.files import write_whole
-    from rocking_cli.record_csv import write_record_csv
+    from rocking_cli.excitation.record_csv import write_record_csv
+    from rocking_cli.io.files import write_whole
 
     write_whole(path, lambda stream: write_record_csv(stream, motion))
     terminal.note(f"wrote {path.resolve()}")

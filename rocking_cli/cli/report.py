@@ -80,7 +80,7 @@ def command(
         )
     from rocking_cli.cli import structures
     from rocking_cli.cli.work import say_if_compiling
-    from rocking_cli.files import check_writable, keep_apart, write_whole
+    from rocking_cli.io.files import check_writable, keep_apart, write_whole
     from rocking_cli.report.content import gather, steps
     from rocking_cli.studies.neighbours import Around
 

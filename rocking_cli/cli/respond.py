@@ -192,15 +192,13 @@ def command(
     from rocking_cli.cli import structures
     from rocking_cli.cli.answers import Question, answer
     from rocking_cli.cli.work import say_if_compiling
-    from rocking_cli.files import keep_apart
+    from rocking_cli.io.files import keep_apart
+    from rocking_cli.io.tables import check_table
     from rocking_cli.studies.neighbours import Around
 
     inputs = [*files, *(str(path) for path in paths), vertical]
     keep_apart([("--out", out), ("--plot", plot)], inputs)
-    if out is not None and out.suffix.lower() == ".parquet":
-        from rocking_cli.history_parquet import check_parquet
-
-        check_parquet(out)
+    check_table(out)
     file, mechanism = shaking.structure(files, records)
     equivalence = shaking.equivalence(mechanism)
     given: Sequence[motions.Scaled | None] = [None]  # a free release

@@ -16,7 +16,6 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.files import write_whole
 from rocking_cli.names import percent
 from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
 
@@ -28,14 +27,13 @@ def write(found: Answer, out: Path | None, plot: Path | None, title: str) -> Non
     """
     first, *others = found.runs.values()
     if out is not None:
-        from rocking_cli.history_csv import write_history_csv
-        from rocking_cli.history_parquet import write_history_parquet
+        from rocking_cli.io.tables import write_table
+        from rocking_cli.views import history_table
 
         columns: dict[str, History] = dict(first.items())
         columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
         columns |= {f"pulse {name}": run for name, run in (found.to_pulse or {}).items()}
-        table = write_history_parquet if out.suffix.lower() == ".parquet" else write_history_csv
-        write_whole(out, lambda stream: table(stream, columns, found.first))
+        write_table(out, history_table.blocks(columns, found.first))
         terminal.note(f"wrote {out}")
     if plot is not None:
         from rocking_cli.plotting.history import draw_history

@@ -32,14 +32,12 @@ def command(ctx: click.Context, file: str, out: Path | None, pictures: str | Non
     """
     from rocking_cli.cli import fragility_results as results
     from rocking_cli.cli.fragility_pictures import ready
-    from rocking_cli.files import keep_apart
+    from rocking_cli.io.files import keep_apart
+    from rocking_cli.io.tables import check_table
     from rocking_cli.studies.fragility.store import Store
 
     keep_apart([("--out", out)], [file])
-    if out is not None and out.suffix.lower() == ".parquet":
-        from rocking_cli.history_parquet import check_parquet
-
-        check_parquet(out)
+    check_table(out)
     folder = ready(pictures)
     with Store.reading(Path(file)) as store:
         for each in store.doubts():

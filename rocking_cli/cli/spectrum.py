@@ -147,7 +147,7 @@ def command(
     motions.check_scaling(scale, target_pga, target_pgv)
     from rocking_cli.cli import spectrum_results as results
     from rocking_cli.cli import work
-    from rocking_cli.files import keep_apart
+    from rocking_cli.io.files import keep_apart
     from rocking_cli.studies import spectrum as study
 
     paths, missing = motions.find(records)

@@ -14,11 +14,10 @@ from rocking_cli.cli import terminal
 from rocking_cli.cli.motions import Scaled
 from rocking_cli.cli.overturning_results import FROM_KINEMATICS, numbers
 from rocking_cli.cli.pictures import write_picture
-from rocking_cli.files import write_whole
+from rocking_cli.io.tables import write_table
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
 from rocking_cli.studies.shaken import Integers, Reals
 from rocking_cli.studies.spectrum import Spectrum
-from rocking_cli.table_csv import write_table_csv
 
 ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
 LISTED = 3  # histories that could not be followed
@@ -66,7 +65,7 @@ def report_lost(spectra: Sequence[Spectrum], motions: Sequence[Scaled]) -> int:
 def give(results: Results, out: Path | None, plot: Path | None, *, as_json: bool) -> None:
     """Write spectra to the files asked for, and print them."""
     if out is not None:
-        write_whole(out, lambda stream: write_table_csv(stream, _columns(results)))
+        write_table(out, [_columns(results)])
         terminal.note(f"wrote {out}")
     if plot is not None:
         from rocking_cli.plotting.spectrum import draw_spectra

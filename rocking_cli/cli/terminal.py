@@ -14,7 +14,7 @@ from typing import Any, Protocol, TextIO
 
 import click
 
-from rocking_cli.json_text import json_text
+from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
 ABSENT = "-"
@@ -67,7 +67,7 @@ def error(text: str) -> None:
 
 def plugin_traceback(error: BaseException | None) -> None:
     """The traceback of what a plugin itself raised, for who develops it: if ROCKING_DEBUG is set to 1."""
-    from rocking_cli.plugin_errors import own_traceback
+    from rocking_cli.plugins.errors import own_traceback
 
     if os.environ.get("ROCKING_DEBUG") == "1" and (told := own_traceback(error)):
         note(told)

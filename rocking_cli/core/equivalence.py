@@ -11,7 +11,7 @@ from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.errors import MechanismError, PluginError, RockingError
-from rocking_cli.plugin_errors import plugin_error
+from rocking_cli.plugins.errors import plugin_error
 
 STEPS = 128  # to the critical rotation, between which a mechanism is held to move without jumps
 AGREEMENT = 1e-9  # relative difference below which the two directions count as the same

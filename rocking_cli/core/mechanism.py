@@ -18,7 +18,7 @@ from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Sketch
-from rocking_cli.plugin_errors import blame, guard
+from rocking_cli.plugins.errors import blame, guard
 from rocking_cli.text import cut, is_one_line
 from rocking_cli.units import UnitError, read, split
 

@@ -13,7 +13,7 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
-from rocking_cli.json_text import json_text
+from rocking_cli.io.json_text import json_text
 from rocking_cli.plotting.structure import colour
 from rocking_cli.plotting.thinning import BINS, visible
 from rocking_cli.studies.film import Film

@@ -12,6 +12,7 @@ from math import pi
 import numpy as np
 
 from rocking_cli.core import Equivalence, Mechanism, equivalent_block
+from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import History, respond
 from rocking_cli.dynamics.model import MODELS, ModelName, build_model
 from rocking_cli.dynamics.verdict import governs
@@ -21,7 +22,6 @@ from rocking_cli.excitation.doubts import Doubt, coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
 from rocking_cli.excitation.pulses import Pulse
-from rocking_cli.registry import Registry
 from rocking_cli.studies.linearisation import Linearisation, compare
 from rocking_cli.studies.margin import Margin, margin
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism, equivalent_block
+from rocking_cli.core.registry import Registry
 from rocking_cli.errors import MechanismError
-from rocking_cli.registry import Registry
 from rocking_cli.studies.linearisation import linearisation
 
 Reals = NDArray[np.float64]

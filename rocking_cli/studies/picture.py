@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Outline, RigidMotion, Sketch, disc
 from rocking_cli.core.size import extent
 from rocking_cli.errors import MechanismError, RockingError
-from rocking_cli.plugin_errors import plugin_error
+from rocking_cli.plugins.errors import plugin_error
 
 Reals = NDArray[np.float64]
 Points = NDArray[np.complex128]

@@ -9,11 +9,11 @@ from math import cos, inf, isclose, pi, sin
 import numpy as np
 
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.registry import Registry
 from rocking_cli.studies.shaken import Integers, Progress, Reals, Shaken, parse_shape, shaken, uplift
 from rocking_cli.studies.sizes import Sizes
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
 from dataclasses import fields
+from importlib.metadata import EntryPoint
 
-from rocking_cli import plugins
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses.base import COARSE, Pulse, Segment
 from rocking_cli.excitation.records.units import UNITS
-from rocking_cli.plugins import did_you_mean
+from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.registry import Plugins
 
 __all__ = ["COARSE", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 
@@ -20,7 +20,7 @@ _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+
 _TIMES = {"s": 1.0, "ms": 1e-3}
 
 
-class PulseShapes(Mapping[str, type[Pulse]]):
+class PulseShapes(Plugins[type[Pulse]]):
     """Pulse shapes by name. Listing names loads nothing; looking one up loads it.
 
     Raises
@@ -31,31 +31,19 @@ class PulseShapes(Mapping[str, type[Pulse]]):
         On looking up a plugin that cannot be loaded, is no pulse shape, or has a name that two packages claim.
     """
 
+    kind = "pulse"
+
     def __init__(self) -> None:
-        self._points = plugins.find(GROUP)
+        super().__init__(GROUP)
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(sorted(self._points))
-
-    def __len__(self) -> int:
-        return len(self._points)
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._points
-
-    def __getitem__(self, name: str) -> type[Pulse]:
-        if name not in self._points:
-            hint = did_you_mean(name, list(self._points))
-            raise InputError(f"unknown pulse: {name}" + (f" ({hint})" if hint else ""))
-        point = plugins.only("pulse", name, self._points[name])
-        shape = plugins.load(point)
-        if not (isinstance(shape, type) and issubclass(shape, Pulse)) or shape.__abstractmethods__:
-            raise MechanismError(
-                f"{plugins.origin(point)} is no pulse shape: it must derive from Pulse and be complete"
-            )
-        if getattr(shape, "name", None) != name or not isinstance(getattr(shape, "title", None), str):
-            raise MechanismError(f"{plugins.origin(point)} is no pulse shape: it needs name = {name!r} and a title")
-        return shape
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> type[Pulse]:
+        """What was loaded, if it is a complete shape of its name."""
+        if not (isinstance(loaded, type) and issubclass(loaded, Pulse)) or loaded.__abstractmethods__:
+            raise MechanismError(f"{origin(point)} is no pulse shape: it must derive from Pulse and be complete")
+        if getattr(loaded, "name", None) != point.name or not isinstance(getattr(loaded, "title", None), str):
+            raise MechanismError(f"{origin(point)} is no pulse shape: it needs name = {point.name!r} and a title")
+        return loaded
 
 
 def parse_pulse(text: str) -> Pulse:

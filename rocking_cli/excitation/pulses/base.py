@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.plugin_errors import guard
+from rocking_cli.plugins.errors import guard
 
 Reals = NDArray[np.float64]
 FINE = 4000  # samples to a period of a history alone: its peak is right to 1e-6 of itself from 1.01 times uplift on

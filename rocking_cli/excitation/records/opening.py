@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.files import read_at_most, read_bytes
+from rocking_cli.io.files import read_at_most, read_bytes
 
 STANDARD_INPUT = "-"
 LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB

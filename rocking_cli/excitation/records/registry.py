@@ -10,10 +10,11 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint
 from typing import Any, Protocol, cast
 
-from rocking_cli import plugins
 from rocking_cli.errors import InputError, MechanismError, PluginError, Problem, RockingError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.plugin_errors import blame
+from rocking_cli.plugins.errors import blame
+from rocking_cli.plugins.installed import leave_out, origin
+from rocking_cli.plugins.registry import Plugins
 
 GROUP = "rocking.records"
 FALLBACK = "text"
@@ -73,23 +74,26 @@ def load_readers(group: str = GROUP) -> dict[str, Reader]:
     PluginWarning
         Of each that is left out, once in a process.
     """
-    readers: dict[str, Reader] = {}
-    for name, points in sorted(plugins.find(group).items()):
+    installed, readers = _Readers(group), dict[str, Reader]()
+    for name in installed:
         try:
-            readers[name] = _load(plugins.only("record reader", name, points))
+            readers[name] = installed[name]
         except MechanismError as error:
-            plugins.leave_out(error)
+            leave_out(error)
             readers[name] = _Broken(error)
     return readers
 
 
-def _load(point: EntryPoint) -> Reader:
-    reader = plugins.load(point)
-    missing = [word for word in ("sniff", "read") if not callable(getattr(reader, word, None))]
-    missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(reader, word, None), str)]
-    if missing:
-        raise MechanismError(f"{plugins.origin(point)} is not a record reader: it has no {', '.join(missing)}")
-    return _Guarded(cast("Reader", reader), point)
+class _Readers(Plugins[Reader]):
+    kind = "record reader"
+
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> Reader:
+        missing = [word for word in ("sniff", "read") if not callable(getattr(loaded, word, None))]
+        missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(loaded, word, None), str)]
+        if missing:
+            raise MechanismError(f"{origin(point)} is not a record reader: it has no {', '.join(missing)}")
+        return _Guarded(cast("Reader", loaded), point)
 
 
 class ReaderError(InputError, PluginError):
@@ -124,20 +128,20 @@ class _Guarded:
 
     def sniff(self, content: Any, /) -> bool:
         """What the reader says; one that fails claims nothing."""
-        what = f"{plugins.origin(self._point)} failed to say whether a file is of its format"
+        what = f"{origin(self._point)} failed to say whether a file is of its format"
         try:
             with blame(what, self._module):
                 return bool(self._reader.sniff(content))
         except RockingError as error:  # it may not raise these either
             broken = error if isinstance(error, PluginError) else PluginError(f"{what}: {error}")
-            plugins.leave_out(broken)
+            leave_out(broken)
             self.TITLE, self.SIGN = _Broken.TITLE, str(broken)
             return False
 
     def read(self, content: Any, file: str, /, **options: Any) -> GroundMotion:
         """What the reader reads; anything but a motion is an error of the reader."""
         try:
-            with blame(f"{plugins.origin(self._point)} failed to read it", self._module):
+            with blame(f"{origin(self._point)} failed to read it", self._module):
                 motion = self._reader.read(content, file, **options)
                 if not isinstance(motion, GroundMotion):
                     raise TypeError(f"read gave a {type(motion).__name__}, not a GroundMotion")

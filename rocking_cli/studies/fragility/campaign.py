@@ -11,9 +11,9 @@ from typing import Any
 
 from rocking_cli import __version__
 from rocking_cli.core import equivalent_block
+from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.registry import Registry
 from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
 from rocking_cli.studies.fragility.sources import Motions

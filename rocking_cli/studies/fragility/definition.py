@@ -12,14 +12,14 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, Validati
 
 from rocking_cli.core.mechanism import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.field_problems import place_of, problems
+from rocking_cli.io.field_problems import place_of, problems
+from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.studies.fragility.distributions import Distribution, Positive
 from rocking_cli.studies.fragility.hazard import wrong_points
 from rocking_cli.studies.fragility.intensity import MEASURES, PGA
 from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.fragility.together import Part, Sound, between_fields
 from rocking_cli.studies.fragility.varied import in_units_of_fields
-from rocking_cli.yaml_file import Document, Place, parse, read_text
 
 UPLIFT, OVERTURNING = "uplift", "overturning"
 SCALE = "scale"

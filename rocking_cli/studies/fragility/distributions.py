@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from rocking_cli.io.yaml_file import Place
 from rocking_cli.studies.fragility.together import Part, Sound
-from rocking_cli.yaml_file import Place
 
 Reals = NDArray[np.float64]
 Positive = Annotated[float, Field(gt=0)]

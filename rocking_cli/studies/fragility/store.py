@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.json_text import json_text
+from rocking_cli.io.json_text import json_text
 from rocking_cli.studies.fragility.definition import Definition
 from rocking_cli.studies.fragility.plan import Plan, Trial
 from rocking_cli.studies.fragility.sources import Record

@@ -16,9 +16,9 @@ from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.selection import select
-from rocking_cli.field_problems import say
-from rocking_cli.json_text import json_text
-from rocking_cli.plugins import did_you_mean
+from rocking_cli.io.field_problems import say
+from rocking_cli.io.json_text import json_text
+from rocking_cli.io.yaml_file import Document, Place
 from rocking_cli.structure import load_structure
 from rocking_cli.studies.fragility.definition import (
     Definition,
@@ -33,8 +33,7 @@ from rocking_cli.studies.fragility.definition import (
 from rocking_cli.studies.fragility.distributions import Distribution, draw
 from rocking_cli.studies.fragility.hazard import HazardCurve, read_hazard
 from rocking_cli.studies.fragility.sources import Source
-from rocking_cli.text import one_line
-from rocking_cli.yaml_file import Document, Place
+from rocking_cli.text import did_you_mean, one_line
 
 RESTITUTION = "restitution"
 

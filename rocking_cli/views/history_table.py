@@ -1,4 +1,4 @@
-"""Histories as the columns of a table, a block of rows at a time: a long one never stands in memory twice."""
+"""Histories as a table, a block of rows at a time: a long one never stands in memory twice."""
 
 from __future__ import annotations
 
@@ -11,17 +11,20 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 
 Reals = NDArray[np.float64]
+ROWS = 25_000  # of a block
 
 
-def names(histories: Mapping[str, History], motion: GroundMotion | None) -> list[str]:
-    """Names of the columns, with units: time, ground acceleration, and for each history rotation, rate and ratio."""
+def _names(histories: Mapping[str, History], motion: GroundMotion | None) -> list[str]:
+    """Time, ground acceleration, and for each history rotation, rate and ratio, with units."""
     vertical = ["v_g [g]"] if motion is not None and motion.vertical is not None else []
     each = [f"{name} {what}" for name in histories for what in ("phi [rad]", "phi_dot [rad/s]", "phi/phi_cr")]
     return ["t [s]", "a_g [g]", *vertical, *each]
 
 
-def blocks(histories: Mapping[str, History], motion: GroundMotion | None, rows: int) -> Iterator[list[Reals]]:
-    """The columns of `names`, in blocks.
+def blocks(
+    histories: Mapping[str, History], motion: GroundMotion | None, rows: int = ROWS
+) -> Iterator[dict[str, Reals]]:  # fmt: skip
+    """Columns by their headings, a block of samples at a time.
 
     Parameters
     ----------
@@ -34,9 +37,10 @@ def blocks(histories: Mapping[str, History], motion: GroundMotion | None, rows: 
 
     Yields
     ------
-    list of ndarray
+    dict of str to ndarray
         NaN after overturning.
     """
+    names = _names(histories, motion)
     runs = list(histories.values())
     longest = max(runs, key=lambda run: run.time.size)
     shaken = motion.kept.acceleration if motion is not None else np.zeros(0)
@@ -49,7 +53,7 @@ def blocks(histories: Mapping[str, History], motion: GroundMotion | None, rows: 
             # A motion that has come to rest before the longest one stays there.
             after = np.nan if run.overturned else 0.0
             columns += [_padded(values, part, after) for values in (run.phi, run.rate, run.ratio)]
-        yield columns
+        yield dict(zip(names, columns, strict=True))
 
 
 def _at(time: Reals, motion: GroundMotion) -> Reals:

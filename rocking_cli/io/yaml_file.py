@@ -12,7 +12,7 @@ import yaml
 from yaml.reader import ReaderError
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.files import read_bytes
+from rocking_cli.io.files import read_bytes
 from rocking_cli.text import cut, printable
 
 LARGEST = 1_000_000  # bytes; a structure takes a few hundred, a study a few thousand

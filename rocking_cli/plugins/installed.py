@@ -1,13 +1,12 @@
-"""Entry points of an installed package: found by group, loaded when asked for, named by whose they are."""
+"""Plugins of installed packages by their entry points: found by group, loaded, named by whose they are."""
 
 from __future__ import annotations
 
 import warnings
-from difflib import get_close_matches
 from importlib.metadata import EntryPoint, entry_points
 
 from rocking_cli.errors import MechanismError, PluginWarning
-from rocking_cli.plugin_errors import blame
+from rocking_cli.plugins.errors import blame
 
 
 def find(group: str) -> dict[str, list[EntryPoint]]:
@@ -56,9 +55,3 @@ def leave_out(error: MechanismError) -> None:
         warning = PluginWarning(f"{error}; it is left out")
         warning.__cause__ = error
         warnings.warn(warning, stacklevel=2)
-
-
-def did_you_mean(word: str, known: list[str]) -> str | None:
-    """A hint with the known word nearest to a mistyped one, or the list of all."""
-    close = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
-    return f"did you mean {close[0]}?" if close else f"known: {', '.join(sorted(known))}" if known else None

@@ -10,9 +10,8 @@ from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
 from rocking_cli.errors import Problem
-from rocking_cli.plugins import did_you_mean
-from rocking_cli.text import cut
-from rocking_cli.yaml_file import Document, Place, spell
+from rocking_cli.io.yaml_file import Document, Place, spell
+from rocking_cli.text import cut, did_you_mean
 
 
 def problems(

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from importlib.metadata import EntryPoint
 from typing import cast
 
-from rocking_cli import plugins
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError
-from rocking_cli.plugins import did_you_mean
+from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.registry import Plugins
 
 GROUP = "rocking.mechanisms"
 
@@ -20,7 +19,7 @@ class UnknownMechanismError(InputError, KeyError):
     __str__ = InputError.__str__  # a KeyError would show its message in quotes
 
 
-class Registry(Mapping[str, type[Mechanism]]):
+class Registry(Plugins[type[Mechanism]]):
     """Mechanism classes by name. Listing names loads nothing; looking one up loads and checks it.
 
     Parameters
@@ -36,37 +35,18 @@ class Registry(Mapping[str, type[Mechanism]]):
         On looking up a plugin that cannot be loaded, breaks the contract, or has a name that two packages claim.
     """
 
+    kind = "mechanism"
+    unknown = UnknownMechanismError
+
     def __init__(self, group: str = GROUP) -> None:
-        self._points = plugins.find(group)
+        super().__init__(group)
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(sorted(self._points))
-
-    def __len__(self) -> int:
-        return len(self._points)
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._points
-
-    def __getitem__(self, name: str) -> type[Mechanism]:
-        points = self._points.get(name)
-        if points is None:
-            hint = did_you_mean(name, list(self._points))
-            raise UnknownMechanismError(f"unknown mechanism: {name}" + (f" ({hint})" if hint else ""))
-        return load(plugins.only("mechanism", name, points))
-
-    def package_of(self, name: str) -> str:
-        """Distribution and version that a mechanism comes from."""
-        return ", ".join(plugins.package(point) for point in self._points[name])
-
-
-def load(point: EntryPoint) -> type[Mechanism]:
-    """Load a plugin and hold it to the contract of `Mechanism`, naming everything that is missing."""
-    plugin = plugins.load(point)
-    faults = conformance(plugin, point.name)
-    if faults:
-        raise MechanismError(f"{plugins.origin(point)} is not a mechanism: " + "; ".join(faults))
-    return cast("type[Mechanism]", plugin)
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> type[Mechanism]:
+        """What was loaded, held to the contract of `Mechanism`."""
+        if faults := conformance(loaded, point.name):
+            raise MechanismError(f"{origin(point)} is not a mechanism: " + "; ".join(faults))
+        return cast("type[Mechanism]", loaded)
 
 
 def conformance(plugin: object, name: str) -> list[str]:

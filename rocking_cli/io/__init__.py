@@ -1,0 +1,1 @@
+"""Files and their content: text, YAML, JSON and tables."""

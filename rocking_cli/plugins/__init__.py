@@ -1,0 +1,1 @@
+"""What other packages add: mechanisms, record readers and pulse shapes."""
