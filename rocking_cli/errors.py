@@ -79,32 +79,37 @@ class InputError(RockingError):
         super().__init__("\n".join(str(p) for p in self.problems))
 
 
-def renamed(error: InputError, options: Mapping[str, str]) -> InputError:
-    """The same problems, with the names that options have where the user gave them.
+def renamed(error: InputError, arguments: Mapping[str, str]) -> InputError:
+    """The same problems, with other names for the arguments of a function, which stand in backticks: `dt`.
 
     Parameters
     ----------
     error : InputError
-        What a reader says, which knows an option by one name only.
-    options : mapping of str to str
-        That name, such as `--dt`, and the one it has here.
+        What a function says of its arguments.
+    arguments : mapping of str to str
+        The name it knows an argument by, and the one it has for the caller.
 
     Returns
     -------
     InputError
         A new one.
     """
-    pattern = re.compile("|".join(rf"{re.escape(name)}(?![\w-])" for name in options))
-
-    def change(text: str | None) -> str | None:
-        return text and pattern.sub(lambda match: options[match[0]], text)
-
     return InputError(
         *(
-            replace(each, message=change(each.message) or "", field=change(each.field), hint=change(each.hint))
+            replace(
+                each,
+                message=with_arguments(each.message, arguments),
+                field=each.field and with_arguments(each.field, arguments),
+                hint=each.hint and with_arguments(each.hint, arguments),
+            )
             for each in error.problems
         )
     )
+
+
+def with_arguments(text: str, arguments: Mapping[str, str]) -> str:
+    """A text in which arguments stand in backticks, with other names for some of them."""
+    return re.sub(r"`(\w+)`", lambda match: f"`{arguments.get(match[1], match[1])}`", text)
 
 
 class Refused(RockingError):

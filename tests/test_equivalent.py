@@ -110,7 +110,7 @@ class TestRestitution:
 
     def test_one_that_cannot_be_used_is_refused(self):
         stocky = Block(width=4.0, height=2.0)
-        with pytest.raises(InputError, match="--eta"):
+        with pytest.raises(InputError, match="`eta`"):
             equivalent([stocky, SMALL], parse_pulse("sine:3g:0.5s"))
         equivalent([stocky, SMALL], parse_pulse("sine:3g:0.5s"), eta=0.7)
         with pytest.raises(InputError, match="eta must be in"):

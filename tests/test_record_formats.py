@@ -292,7 +292,7 @@ def test_a_made_file_is_claimed_by_its_reader_alone(name):
 @BY_FORMAT
 def test_the_unit_of_the_file_may_not_be_contradicted(name, write):
     path = write(MADE[name][0]())
-    assert "but --units says m/s2" in problem(path, units="m/s2").message
+    assert "but `units` says m/s2" in problem(path, units="m/s2").message
     assert "unknown unit" in problem(path, units="ft/s2").message
 
 
@@ -301,7 +301,7 @@ def test_the_interval_of_the_file_may_not_be_contradicted(name, write):
     make, _, _, dt = MADE[name]
     path = write(make())
     assert read_record(path, dt=dt).dt == pytest.approx(dt)
-    assert f"--dt says {2 * dt:g} s" in problem(path, dt=2 * dt).message
+    assert f"`dt` says {2 * dt:g} s" in problem(path, dt=2 * dt).message
 
 
 @BY_FORMAT
@@ -344,7 +344,7 @@ def test_a_spoilt_value_is_pointed_at(name, write):
 
 
 def test_simcenter_errors(write):
-    assert "--units" in problem(write(simcenter(info=None))).hint
+    assert "`units`" in problem(write(simcenter(info=None))).hint
     assert read_record(write(simcenter(info=None)), units="m/s2").acceleration[1] == 1.5
     assert "dT is missing" in problem(write(simcenter(dT=None))).message
     for wrong in (0, -1, "0.01", True):
@@ -392,7 +392,7 @@ def test_what_is_no_acceleration_is_refused(content, fragment, write):
 def test_a_missing_unit_is_not_guessed(content, write):
     path = write(content)
     hint = problem(path, channel="1").hint
-    assert "--units" in hint
+    assert "`units`" in hint
     assert read_record(path, channel="1", units="mm/s2").acceleration[1] == pytest.approx(0.0015)
 
 
@@ -412,7 +412,7 @@ def test_channels(make, write):
     for unknown in ("0", "9", "N", ""):
         found = problem(path, channel=unknown)
         assert f"no channel '{unknown}'" in found.message
-        assert found.field == "--channel"
+        assert found.field == "`channel`"
         assert "11 points" in found.hint
 
 

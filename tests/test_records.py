@@ -267,7 +267,7 @@ def test_the_unit_is_never_guessed(write, header):
     path = write(f"{header}0.0,1\n0.5,2\n")
     found = problem(path)
     assert "does not say what unit" in found.message
-    assert "--units" in found.hint
+    assert "`units`" in found.hint
     assert "g, m/s2, cm/s2, mm/s2, gal, mg, %g" in found.hint
     assert read_record(path, units="cm/s2").acceleration[0] == 0.01
 
@@ -286,7 +286,7 @@ def test_an_unknown_unit_is_quoted(write, header, line, quoted):
     path = write(f"{header}0.0,1\n0.5,2\n")
     found = problem(path)
     assert f"the header says '{quoted}', which is no unit" in found.message
-    assert "--units" in found.hint
+    assert "`units`" in found.hint
     assert found.line == line
     assert read_record(path, units="g").unit == "g"
 
@@ -294,7 +294,7 @@ def test_an_unknown_unit_is_quoted(write, header, line, quoted):
 def test_unknown_unit_of_the_user(write):
     (found,) = problems(write("0,1\n0.5,2\n"), units="ft/s2")
     assert "unknown unit 'ft/s2'" in found.message
-    assert found.field == "--units"
+    assert found.field == "`units`"
     assert "g, m/s2, cm/s2, mm/s2, gal" in found.hint
 
 
@@ -305,7 +305,7 @@ def test_a_unit_of_the_user_may_be_spelled_otherwise(write):
 @pytest.mark.parametrize(("header", "units"), [("accel_g", "m/s2"), ("a [m/s2]", "g"), ("a [cm/s2]", "mm/s2")])
 def test_header_and_user_may_not_differ(write, header, units):
     found = problem(write(f"# made up\nt,{header}\n0,1\n0.5,2\n"), units=units)
-    assert f"but --units says {units}" in found.message
+    assert f"but `units` says {units}" in found.message
     assert found.line == 2
 
 
@@ -320,9 +320,9 @@ def test_two_units_in_a_header_are_not_guessed_between(write):
     assert "more than one unit" in found.message
     assert "m/s2" in found.message
     assert found.line == 2
-    assert "--units" in found.hint
+    assert "`units`" in found.hint
     assert read_record(path, units="g").unit == "g"
-    assert "--units says cm/s2" in problem(path, units="cm/s2").message
+    assert "`units` says cm/s2" in problem(path, units="cm/s2").message
 
 
 @pytest.mark.parametrize(
@@ -368,13 +368,13 @@ def test_a_unit_in_brackets_outweighs_a_name():
 def test_one_column_needs_an_interval(write):
     found = problem(write("accel_g\n1\n2\n"))
     assert "no sample interval" in found.message
-    assert "--dt" in found.hint
+    assert "`dt`" in found.hint
 
 
 def test_everything_missing_is_said_at_once(write):
     unit, interval = problems(write("1\n2\n"))
-    assert "--units" in unit.hint
-    assert "--dt" in interval.hint
+    assert "`units`" in unit.hint
+    assert "`dt`" in interval.hint
 
 
 @pytest.mark.parametrize("dt", [0.0, -0.01, float("nan"), float("inf")])
@@ -382,7 +382,7 @@ def test_everything_missing_is_said_at_once(write):
 def test_the_interval_must_be_positive_and_finite(write, content, dt):
     (found,) = problems(write(content), dt=dt)
     assert "positive" in found.message
-    assert found.field == "--dt"
+    assert found.field == "`dt`"
 
 
 def test_an_interval_that_is_given_must_agree_with_the_times(write):
@@ -390,7 +390,7 @@ def test_an_interval_that_is_given_must_agree_with_the_times(write):
     assert read_record(path, dt=0.01).dt == pytest.approx(0.01)
     found = problem(path, dt=0.02)
     assert "0.01 s" in found.message
-    assert "--dt says 0.02 s" in found.message
+    assert "`dt` says 0.02 s" in found.message
 
 
 def times(write, *printed: str) -> Path:
@@ -706,10 +706,10 @@ def test_unit_of_peer(write, line, unit):
 
 def test_unit_missing_or_contradicted_in_peer(write):
     path = write(at2(VALUES, units="\n"))
-    assert "--units" in problem(path).hint
+    assert "`units`" in problem(path).hint
     assert read_record(path, units="gal").unit == "gal"
     found = problem(write(at2(VALUES)), units="m/s2")
-    assert "the unit is g, but --units says m/s2" in found.message
+    assert "the unit is g, but `units` says m/s2" in found.message
     assert found.line == 3
 
 
@@ -754,7 +754,7 @@ def test_an_interval_that_is_given_must_agree_with_peer(write):
     path = write(at2(VALUES))
     assert read_record(path, dt=0.01).dt == 0.01
     found = problem(path, dt=0.005)
-    assert "0.01 s, but --dt says 0.005 s" in found.message
+    assert "0.01 s, but `dt` says 0.005 s" in found.message
     assert found.line == 4
 
 
@@ -835,7 +835,7 @@ def test_real_records(name, options, npts, dt, pga, form):
 
 @NEEDS_RECORDS
 def test_a_real_record_without_a_unit_is_refused():
-    assert "--units" in problem(record("elcentro_NS_full_2col.dat")).hint
+    assert "`units`" in problem(record("elcentro_NS_full_2col.dat")).hint
 
 
 @pytest.fixture(scope="module")
@@ -925,7 +925,7 @@ def test_a_column_that_is_not_there_is_listed_too(write, channel):
     found = problem(write(TABLE), channel=channel)
     assert f"there is no channel '{channel}'" in found.message
     assert "2: ay [m/s2]" in found.hint
-    assert "leave --channel out" not in str(found)
+    assert "leave `channel` out" not in str(found)
 
 
 @pytest.mark.parametrize("columns", [3, 4, 5, 8])
@@ -1132,7 +1132,7 @@ def test_of_an_archive_of_several_one_is_chosen(write):
     found = problem(path)
     assert "3 files" in found.message
     assert "2: b/b.csv" in found.hint
-    assert "--channel" in found.hint
+    assert "`channel`" in found.hint
     assert read_record(path, channel="a.csv").name == "records.zip channel a.csv"
     for asked in ("2:ay", "b.csv:2", "B/b.csv:AY"):
         assert read_record(path, channel=asked).name == "records.zip channel b/b.csv:ay [m/s2]"

@@ -137,7 +137,7 @@ def test_the_unit_must_be_given(made, form):
     path = made(form, ("HNE", VALUES))
     found = problem(path, units=None)
     assert "does not say what unit" in found.message
-    assert "--units" in found.hint
+    assert "`units`" in found.hint
     with pytest.raises(InputError, match="unknown unit 'V'"):
         read_record(path, units="V")
 
@@ -146,7 +146,7 @@ def test_the_unit_must_be_given(made, form):
 def test_the_interval_and_the_channel_may_not_be_contradicted(made, form):
     path = made(form, ("HNE", VALUES))
     assert read_record(path, units="g", dt=0.005, channel="HNE").dt == 0.005
-    assert "--dt says 0.01 s" in problem(path, dt=0.01).message
+    assert "`dt` says 0.01 s" in problem(path, dt=0.01).message
     with pytest.raises(InputError, match="no channel 'HNZ'"):
         read_record(path, units="g", channel="HNZ")
 

@@ -317,7 +317,7 @@ class TestChanges:
         path = write(tmp_path, STUDY.replace("COUNT", "5").replace(old, new))
         with pytest.raises(InputError) as caught:
             carry_out(path, place)
-        assert said in str(caught.value) and "--restart" in str(caught.value)
+        assert said in str(caught.value) and "`restart`" in str(caught.value)
         assert len(caught.value.problems) == 1
         assert dump(place) == dump(whole[2])
 

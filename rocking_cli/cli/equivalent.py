@@ -104,10 +104,11 @@ def command(
         from rocking_cli.plotting.equivalent import draw_equivalent
 
         write_picture(plot, draw_equivalent(found, title))
+    said = [terminal.as_typed(each) for each in judge(found)]
     if as_json:
-        terminal.print_json(_as_json(found, judge(found)))
+        terminal.print_json(_as_json(found, said))
     else:
-        _print(found, title, judge(found))
+        _print(found, title, said)
     if bad:
         ctx.exit(INCOMPLETE)
 

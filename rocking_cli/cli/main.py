@@ -101,7 +101,8 @@ class LazyGroup(click.Group):
             terminal.error("interrupted")
             ctx.exit(endings.exit_code(stopped))
         except RockingError as error:
-            terminal.error(str(error))
+            command = self.get_command(ctx, ctx.invoked_subcommand or "")
+            terminal.error(terminal.as_typed(str(error), command))
             terminal.plugin_traceback(error)
             ctx.exit(error.exit_code)
         except MemoryError:

@@ -64,16 +64,16 @@ def read_vertical(
     """Read a vertical component as `read` does; `own_dt` is its interval, else that of the horizontal one."""
     from rocking_cli.errors import InputError, Problem, renamed
 
-    options = {"--channel": "--vertical-channel"}
+    arguments = {"channel": "vertical_channel"}
     if own_dt is not None or dt is None:
-        options["--dt"] = "--vertical-dt"
+        arguments["dt"] = "vertical_dt"
     try:
         return read("vertical", file, dt if own_dt is None else own_dt, units, channel)
     except InputError as error:
         found: list[Problem] = []
-        for each in renamed(error, options).problems:
-            if each.hint and "--dt" in each.hint.split():  # it was meant for the other component
-                each = replace(each, hint="give the interval of the vertical component with --vertical-dt")
+        for each in renamed(error, arguments).problems:
+            if each.hint and "`dt`" in each.hint:  # it was meant for the other component
+                each = replace(each, hint="give the interval of the vertical component with `vertical_dt`")
             found.append(each)
         raise InputError(*found) from None
 

@@ -6,6 +6,7 @@ What it is given may quote files and their names: nothing in it commands the ter
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
@@ -50,19 +51,31 @@ def print_json(data: Mapping[str, Any]) -> None:
     click.echo(json_text(data), file=_results)
 
 
+def as_typed(text: str, command: click.Command | None = None) -> str:
+    """A text in which arguments stand in backticks, with those that are options of a command as they are typed.
+
+    Without a command, of the one that runs.
+    """
+    context = click.get_current_context(silent=True)
+    command = command or (context.command if context is not None else None)
+    options = [each for each in command.params if isinstance(each, click.Option)] if command is not None else []
+    typed = {each.name: max(each.opts, key=len) for each in options}
+    return re.sub(r"`(\w+)`", lambda match: typed.get(match[1], match[0]), text)
+
+
 def note(text: str) -> None:
     """Something to know that is not part of the result."""
-    click.echo(printable(text), err=True)
+    click.echo(printable(as_typed(text)), err=True)
 
 
 def warning(text: str) -> None:
     """Something to be careful about."""
-    click.echo(click.style("warning: ", fg="yellow", bold=True) + printable(text), err=True)
+    click.echo(click.style("warning: ", fg="yellow", bold=True) + printable(as_typed(text)), err=True)
 
 
 def error(text: str) -> None:
     """What went wrong; a line each for several problems."""
-    click.echo(click.style("error: ", fg="red", bold=True) + printable(text), err=True)
+    click.echo(click.style("error: ", fg="red", bold=True) + printable(as_typed(text)), err=True)
 
 
 def plugin_traceback(error: BaseException | None) -> None:

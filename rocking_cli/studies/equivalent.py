@@ -204,7 +204,7 @@ def _shared_eta(eta: float | Literal["first", "own"], block: EquivalentBlock, fi
         raise InputError(
             Problem(
                 f"{_name(first)}: the kinematics give a restitution of {block.eta:.4g}, which cannot be that of all",
-                hint="give one in (0, 1] for all with --eta, or a measured one in its file",
+                hint="give one in (0, 1] for all with `eta`, or a measured one in its file",
             )
         )
     return block.eta
@@ -282,5 +282,5 @@ def judge(found: EquivalentResponses) -> list[str]:
     if peaks and max(peaks.values()) > CLOSE:
         said.append(f"Beyond {CLOSE:g} of the critical rotation small differences decide: do not rely on it there.")
     if not found.one_eta:
-        said.append("The restitutions differ, and equivalence needs one for all: --eta sets it.")
+        said.append("The restitutions differ, and equivalence needs one for all: `eta` sets it.")
     return said

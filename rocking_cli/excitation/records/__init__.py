@@ -48,7 +48,7 @@ def read_record(
         If the file cannot be read, or anything in it is missing, contradictory or not a number.
     """
     if dt is not None and not (math.isfinite(dt) and dt > 0):
-        raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="--dt"))
+        raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="`dt`"))
     data, file, name, member, channel = open_record(path, channel)
     text = decoded(data, file)
     reader = reader_for(text, file, load_readers(), data)

@@ -188,7 +188,7 @@ def _place(
         message = f"the table has {len(values)} columns that may be accelerations, and only one can shake a structure"
         if not any(label.name for label in names) and not times:
             listed += "\n  values that run on from line to line are no table: give the file as the data centre made it"
-        raise InputError(Problem(message, file, hint=f"choose one with --channel, by place or name:{listed}"))
+        raise InputError(Problem(message, file, hint=f"choose one with `channel`, by place or name:{listed}"))
     word = _plain(asked)
     if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
         return int(word) - 1
@@ -198,10 +198,10 @@ def _place(
             return found[0]
         if found:
             message = f"{len(found)} columns are called '{asked}'"
-            raise InputError(Problem(message, file, field="--channel", hint=f"give the place of one:{listed}"))
+            raise InputError(Problem(message, file, field="`channel`", hint=f"give the place of one:{listed}"))
     message = f"there is no channel '{asked}'"
     hint = f"there {'is' if len(values) == 1 else 'are'}:{listed}"
-    raise InputError(Problem(message, file, field="--channel", hint=hint))
+    raise InputError(Problem(message, file, field="`channel`", hint=hint))
 
 
 def _plain(name: str) -> str:

@@ -260,9 +260,9 @@ def old_unit(file: str, line_number: int, spelling: str, units: str | None) -> s
         return stated_unit(file, line_number, spelling, units)
     if units is not None:
         if canonical(units) is None:
-            raise InputError(Problem(f"unknown unit '{units}'", field="--units", hint=f"choose one of: {CHOICES}"))
-        message = f"the header says the unit is {TENTH_OF_G}, but --units says {units}"
-        raise InputError(Problem(message, file, line_number, hint="leave --units out"))
+            raise InputError(Problem(f"unknown unit '{units}'", field="`units`", hint=f"choose one of: {CHOICES}"))
+        message = f"the header says the unit is {TENTH_OF_G}, but `units` says {units}"
+        raise InputError(Problem(message, file, line_number, hint="leave `units` out"))
     return TENTH_OF_G
 
 
@@ -361,7 +361,7 @@ def choose(
     """
     if asked is None and len(channels) > 1:
         message = f"the file has {len(channels)} channels, and only one can shake a structure"
-        raise InputError(Problem(message, file=file, hint=f"choose one with --channel:{_listed(channels)}"))
+        raise InputError(Problem(message, file=file, hint=f"choose one with `channel`:{_listed(channels)}"))
     chosen = channels[0] if asked is None else _find(file, channels, asked)
     if chosen.flaw is not None:
         raise InputError(chosen.flaw)
@@ -393,7 +393,7 @@ def _find(file: str, channels: Sequence[Channel], asked: str) -> Channel:
         return named[0]
     message = f"{len(named)} channels are called '{asked}'" if named else f"there is no channel '{asked}'"
     hint = f"there {'is' if len(channels) == 1 else 'are'}:{_listed(channels)}"
-    raise InputError(Problem(message, file=file, field="--channel", hint=hint))
+    raise InputError(Problem(message, file=file, field="`channel`", hint=hint))
 
 
 def _plain(name: str) -> str:

@@ -190,8 +190,8 @@ def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, 
     message = f"the archive holds {len(names)} files, and only one can be the record"
     if channel is not None:
         message = f"there is no file '{channel}' in the archive"
-    hint = f"choose one with --channel, and a channel in it behind a colon:{''.join(listed)}"
-    raise InputError(Problem(message, file, field=None if channel is None else "--channel", hint=hint))
+    hint = f"choose one with `channel`, and a channel in it behind a colon:{''.join(listed)}"
+    raise InputError(Problem(message, file, field=None if channel is None else "`channel`", hint=hint))
 
 
 def _place(names: Sequence[str], asked: str, *, alone: bool) -> int | None:

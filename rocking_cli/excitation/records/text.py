@@ -83,7 +83,7 @@ def read(
         problems.extend(error.problems)
     if choice.time is None and dt is None:
         what = "one column of accelerations" if columns == 1 else "no column is called time or is one"
-        hint = "give it with --dt, in seconds, or add a time column before the accelerations"
+        hint = "give it with `dt`, in seconds, or add a time column before the accelerations"
         problems.append(Problem(f"{what}, and no sample interval", file=file, hint=hint))
     if problems:
         raise InputError(*problems)
@@ -145,7 +145,7 @@ def only_channel(file: str, asked: str | None) -> None:
     """Refuse any channel but the first, of a file that can hold no other."""
     if asked is not None and asked.strip() != "1":
         message = f"there is no channel '{asked}': the file holds one component"
-        raise InputError(Problem(message, file=file, field="--channel", hint="leave --channel out"))
+        raise InputError(Problem(message, file=file, field="`channel`", hint="leave `channel` out"))
 
 
 def check_interval(file: str, line_number: int | None, own: float, given: float | None) -> None:
@@ -153,8 +153,8 @@ def check_interval(file: str, line_number: int | None, own: float, given: float 
     if not _INTERVALS[0] <= own <= _INTERVALS[1]:
         raise InputError(Problem(f"the sample interval is {own:g} s, which no record has", file=file, line=line_number))
     if given is not None and not math.isclose(own, given, rel_tol=_DT_TOLERANCE):
-        message = f"the file's sample interval is {own:g} s, but --dt says {given:g} s"
-        raise InputError(Problem(message, file=file, line=line_number, hint="leave --dt out: the file states its own"))
+        message = f"the file's sample interval is {own:g} s, but `dt` says {given:g} s"
+        raise InputError(Problem(message, file=file, line=line_number, hint="leave `dt` out: the file states its own"))
 
 
 def _value(token: str) -> float | None:

@@ -81,7 +81,7 @@ def even_interval(time: NDArray[np.float64]) -> float:
     else:
         row = int(np.argmax(out_of_step))
         message = f"time is uneven: {time[row]:.9g} s here, a constant interval would give {time[0] + dt * row:.9g} s"
-    hint = "resample at a constant interval; if only the printed times are rough, keep the accelerations and give --dt"
+    hint = "resample at a constant interval; if only the printed times are rough, keep the accelerations and give `dt`"
     raise UnevenTimeError(message, hint, row)
 
 

@@ -114,27 +114,27 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
     """
     given = None if units is None else canonical(units)
     if units is not None and given is None:
-        raise InputError(Problem(f"unknown unit '{units}'", field="--units", hint=f"choose one of: {CHOICES}"))
+        raise InputError(Problem(f"unknown unit '{units}'", field="`units`", hint=f"choose one of: {CHOICES}"))
     stated = {unit: number for number, line in reversed(header) for unit in sorted(header_units(line))}
     _refuse_other_quantities(file, header)
     if given and stated and not any(_same(given, unit) for unit in stated):
         unit, number = next(iter(stated.items()))
-        message = f"the header says the unit is {unit}, but --units says {given}"
-        raise InputError(Problem(message, file=file, line=number, hint="leave --units out, or correct the header"))
+        message = f"the header says the unit is {unit}, but `units` says {given}"
+        raise InputError(Problem(message, file=file, line=number, hint="leave `units` out, or correct the header"))
     if given:
         return next((unit for unit in stated if _same(given, unit)), given)
     if not stated:
         raise InputError(_not_said(file, header))
     if not all(_same(unit, other) for unit in stated for other in stated):
         message = f"the header names more than one unit: {', '.join(stated)}"
-        hint = f"say which one holds for the accelerations with --units: {CHOICES}"
+        hint = f"say which one holds for the accelerations with `units`: {CHOICES}"
         raise InputError(Problem(message, file=file, line=max(stated.values()), hint=hint))
     return next(iter(stated))
 
 
 def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
     """Describe a header without a unit, or with one that is none of `UNITS`."""
-    hint = f"say which it is with --units: {CHOICES}"
+    hint = f"say which it is with `units`: {CHOICES}"
     for index, (number, line) in enumerate(header):
         if _ABOUT_A_VALUE.search(_normal(line)):
             continue

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from rocking_cli.errors import InputError, Problem, renamed
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
@@ -17,7 +17,6 @@ from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.excitation.records import read_record
 from rocking_cli.studies.fragility.definition import RecordEntry
 
-_KEYS = {"--dt": "dt", "--units": "units", "--channel": "channel"}
 KEPT = 32_000_000  # samples of records held in memory at most, a quarter of a gigabyte
 
 
@@ -63,12 +62,9 @@ class Source:
             assert self.entry.pulse is not None
             return parse_pulse(self.entry.pulse).sampled(COARSE)
         asked = self.entry
-        try:
-            motion = read_record(self.path, dt=asked.dt, units=asked.units, channel=asked.channel)
-            if self.vertical is not None:
-                motion = replace(motion, vertical=read_record(self.vertical, dt=asked.dt, units=asked.units))
-        except InputError as error:
-            raise renamed(error, _KEYS) from None
+        motion = read_record(self.path, dt=asked.dt, units=asked.units, channel=asked.channel)
+        if self.vertical is not None:
+            motion = replace(motion, vertical=read_record(self.vertical, dt=asked.dt, units=asked.units))
         return motion
 
 

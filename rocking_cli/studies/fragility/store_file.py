@@ -22,7 +22,7 @@ VERSION = 2  # of the tables of a store; 1 had no checksums
 WAITING = 60.0  # s for somebody who reads the store meanwhile
 AT_WORK = "at work"  # the name in the table `study` under which the process is that adds runs
 
-RESTART = "restore a copy of it, or give --restart: that keeps this file under another name"
+RESTART = "restore a copy of it, or give `restart`: that keeps this file under another name"
 HINTS = {
     sqlite3.SQLITE_FULL: f"make room: {GOES_ON}",
     sqlite3.SQLITE_IOERR: f"see to the disk: {GOES_ON}",
