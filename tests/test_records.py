@@ -914,7 +914,7 @@ def test_a_column_is_chosen_by_place_or_name(write, channel, unit, values):
 def test_without_a_choice_the_columns_are_listed(write):
     found = problem(write(TABLE))
     assert "2 columns that may be accelerations" in found.message
-    for said in ("--channel", "1: ax [g], column 2, in g, peak 0.3", "2: ay [m/s2], column 3, in m/s2, peak 3"):
+    for said in ("`channel`", "1: ax [g], column 2, in g, peak 0.3", "2: ay [m/s2], column 3, in m/s2, peak 3"):
         assert said in found.hint
     assert "column 1, time_s, is time" in found.hint
     assert "column 4, vel (cm/s), is no acceleration" in found.hint

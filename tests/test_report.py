@@ -300,6 +300,23 @@ class TestCommand:
         assert record.read_bytes() == ACCEL.read_bytes()
 
 
+def test_a_structure_is_made_ready_once(monkeypatch, tmp_path):
+    """Whatever a report asks of it: its equivalent block and its tables are derived once."""
+    counts = {"equivalent_block": 0, "tabulate": 0}
+    for module in [each for name, each in sys.modules.items() if name.startswith("rocking_cli.")]:
+        for name in counts:
+            if callable(found := getattr(module, name, None)):
+
+                def counted(*given, found=found, name=name):
+                    counts[name] += 1
+                    return found(*given)
+
+                monkeypatch.setattr(module, name, counted)
+    out = tmp_path / "r.html"
+    run("report", "--neighbours", 2, ARCH, "--record", ACCEL, "--pulse", "sine:0.5g:0.8s", "-o", out)
+    assert counts == {"equivalent_block": 1, "tabulate": 1}
+
+
 class TestSize:
     def test_one_record(self, frame_report):
         assert frame_report[0].stat().st_size < LARGEST / 4

@@ -111,8 +111,8 @@ def command(
 
     inputs = [*files, *(str(path) for path in paths)]
     keep_apart([("--out", out)], inputs)
-    file, mechanism = shaking.structure(files, records)
-    blocks = shaking.equivalence(mechanism)
+    structure = shaking.structure(files, records)
+    mechanism, blocks = structure.mechanism, structure.equivalence
     given, refused = shaking.gather(
         paths, pulses, (dt, units, channel), (scale, target_pga, target_pgv), blocks, several=several
     )
@@ -121,7 +121,7 @@ def command(
     places = motions.separate(out, given, several=several)
     keep_apart([("--out", place) for place in places], inputs)
     say_if_compiling()
-    models, drawn = shaking.prepare(mechanism, (cast("ModelName", model),), file), picture(mechanism)
+    models, drawn = structure.models([cast("ModelName", model)]), picture(mechanism)
     around = near.Around(neighbours, within_amplitude, within_restitution)
     rows = []
     for each, place in zip(given, places, strict=True):

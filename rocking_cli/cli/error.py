@@ -56,16 +56,15 @@ def command(
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 24-25.
     """
     from rocking_cli.cli import structures
-    from rocking_cli.core import equivalent_block
     from rocking_cli.errors import RockingError
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.linearisation import compare
     from rocking_cli.studies.trust import errors, trust
 
     keep_apart([("--plot", plot)], [file])
-    mechanism = structures.load([file] if file else [])[0]
+    structure = structures.prepared([file] if file else [])
+    mechanism, equivalence = structure.mechanism, structure.equivalence
     try:
-        equivalence = equivalent_block(mechanism)
         curves, asked = compare(mechanism, equivalence, amplitudes, accelerations)
     except RockingError as error:
         raise type(error)(f"{mechanism.name}: {error}") from error

@@ -73,18 +73,17 @@ def command(
         raise click.UsageError("A share needs neighbours: --neighbours must be at least 1 here.")
     motions.check_scaling(scale, target_pga, target_pgv)
     from rocking_cli.cli import margin_results as results
-    from rocking_cli.cli import shaking, structures
-    from rocking_cli.dynamics.model import build_model
+    from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.neighbours import Around
 
     paths, missing = motions.find(records)
     keep_apart([("--plot", plot)], [file, *(str(path) for path in paths)])
-    mechanism = structures.load([file] if file else [])[0]
-    blocks = shaking.equivalence(mechanism)
-    model = build_model(mechanism, "nonlinear")
-    p = max(blocks.positive.p, blocks.negative.p)
-    chosen, refused = motions.gather(paths, pulses, (dt, units, channel), (scale, target_pga, target_pgv), p)
+    structure = structures.prepared([file] if file else [])
+    mechanism, model = structure.mechanism, structure.model("nonlinear")
+    chosen, refused = motions.gather(
+        paths, pulses, (dt, units, channel), (scale, target_pga, target_pgv), structure.p
+    )  # fmt: skip
     if not chosen:
         ctx.exit(InputError.exit_code)
     around = Around(neighbours, within_amplitude, within_restitution)

@@ -99,6 +99,7 @@ def command(
     _check(files, compare, model, dimensionless, given)
     from rocking_cli.cli import overturning_results as results
     from rocking_cli.cli import structures, work
+    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies import overturning as study
     from rocking_cli.studies.shaken import linear_block, parse_shape, shaken
@@ -112,8 +113,7 @@ def command(
     mechanisms = structures.told_apart(loaded, good)
     subjects = []
     for each, file in zip(mechanisms, good, strict=True):
-        with structures.of_file(file):
-            subjects.append(shaken(each, cast("ModelName", chosen), shape, polarities, eta))
+        subjects.append(shaken(Prepared(each, file), cast("ModelName", chosen), shape, polarities, eta))
     exact = chosen != "nonlinear" and bool(shape.segments())
     if compare:
         spread, top = _curves(subjects, points or CURVE, periods, accelerations)

@@ -14,15 +14,15 @@ from rocking_cli.cli import structures, terminal
 from rocking_cli.cli.pulse import YES_NO, closed_json, how_far_off, impacts, off_exact
 from rocking_cli.cli.responses import pulse_json, restitution_json, restitution_used
 from rocking_cli.cli.work import say_if_compiling
-from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism
 from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
 from rocking_cli.dynamics.exact import ExactResponse, exact_response
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.model import build_models
+from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm, closed_form
 from rocking_cli.dynamics.sampled_pulse import SampledHistory, sampled_history
 from rocking_cli.dynamics.verdict import SENSE
-from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.names import percent
 
@@ -96,13 +96,10 @@ class Closed:
 def run(file: str | None, shape: str, ag: str, period: float, polarity: str, as_json: bool) -> None:
     """Do all that is asked for and print it."""
     pulse = _pulse(shape, ag, period)
-    mechanism = structures.load([file] if file else [])[0]
-    try:
-        equivalence = equivalent_block(mechanism)
-        signs = (1, -1) if polarity == "both" else (int(polarity),)
-        answers = {sign: _answers(mechanism, equivalence, pulse, sign) for sign in signs}
-    except MechanismError as error:
-        raise MechanismError(f"{mechanism.name}: {error}") from error
+    structure = structures.prepared([file] if file else [])
+    mechanism, equivalence = structure.mechanism, structure.equivalence
+    signs = (1, -1) if polarity == "both" else (int(polarity),)
+    answers = {sign: _answers(structure, pulse, sign) for sign in signs}
     closed = {}
     if pulse.name == "sine" and equivalence.symmetric:
         closed = _closed(mechanism, equivalence.positive, pulse, answers[signs[0]])
@@ -144,13 +141,13 @@ def _pulse(shape: str, ag: str, period: float) -> Pulse:
     return parse_pulse(":".join((name, ag, f"{period!r}s", *further)))
 
 
-def _answers(mechanism: Mechanism, equivalence: Equivalence, pulse: Pulse, polarity: int) -> dict[str, Answer]:
+def _answers(structure: Prepared, pulse: Pulse, polarity: int) -> dict[str, Answer]:
     """What the models say, linear ones exactly if the pulse has segments."""
     say_if_compiling()
     exact = bool(pulse.segments())
     sampled = {
         model.name: sampled_history(model, pulse, polarity)
-        for model in build_models(mechanism, ("nonlinear",) if exact else ("linear1", "linear2", "nonlinear"))
+        for model in structure.models(["nonlinear"] if exact else ["linear1", "linear2", "nonlinear"])
     }
     for name, found in sampled.items():
         if not found.converged:
@@ -161,7 +158,11 @@ def _answers(mechanism: Mechanism, equivalence: Equivalence, pulse: Pulse, polar
     answers = {
         name: Answer.of_exact(
             exact_response(
-                equivalence, pulse, kappa=1 if kappa == 1 else 2, gravity=mechanism.gravity, polarity=polarity
+                structure.equivalence,
+                pulse,
+                kappa=1 if kappa == 1 else 2,
+                gravity=structure.mechanism.gravity,
+                polarity=polarity,
             )
         )
         if exact

@@ -163,10 +163,8 @@ def _spare_others(paths: Iterable[Path]) -> None:
 def _frequency(structure: str) -> float:
     """The larger frequency parameter of a structure [rad/s]."""
     from rocking_cli.cli import structures
-    from rocking_cli.core import equivalent_block
 
-    equivalence = equivalent_block(structures.load([structure])[0])
-    return max(equivalence.positive.p, equivalence.negative.p)
+    return structures.prepared([structure]).p
 
 
 def _examine(

@@ -13,7 +13,8 @@ from rocking_cli.cli import motions, options, shaking, terminal
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
-    from rocking_cli.core import Equivalence, Mechanism
+    from rocking_cli.core import Equivalence
+    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.report.content import Content, File, Given
 
 POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
@@ -78,7 +79,6 @@ def command(
         raise click.UsageError(
             "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
         )
-    from rocking_cli.cli import structures
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.io.files import check_writable, keep_apart, write_whole
     from rocking_cli.report.content import gather, steps
@@ -89,8 +89,8 @@ def command(
         check_writable(out)
     paths, bad = motions.find(records)
     keep_apart([("--out", out)], [*files, *(str(path) for path in paths)])
-    mechanism, source = _structure(files, records)
-    blocks = shaking.equivalence(mechanism)
+    structure = shaking.structure(files, records)
+    blocks = structure.equivalence
     asked = scale, target_pga, target_pgv
     given = []
     for path in paths:
@@ -103,10 +103,9 @@ def command(
     if bad and not given:
         ctx.exit(InputError.exit_code)
     say_if_compiling()
-    file = files[0] if files else None
-    with structures.of_file(file), terminal.progress(steps(given), "parts of the report") as advance:
+    with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
-            mechanism, source, given, POLARITIES[polarity],
+            structure, _file(structure), given, POLARITIES[polarity],
             around=Around(neighbours, within_amplitude, within_restitution),
             command=_command_line(ctx), date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"), progress=advance,
         )  # fmt: skip
@@ -126,15 +125,14 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _structure(files: tuple[str, ...], records: tuple[str, ...]) -> tuple[Mechanism, File]:
+def _file(structure: Prepared) -> File:
+    """The content of the file that a structure stands in."""
     from rocking_cli.cli import structures
     from rocking_cli.report.content import File
 
-    file, mechanism = shaking.structure(files, records)
-    path = Path(file or structures.HERE)
-    if file is None and not path.exists():
-        return mechanism, File("default block", structures.DEFAULT.encode())
-    return mechanism, File(str(path), path.read_bytes())
+    if structure.file is None:
+        return File("default block", structures.DEFAULT.encode())
+    return File(structure.file, Path(structure.file).read_bytes())
 
 
 def _record(

@@ -199,8 +199,8 @@ def command(
     inputs = [*files, *(str(path) for path in paths), vertical]
     keep_apart([("--out", out), ("--plot", plot)], inputs)
     check_table(out)
-    file, mechanism = shaking.structure(files, records)
-    equivalence = shaking.equivalence(mechanism)
+    structure = shaking.structure(files, records)
+    mechanism, equivalence = structure.mechanism, structure.equivalence
     given: Sequence[motions.Scaled | None] = [None]  # a free release
     refused = 0
     if shaken:
@@ -221,7 +221,7 @@ def command(
         keep_apart([*(("--out", each) for each in outs), *(("--plot", each) for each in plots)], inputs)
     chosen = cast("tuple[ModelName, ...]", models)
     say_if_compiling()
-    built = shaking.prepare(mechanism, chosen, file)
+    built = structure.models(chosen)
     around = Around(neighbours, within_amplitude, within_restitution)
     asked = Question((1, -1) if polarity == "both" else (int(polarity),), release, tail, rtol, with_pulse, around)
     table, details = results.Several(mechanism, equivalence, chosen), []

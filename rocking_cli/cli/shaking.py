@@ -10,16 +10,17 @@ from typing import TYPE_CHECKING
 from rocking_cli.cli import motions, terminal
 
 if TYPE_CHECKING:
-    from rocking_cli.core import Equivalence, Mechanism
+    from rocking_cli.core import Equivalence
     from rocking_cli.dynamics.history import History
     from rocking_cli.dynamics.model import Model, ModelName
+    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulses import Pulse
 
 
-def structure(files: Sequence[str], records: Sequence[str]) -> tuple[str | None, Mechanism]:
-    """The one structure that a command is of, and its file; None for that of this folder or the default."""
+def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
+    """The one structure that a command is of, made ready."""
     import click
 
     from rocking_cli.cli import structures
@@ -29,21 +30,10 @@ def structure(files: Sequence[str], records: Sequence[str]) -> tuple[str | None,
         motions.check_strays(files, records)
         raise click.UsageError(f"This is of one structure, and {len(files)} are given: {', '.join(files)}.")
     try:
-        return (files[0] if files else None), structures.load(files)[0]
+        return structures.prepared(files)
     except InputError:
         motions.check_strays(files, records)
         raise
-
-
-def equivalence(mechanism: Mechanism) -> Equivalence:
-    """The equivalent blocks of a structure; an error names it."""
-    from rocking_cli.core import equivalent_block
-    from rocking_cli.errors import MechanismError
-
-    try:
-        return equivalent_block(mechanism)
-    except MechanismError as error:
-        raise MechanismError(f"{mechanism.name}: {error}") from error
 
 
 def read(what: str, file: str | Path, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
@@ -148,19 +138,6 @@ def gather(
         place, own, part = vertical
         motion = replace(motion, vertical=read_vertical(place, dt, own, units, part))
     return [motions.Scaled(motion, judge(motion, blocks, *asked), pulse, file)], 0
-
-
-def prepare(mechanism: Mechanism, names: tuple[ModelName, ...], file: str | None) -> list[Model]:
-    """The models of a structure, to be followed under any number of motions; an error names it and its file."""
-    from rocking_cli.cli import structures
-    from rocking_cli.dynamics.model import build_models
-    from rocking_cli.errors import MechanismError
-
-    try:
-        with structures.of_file(file):
-            return build_models(mechanism, names)
-    except MechanismError as error:
-        raise MechanismError(f"{mechanism.name}: {error}") from error
 
 
 def respond(

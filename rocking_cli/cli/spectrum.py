@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -201,10 +202,8 @@ def _shapes(
     mechanisms, good, bad = structures.load_each(files) if files or not slenderness else ([], [], 0)
     if files:
         mechanisms = structures.told_apart(mechanisms, good)
-    found = []
-    for k, each in enumerate(mechanisms):
-        with structures.of_file(good[k] if good else None):
-            found.append(shape_of(each, model, eta))
+    places: Sequence[str | None] = good or [structures.place(None)] * len(mechanisms)
+    found = [shape_of(each, model, eta, file) for each, file in zip(mechanisms, places, strict=True)]
     return found + [blocks_of(alpha, model, eta) for alpha in slenderness], bad
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rocking_cli.cli import terminal
 from rocking_cli.core import Mechanism
@@ -13,6 +12,9 @@ from rocking_cli.core.size import doubtful_size
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
 from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.text import one_line
+
+if TYPE_CHECKING:
+    from rocking_cli.dynamics.prepared import Prepared
 
 HERE = "rocking.yaml"
 DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
@@ -80,19 +82,16 @@ def load_each(files: Sequence[str]) -> tuple[list[Mechanism], list[str], int]:
     return found, good, len(errors)
 
 
-@contextmanager
-def of_file(file: str | None) -> Iterator[None]:
-    """Give what is wrong with a field of a structure, found once it is used, the file that it stands in."""
-    place = file if file is not None else HERE if Path(HERE).exists() else None
-    try:
-        yield
-    except InputError as error:
-        lost = [each.field is not None and each.file is None for each in error.problems]
-        if place is None or not any(lost):
-            raise
-        raise InputError(
-            *(replace(each, file=place) if of else each for each, of in zip(error.problems, lost, strict=True))
-        ) from None
+def place(file: str | None) -> str | None:
+    """The file that a structure stands in, given or found here; None for the default block."""
+    return file if file is not None else HERE if Path(HERE).exists() else None
+
+
+def prepared(files: Sequence[str]) -> Prepared:
+    """The one structure of a file or of none, as `load`, made ready."""
+    from rocking_cli.dynamics.prepared import Prepared
+
+    return Prepared(load(files)[0], place(files[0] if files else None))
 
 
 def _unnamed() -> Mechanism:

@@ -124,6 +124,11 @@ def build_model(mechanism: Mechanism, name: ModelName) -> Model:
 def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) -> list[Model]:
     """Prepare several models of a structure; see `build_model`."""
     equivalence = equivalent_block(mechanism)
+    return [build(mechanism, equivalence, name) for name in names]
+
+
+def build(mechanism: Mechanism, equivalence: Equivalence, name: ModelName) -> Model:
+    """Prepare one model of a structure whose equivalent blocks are known; see `build_model`."""
     label = mechanism.name or mechanism.mechanism
     blocks = (equivalence.positive, equivalence.negative)
     for direction, block in zip(Direction, blocks, strict=True):
@@ -136,14 +141,12 @@ def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) ->
                     hint="give a measured value as restitution, a number in (0, 1]",
                 )
             )
-    models = [
-        _nonlinear(label, mechanism, blocks)
-        if name == "nonlinear"
-        else linear_model(label, name, blocks, mechanism.gravity)
-        for name in names
-    ]
+    if name == "nonlinear":
+        model = _nonlinear(label, mechanism, blocks)
+    else:
+        model = linear_model(label, name, blocks, mechanism.gravity)
     most_eta = greatest_restitution(mechanism, Direction.POSITIVE), greatest_restitution(mechanism, Direction.NEGATIVE)
-    return [replace(model, most_eta=most_eta) for model in models]
+    return replace(model, most_eta=most_eta)
 
 
 def _nonlinear(label: str, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:

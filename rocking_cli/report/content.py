@@ -11,10 +11,11 @@ from math import pi
 
 import numpy as np
 
-from rocking_cli.core import Equivalence, Mechanism, equivalent_block
+from rocking_cli.core import Equivalence, Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics.history import History, respond
-from rocking_cli.dynamics.model import MODELS, ModelName, build_model
+from rocking_cli.dynamics.history import History, follow
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.verdict import governs
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -198,7 +199,7 @@ class Content:
 
 
 def gather(
-    mechanism: Mechanism,
+    structure: Prepared,
     file: File,
     given: Sequence[Given],
     polarities: Sequence[int],
@@ -212,7 +213,7 @@ def gather(
 
     Parameters
     ----------
-    mechanism : Mechanism
+    structure : Prepared
         The structure.
     file : File
         Where it was read.
@@ -233,7 +234,7 @@ def gather(
         Whatever the studies raise.
     """
     done = progress or (lambda count: None)
-    equivalence = equivalent_block(mechanism)
+    mechanism, equivalence = structure.mechanism, structure.equivalence
     try:
         curves, asked = compare(mechanism, equivalence, AMPLITUDES, ACCELERATIONS)
         said = trust(curves, asked)
@@ -242,9 +243,9 @@ def gather(
     done(1)
     shakings = []
     for each in given:
-        shakings.append(_shake(mechanism, equivalence, each, polarities, around or Around()))
+        shakings.append(_shake(structure, each, polarities, around or Around()))
         done(1)
-    maps = _maps(mechanism, equivalence, shakings)
+    maps = _maps(structure, shakings)
     done(1)
     return Content(
         mechanism=mechanism,
@@ -277,15 +278,12 @@ def _plugin(mechanism: Mechanism) -> str:
     return registry.package_of(mechanism.mechanism) if mechanism.mechanism in registry else "not installed as a plugin"
 
 
-def _shake(
-    mechanism: Mechanism, equivalence: Equivalence, given: Given, polarities: Sequence[int], around: Around
-) -> Shaking:
+def _shake(structure: Prepared, given: Given, polarities: Sequence[int], around: Around) -> Shaking:
     asked = measure(given.motion)
-    p = max(equivalence.positive.p, equivalence.negative.p)
-    doubtful = [] if given.pulse is not None else doubts(given.motion, asked) + coarse_for(given.motion, p)
+    doubtful = [] if given.pulse is not None else doubts(given.motion, asked) + coarse_for(given.motion, structure.p)
     under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
-    runs = {sign: respond(mechanism, motion, models=MODELS) for sign, motion in under.items()}
-    model = build_model(mechanism, "nonlinear")
+    models, model = structure.models(), structure.model("nonlinear")
+    runs = {sign: {each.name: follow(each, motion) for each in models} for sign, motion in under.items()}
     worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
@@ -299,7 +297,7 @@ def _shake(
         neighbours={sign: neighbours(model, motion, around) for sign, motion in under.items()},
         margin=margin(model, scaled, polarities, around=around),
         fits=fits,
-        alone=_alone(mechanism, fits[0], polarities) if fits else None,
+        alone=_alone(structure, fits[0], polarities) if fits else None,
     )
 
 
@@ -315,21 +313,21 @@ def _fits(given: Given, scaled: GroundMotion) -> tuple[PulseFit, ...]:
     return tuple(sorted(fits, key=lambda fit: -fit.captured))
 
 
-def _alone(mechanism: Mechanism, fit: PulseFit, polarities: Sequence[int]) -> float:
+def _alone(structure: Prepared, fit: PulseFit, polarities: Sequence[int]) -> float:
     shape = _shape(fit.pulse)
-    structure = shaken(mechanism, "nonlinear", shape, (1, -1))
+    under = shaken(structure, "nonlinear", shape, (1, -1))
     signs = [polarity * fit.sign for polarity in polarities]
     period, amplitude = np.array([fit.pulse.period]), np.array([fit.pulse.amplitude])
-    return float(outcomes(structure, shape, period, amplitude, polarities=signs).peak_ratio[0])
+    return float(outcomes(under, shape, period, amplitude, polarities=signs).peak_ratio[0])
 
 
 def _shape(pulse: Pulse) -> Pulse:
     return replace(pulse, amplitude=1.0, period=1.0)
 
 
-def _maps(mechanism: Mechanism, equivalence: Equivalence, shakings: Sequence[Shaking]) -> list[PulseMap]:
+def _maps(structure: Prepared, shakings: Sequence[Shaking]) -> list[PulseMap]:
     """A map for each shape among the best pulses; of the sine if there is none."""
-    if min(equivalence.positive.eta, equivalence.negative.eta) <= 0:
+    if min(structure.equivalence.positive.eta, structure.equivalence.negative.eta) <= 0:
         return []  # no history of it can be computed
     marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
     for shaking in shakings:
@@ -337,15 +335,15 @@ def _maps(mechanism: Mechanism, equivalence: Equivalence, shakings: Sequence[Sha
             best = shaking.fits[0]
             marks.setdefault(_shape(best.pulse), []).append((shaking.given.motion.name, best))
     marks = marks or {parse_shape("sine"): []}
-    return [PulseMap(_map(mechanism, shape, each), tuple(each)) for shape, each in marks.items()]
+    return [PulseMap(_map(structure, shape, each), tuple(each)) for shape, each in marks.items()]
 
 
-def _map(mechanism: Mechanism, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
-    structure = shaken(mechanism, "nonlinear", shape, (1, -1))
-    periods, tops = _axes(structure, [fit.pulse for _, fit in marks])
-    omega = structure.period(np.linspace(*periods, POINTS))
+def _map(structure: Prepared, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
+    under = shaken(structure, "nonlinear", shape, (1, -1))
+    periods, tops = _axes(under, [fit.pulse for _, fit in marks])
+    omega = under.period(np.linspace(*periods, POINTS))
     a = np.linspace(tops / POINTS, tops, POINTS)
-    return overturning_map(structure, shape, omega, a, polarities=(1, -1))
+    return overturning_map(under, shape, omega, a, polarities=(1, -1))
 
 
 def _axes(structure: Shaken, pulses: Sequence[Pulse]) -> tuple[tuple[float, float], float]:

@@ -81,7 +81,12 @@ def why_no_acceleration(times: float) -> str:
 
 
 def linearisation(
-    mechanism: Mechanism, direction: Direction, amplitude: ArrayLike = (), acceleration: ArrayLike = ()
+    mechanism: Mechanism,
+    direction: Direction,
+    amplitude: ArrayLike = (),
+    acceleration: ArrayLike = (),
+    *,
+    equivalence: Equivalence | None = None,
 ) -> Linearisation:
     """Compare a mechanism with its equivalent block in one direction.
 
@@ -95,6 +100,8 @@ def linearisation(
         phi/phi_cr of free motions, in (0, 1).
     acceleration : array of float
         Constant accelerations over the uplift acceleration, above 1.
+    equivalence : Equivalence, optional
+        Its equivalent blocks, where they are known already.
 
     Returns
     -------
@@ -114,8 +121,9 @@ def linearisation(
         for value in values:
             if why := why_not(value):
                 raise InputError(why)
-    block = equivalent_block(mechanism)[direction]
-    period, time = free_period(mechanism, direction, r), overturning_time(mechanism, direction, rho)
+    block = (equivalence or equivalent_block(mechanism))[direction]
+    period = free_period(mechanism, direction, r)
+    time = overturning_time(mechanism, direction, rho, block.lambda_)
     lin = block.lambda_lin / block.lambda_
     with np.errstate(divide="ignore", invalid="ignore"):
         excess = np.where(rho > lin, rho / lin - 1, np.nan)
@@ -142,8 +150,11 @@ def compare(
     directions = [Direction.POSITIVE] if equivalence.symmetric else list(Direction)
     r = np.linspace(0.01, 0.99, CURVE)
     a = np.geomspace(1.02, max(STRONGEST, *accelerations), CURVE)
-    curves = [linearisation(mechanism, direction, r, a) for direction in directions]
-    return curves, [linearisation(mechanism, direction, amplitudes, accelerations) for direction in directions]
+
+    def of(ratios: ArrayLike, times: ArrayLike) -> list[Linearisation]:
+        return [linearisation(mechanism, each, ratios, times, equivalence=equivalence) for each in directions]
+
+    return of(r, a), of(amplitudes, accelerations)
 
 
 def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) -> Reals:
@@ -177,7 +188,9 @@ def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) ->
     return 4 * _integral(slowness, np.arccosh(1 / (1 - amplitude)))
 
 
-def overturning_time(mechanism: Mechanism, direction: Direction, acceleration: Reals) -> Reals:
+def overturning_time(
+    mechanism: Mechanism, direction: Direction, acceleration: Reals, lambda_: float | None = None
+) -> Reals:  # fmt: skip
     """Time from rest to phi_cr under a constant acceleration [s].
 
     Parameters
@@ -188,6 +201,8 @@ def overturning_time(mechanism: Mechanism, direction: Direction, acceleration: R
         Of rocking.
     acceleration : ndarray, shape (m,)
         Over the uplift acceleration, above 1.
+    lambda_ : float, optional
+        The uplift acceleration over g, where it is known already.
 
     Returns
     -------
@@ -200,7 +215,7 @@ def overturning_time(mechanism: Mechanism, direction: Direction, acceleration: R
     """
     critical = mechanism.critical_rotation(direction)
     excess = acceleration[:, None] - 1
-    push = acceleration[:, None] * equivalent_block(mechanism)[direction].lambda_
+    push = acceleration[:, None] * (equivalent_block(mechanism)[direction].lambda_ if lambda_ is None else lambda_)
 
     def slowness(u: Reals) -> Reals:
         # phi = phi_cr (a/lambda - 1)(cosh u - 1): the equivalent block has u = p t.

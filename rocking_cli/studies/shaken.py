@@ -9,11 +9,12 @@ from math import isclose, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core import Direction, Equivalence, EquivalentBlock
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact_batch import exact_many
-from rocking_cli.dynamics.model import Model, ModelName, build_model, linear_model
-from rocking_cli.errors import InputError, MechanismError, SolverError
+from rocking_cli.dynamics.model import Model, ModelName, linear_model
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 
 Reals = NDArray[np.float64]
@@ -115,13 +116,13 @@ def check_eta(eta: float) -> None:
 
 
 def shaken(
-    mechanism: Mechanism, model: ModelName, shape: Pulse, polarities: Sequence[int] = (1,), eta: float | None = None
+    structure: Prepared, model: ModelName, shape: Pulse, polarities: Sequence[int] = (1,), eta: float | None = None
 ) -> Shaken:
     """Prepare a structure for pulses.
 
     Parameters
     ----------
-    mechanism : Mechanism
+    structure : Prepared
         The structure.
     model : {"nonlinear", "linear1", "linear2"}
         Its equation of motion.
@@ -139,15 +140,10 @@ def shaken(
     """
     if eta is not None:
         check_eta(eta)
-        mechanism = mechanism.model_copy(update={"restitution": eta})
-    try:
-        equivalence = equivalent_block(mechanism)
-        built = build_model(mechanism, model)
-    except MechanismError as error:
-        raise MechanismError(f"{mechanism.name}: {error}") from error
-    name = mechanism.name or mechanism.mechanism
-    given = mechanism.restitution is not None
-    return Shaken(name, built, equivalence, weakest(equivalence, shape, polarities), given)
+        structure = structure.with_eta(eta)
+    direction = weakest(structure.equivalence, shape, polarities)
+    given = structure.mechanism.restitution is not None
+    return Shaken(structure.name, structure.model(model), structure.equivalence, direction, given)
 
 
 def uplift(block: EquivalentBlock, model: ModelName) -> float:

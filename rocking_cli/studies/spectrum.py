@@ -12,6 +12,7 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.shaken import Integers, Progress, Reals, Shaken, parse_shape, shaken, uplift
@@ -58,7 +59,7 @@ class Shape:
         return self.period * np.sqrt(scales)
 
 
-def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None) -> Shape:
+def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, file: str | None = None) -> Shape:
     """A structure to be enlarged and reduced.
 
     Parameters
@@ -69,6 +70,8 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None) -
         Its equation of motion.
     eta : float, optional
         Coefficient of restitution of every impact; without it the structure's own.
+    file : str, optional
+        Where it stands, for messages.
 
     Raises
     ------
@@ -76,7 +79,7 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None) -
         If the structure does not stand, or its restitution is not known.
     """
     # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
-    found = shaken(mechanism, model, parse_shape("sine"), eta=eta)
+    found = shaken(Prepared(mechanism, file), model, parse_shape("sine"), eta=eta)
     given = mechanism if eta is None else mechanism.model_copy(update={"restitution": eta})
     sizes = Sizes(given, model, found.direction)
     return Shape(found, own=None if sizes.are_alike() else sizes)

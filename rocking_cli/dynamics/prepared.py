@@ -1,0 +1,73 @@
+"""A structure made ready: its equivalent blocks and its models, each derived once and kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from rocking_cli.core import Equivalence, Mechanism, equivalent_block
+from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
+from rocking_cli.errors import InputError, MechanismError
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A structure, and what is derived of it when it is first asked for.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    file : str, optional
+        Where it stands, for errors of its fields that show only when they are used.
+    """
+
+    mechanism: Mechanism
+    file: str | None = None
+    _models: dict[ModelName, Model] = field(default_factory=dict, repr=False)
+
+    @property
+    def name(self) -> str:
+        """What to call it."""
+        return self.mechanism.name or self.mechanism.mechanism
+
+    @cached_property
+    def equivalence(self) -> Equivalence:
+        """Its equivalent blocks. Raises `MechanismError`, naming it, if it has none."""
+        with self._named():
+            return equivalent_block(self.mechanism)
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter [rad/s], of two different directions the larger."""
+        return max(self.equivalence.positive.p, self.equivalence.negative.p)
+
+    def model(self, name: ModelName) -> Model:
+        """One of its models. Raises `InputError` or `MechanismError` if it cannot be built."""
+        if name not in self._models:
+            equivalence = self.equivalence
+            with self._named():
+                self._models[name] = build(self.mechanism, equivalence, name)
+        return self._models[name]
+
+    def models(self, names: Sequence[ModelName] = MODELS) -> list[Model]:
+        """Some of its models."""
+        return [self.model(name) for name in names]
+
+    def with_eta(self, eta: float) -> Prepared:
+        """The same structure with another restitution of every impact."""
+        return Prepared(self.mechanism.model_copy(update={"restitution": eta}), self.file)
+
+    @contextmanager
+    def _named(self) -> Iterator[None]:
+        """Have errors of the mechanics begin with the name of the structure, and those of its fields with its file."""
+        try:
+            yield
+        except MechanismError as error:
+            raise MechanismError(f"{self.name}: {error}") from error
+        except InputError as error:
+            if self.file is None:
+                raise
+            raise InputError(*(replace(each, file=each.file or self.file) for each in error.problems)) from None
