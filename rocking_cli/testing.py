@@ -1,4 +1,4 @@
-"""The contract every mechanism must keep: for `rocking mechanisms --check`, and as a test class for plugin authors.
+"""The contract every mechanism must keep: for the check of an installed mechanism, and as a test class for authors.
 
 What a mechanism says of its mechanics is held to its bodies and their motion alone.
 
