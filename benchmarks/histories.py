@@ -23,7 +23,7 @@ from rocking_cli import GroundMotion, Model, Runs, build_models, load_structure,
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import kernels as at
 from rocking_cli.dynamics.compiled import compile_kernel
-from rocking_cli.dynamics.deck import Deck, lay_out
+from rocking_cli.dynamics.deck import lay_out, run_deck
 from rocking_cli.dynamics.history import RTOL, follow
 
 PROJECT = Path(__file__).resolve().parents[1]
@@ -64,7 +64,7 @@ class Prepared:
     """One history, ready for the kernel: what a batch or a design loop pays for each."""
 
     def __init__(self, model: Model, motion: GroundMotion, *, samples: bool = True) -> None:
-        self.deck: Deck = lay_out([model], [motion])
+        self.deck = lay_out([model], [motion])
         self.model = model
         self.runs, self.marks = np.zeros((1, at.RUN_COLUMNS)), np.empty((1, at.MARKS))
         self.runs[0, [at.FACTOR, at.V_FACTOR, at.SIZE]] = 1.0
@@ -73,7 +73,7 @@ class Prepared:
 
     def run(self, rtol: float = RTOL) -> float:
         """Peak |phi|/phi_cr; if it overturns, minus the time at which it passes phi_cr."""
-        self.deck.run(self.runs, self.marks, rtol=rtol, **self.out)
+        run_deck(self.deck, self.runs, self.marks, rtol=rtol, **self.out)
         if self.marks[0, at.STATUS] == at.OVERTURNED:
             return -float(self.marks[0, at.CROSSED])
         return float((self.marks[0, at.PEAK : at.PEAK + 2] / self.model.phi_cr).max())

@@ -15,7 +15,6 @@ from rocking_cli.core import Direction
 from rocking_cli.core.mechanism import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Responses, Runs, respond_many
-from rocking_cli.dynamics.deck import Deck
 from rocking_cli.dynamics.history import Outcome, respond
 from rocking_cli.dynamics.model import MODELS, build_models
 from rocking_cli.errors import InputError
@@ -165,16 +164,16 @@ def test_progress_counts_every_run_once(count):
 def test_an_interruption_in_progress_stops_what_has_not_begun(monkeypatch, error):
     every, runs = mixed(400)
     begun = []
-    run = Deck.run
+    run = batch.run_deck
 
-    def counted(self, *args, **options):
+    def counted(*args, **options):
         begun.append(options["first"])
-        return run(self, *args, **options)
+        return run(*args, **options)
 
     def interrupt(done):
         raise error
 
-    monkeypatch.setattr(Deck, "run", counted)
+    monkeypatch.setattr(batch, "run_deck", counted)
     monkeypatch.setattr(batch, "UNIT", 1)
     with pytest.raises(error):
         respond_many(every, motions(), runs, threads=1, progress=interrupt)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out
+from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out, run_deck
 from rocking_cli.dynamics.history import RTOL, check_rtol
 from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 
@@ -242,27 +241,11 @@ def respond_many(
     if len(runs):
         deck = lay_out(models, motions)
         most = DECISIVE - 1 if only_peaks else MOST_IMPACTS  # it is left after more than these
-        with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-            units = {
-                pool.submit(
-                    deck.run,
-                    rows,
-                    marks,
-                    first=first,
-                    stop=min(first + UNIT, len(runs)),
-                    rtol=rtol,
-                    most_impacts=most,
-                ): first
-                for first in range(0, len(runs), UNIT)
-            }
-            try:
-                for unit in as_completed(units):
-                    unit.result()
-                    if progress is not None:
-                        progress(min(UNIT, len(runs) - units[unit]))
-            except BaseException:  # an interrupt: what has not begun is not begun
-                pool.shutdown(cancel_futures=True)
-                raise
+
+        def follow(first: int, stop: int) -> None:
+            run_deck(deck, rows, marks, first=first, stop=stop, rtol=rtol, most_impacts=most)
+
+        in_parts(follow, len(runs), UNIT, threads, progress)
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
     status = marks[:, kernels.STATUS]
     overturned = status == kernels.OVERTURNED

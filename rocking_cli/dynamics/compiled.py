@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import functools
 import os
+import platform
 import sys
 import tempfile
-import threading
 import warnings
+import zlib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
+from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -43,22 +46,6 @@ def unwritable() -> str | None:
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": False, "error_model": "numpy"}
 
 
-def _start_numba() -> None:
-    """Load numba without scipy.linalg, which it asks for only to see whether there is a BLAS: a tenth of a second.
-
-    No kernel calls a BLAS; other code of numba that does still finds it, but for one-dimensional inner products, which
-    numba then sums itself. Where other threads may want scipy.linalg at this moment it is left alone.
-    """
-    _import_numba()
-    if "numba.np.arraymath" in sys.modules or "scipy.linalg" in sys.modules or threading.active_count() > 1:
-        return
-    sys.modules["scipy.linalg"] = None  # type: ignore[assignment]
-    try:
-        import numba.np.arraymath  # noqa: F401
-    finally:
-        del sys.modules["scipy.linalg"]
-
-
 def _import_numba() -> None:
     """Load numba; settings in the environment with which it does not start are the user's to mend."""
     if "numba" in sys.modules:
@@ -82,7 +69,7 @@ def _import_numba() -> None:
 
 def compile_inline(function: Callable[..., Any]) -> Any:
     """`function`, set by the compiler into each place of a kernel that calls it: a call costs more than a few sums."""
-    _start_numba()
+    _import_numba()
     from numba import njit
 
     return njit(forceinline=True, **OPTIONS)(function)
@@ -90,7 +77,7 @@ def compile_inline(function: Callable[..., Any]) -> Any:
 
 def compile_kernel(function: Callable[..., Any]) -> Any:
     """`function` compiled by numba at its first call, and kept on disk where that is possible."""
-    _start_numba()
+    _import_numba()
     import numba
     from numba import njit
 
@@ -137,18 +124,25 @@ def compile_source(
     return {function.__name__: namespace[function.__name__] for function in functions}
 
 
-HISTORIES, PULSES = "kernels.run", "pulse_motion.many"
-"""The kernels that commands call: file and function."""
+HISTORIES, PULSES = "kernels", "pulse_motion"
+"""The files of the kernels that commands call."""
 
 
 def needs_compiling(kernel: str = HISTORIES) -> bool:
     """Whether a kernel will have to be compiled when it is next called, which takes some seconds."""
-    if unwritable() is not None:
-        return True
-    source = Path(__file__).with_name(kernel.split(".")[0] + ".py")
-    tag = f"py{sys.version_info.major}{sys.version_info.minor}"
-    indexes = cache_folder().glob(f"*/{kernel}-*.{tag}.nbi")
-    try:
-        return not any(index.stat().st_mtime >= source.stat().st_mtime for index in indexes)
-    except OSError:  # another process is at work on the cache
-        return False
+    return unwritable() is not None or not _stamp(kernel).exists()
+
+
+@functools.cache
+def has_run(kernel: str) -> None:
+    """Note that a kernel is compiled, for the next process."""
+    if unwritable() is None:
+        with suppress(OSError):
+            _stamp(kernel).touch()
+
+
+def _stamp(kernel: str) -> Path:
+    """A file that is there once this version of a kernel has been compiled by this Python and numba."""
+    source = Path(__file__).with_name(f"{kernel}.py").read_bytes()
+    made = f"{sys.version_info[:2]}, {version('numba')}, {platform.machine()}, {zlib.crc32(source)}"
+    return cache_folder() / f"{kernel}-{zlib.crc32(made.encode()):08x}.compiled"

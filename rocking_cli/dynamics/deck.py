@@ -3,89 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import ceil
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.dynamics.compiled import HISTORIES, has_run
 from rocking_cli.dynamics.model import Model
 from rocking_cli.excitation.base import GroundMotion
 
+if TYPE_CHECKING:
+    from rocking_cli.dynamics.kernels import Deck
+
 Reals = NDArray[np.float64]
 
-NOTHING = np.empty(0)
+NOTHING, NO_IMPACTS = np.empty(0), np.empty((0, 3))
 RELEASE_DT = 0.005  # s between samples of a free motion without a record
 MOST_IMPACTS = 20_000  # after the record and its tail, to call it still rocking; eta = 0.999 rests in 14 000
 
 
-@dataclass(frozen=True, eq=False)
-class Deck:
-    """The arrays that all runs of a call share; see `rocking_cli.dynamics.kernels.run`.
+def run_deck(
+    deck: Deck,
+    runs: Reals,
+    marks: Reals,
+    *,
+    first: int = 0,
+    stop: int | None = None,
+    rtol: float,
+    most_impacts: int = MOST_IMPACTS,
+    every: int = 1,
+    phi: Reals = NOTHING,
+    rate: Reals = NOTHING,
+    impacts: Reals = NO_IMPACTS,
+) -> None:
+    """Run the kernel, which fills `marks` and, if given, the samples and the impacts of the last history."""
+    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
 
-    Parameters
-    ----------
-    structures, numbers, forces, angles, certain : ndarray
-        The models.
-    records, u, v, ahead, v_ahead : ndarray
-        The ground motions.
-    """
-
-    structures: NDArray[np.int64]
-    numbers: Reals
-    forces: Reals
-    angles: Reals
-    certain: Reals
-    records: Reals
-    u: Reals
-    v: Reals
-    ahead: Reals
-    v_ahead: Reals
-
-    def run(
-        self,
-        runs: Reals,
-        marks: Reals,
-        *,
-        first: int = 0,
-        stop: int | None = None,
-        rtol: float,
-        most_impacts: int = MOST_IMPACTS,
-        every: int = 1,
-        phi: Reals | None = None,
-        rate: Reals | None = None,
-        impacts: Reals | None = None,
-    ) -> None:
-        """Run the kernel, which fills `marks` and, if given, the samples and the impacts of the last history."""
-        from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
-
-        nothing = np.empty(0)
-        kernels.run(
-            first,
-            len(runs) if stop is None else stop,
-            runs,
-            self.structures,
-            self.numbers,
-            self.forces,
-            self.angles,
-            self.certain,
-            self.records,
-            self.u,
-            self.v,
-            self.ahead,
-            self.v_ahead,
-            rtol,
-            most_impacts,
-            every,
-            nothing if phi is None else phi,
-            nothing if rate is None else rate,
-            np.empty((0, 3)) if impacts is None else impacts,
-            marks,
-        )
+    samples = kernels.Samples(every, phi, rate, impacts)
+    kernels.run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, samples, marks)
+    has_run(HISTORIES)
 
 
 def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> Deck:
     """Lay out models and ground motions (None: no shaking) for the kernel; a single one is not copied."""
+    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+
     structures, records = [], []
     cells = 0
     for model in models:
@@ -102,7 +65,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         if any_vertical:
             v_aheads.add(_strongest_to_come(np.maximum(-v, 0.0), dt / v_dt, length))  # beside the other
         records.append((*places, dt, v_dt))
-    return Deck(
+    return kernels.Deck(
         np.array(structures, dtype=np.int64),
         np.array([model.numbers for model in models]),
         _joined([model.forces for model in models]),

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
@@ -14,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.core import Equivalence
 from rocking_cli.dynamics import pulse_motion
-from rocking_cli.dynamics.compiled import compile_source
+from rocking_cli.dynamics.compiled import PULSES, compile_source, has_run
 from rocking_cli.dynamics.exact import polarity_of, segments_of, sides_of
+from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import Pulse
 
@@ -102,19 +101,12 @@ def exact_many(
     results = np.empty((n, 4))
     if n:
         many = _compiled()
-        with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-            units = {
-                pool.submit(many, sides, segments, factors, stretches, k, min(k + UNIT, n), results): k
-                for k in range(0, n, UNIT)
-            }
-            try:
-                for unit in as_completed(units):
-                    unit.result()
-                    if progress is not None:
-                        progress(min(UNIT, n - units[unit]))
-            except BaseException:  # an interrupt: what has not begun is not begun
-                pool.shutdown(cancel_futures=True)
-                raise
+
+        def follow(first: int, stop: int) -> None:
+            many(sides, segments, factors, stretches, first, stop, results)
+
+        in_parts(follow, n, UNIT, threads, progress)
+        has_run(PULSES)
     status, peaks, impacts, uplift_time = results.T
     overturned = status == pulse_motion.OVERTURNED
     return ExactResponses(

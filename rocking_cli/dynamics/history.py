@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out
+from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, run_deck
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build_models
 from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.errors import InputError, SolverError
@@ -198,7 +198,7 @@ def follow(
     runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE]] = 1.0
     runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = np.nan
     runs[0, kernels.START] = model.q(release)
-    lay_out([model], [motion]).run(runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
+    run_deck(lay_out([model], [motion]), runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
     (mark,) = marks
     status, ended = int(mark[kernels.STATUS]), float(mark[kernels.ENDED])
     if status == kernels.STALLED:

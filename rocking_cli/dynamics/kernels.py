@@ -50,6 +50,57 @@ SLOW = 0.5  # of 1/p: the interval to go on with after the record
 COINCIDE = 1e-9  # of an interval: samples of two components closer than this are at one moment
 
 
+class Deck(NamedTuple):
+    """Structures and ground motions, one after the other, that any number of histories are of."""
+
+    structures: np.ndarray  # int (m, 3): first row and number of rows of the tables of each, and whether it is linear
+    numbers: np.ndarray  # (m, 2, COLUMNS): see the columns above
+    # (cells, 2, 8): in each cell, for either direction, the cubics of G/sqrt(I) and B/sqrt(I), and of phi and dphi/dq,
+    # powers 0 to 3 of the place in the cell.
+    forces: np.ndarray
+    angles: np.ndarray
+    certain: (
+        np.ndarray
+    )  # (cells, 2): largest ground acceleration, over g, that cannot stop an outward motion from there
+    records: np.ndarray  # (k, 8): see the columns above
+    u: np.ndarray  # horizontal ground acceleration of all records [m/s2], straight between samples, zero after the last
+    v: np.ndarray  # vertical ground acceleration
+    ahead: np.ndarray  # at each sample of the horizontal component, the largest |u| from there on [m/s2]
+    v_ahead: np.ndarray  # and the largest -v
+
+
+class Samples(NamedTuple):
+    """Where the samples and impacts of a history are written; empty arrays where they are not wanted."""
+
+    every: int  # of how many samples of the ground motion one is kept
+    phi: np.ndarray  # (samples,): signed rotation [rad], NaN after overturning
+    rate: np.ndarray  # (samples,): rate [rad/s]
+    impacts: np.ndarray  # (most, 3): time [s], sign of the direction that ends and rate before [rad/s]
+
+
+class Structure(NamedTuple):
+    """The tables of one structure, and the numbers of one history."""
+
+    linear: bool
+    numbers: np.ndarray
+    forces: np.ndarray
+    angles: np.ndarray
+    certain: np.ndarray
+
+
+class Motion(NamedTuple):
+    """One ground motion: both components with their factors and intervals, and the strongest that is to come."""
+
+    u: np.ndarray
+    factor: float
+    dt: float
+    v: np.ndarray
+    v_factor: float
+    v_dt: float
+    ahead: np.ndarray
+    v_ahead: np.ndarray
+
+
 class Law(NamedTuple):
     """What a motion in one direction obeys, besides its force table."""
 
@@ -395,12 +446,13 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
 
 
 @compile_kernel
-def is_certain(linear, numbers, certain, d, q, strongest):
+def is_certain(structure, d, q, strongest):
     """Whether an outward motion from q beyond phi_cr overturns whatever comes: nothing later can turn it back."""
-    if linear:
+    numbers = structure.numbers
+    if structure.linear:
         return q >= numbers[d, Q_CR] + numbers[d, KAPPA_G] * strongest
-    cell = min(int(q * numbers[d, PER_CELL]), certain.shape[0] - 1)
-    return numbers[d, GRAVITY] * certain[cell, d] >= strongest
+    cell = min(int(q * numbers[d, PER_CELL]), structure.certain.shape[0] - 1)
+    return numbers[d, GRAVITY] * structure.certain[cell, d] >= strongest
 
 
 @compile_kernel
@@ -431,9 +483,12 @@ def lifts_at(numbers, tau, end, u, ramp, g, grade):
 
 
 @compile_inline
-def angle(angles, numbers, d, q):
+def angle(structure, d, q):
     """phi and dphi/dq at q."""
-    place = q * numbers[d, PER_CELL]
+    if structure.linear:
+        return q, 1.0
+    angles = structure.angles
+    place = q * structure.numbers[d, PER_CELL]
     k = min(max(int(place), 0), angles.shape[0] - 1)
     x = place - k
     phi = angles[k, d, 0] + x * (angles[k, d, 1] + x * (angles[k, d, 2] + x * angles[k, d, 3]))
@@ -449,50 +504,31 @@ def stays(numbers, u):
 
 
 @compile_kernel
-def draw(linear, numbers, forces, angles, law, ground, t, tau, end, state, h, rtol, dt, drawn, phi_out, rate_out):
+def draw(structure, law, ground, t, flight, rtol, dt, drawn, samples):
     """Fill in the samples of a flight from tau to end, on a course of its own: what is drawn changes no motion.
 
     Returns how many samples are done.
     """
+    tau, end, state, h = flight
     nothing = np.zeros(MARKS)
     s = 1.0 - 2.0 * law.d
-    while drawn < phi_out.size and drawn * dt <= t + end:
-        _, tau, state, h = fly(forces, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing)
-        phi, speed = (state.q, 1.0) if linear else angle(angles, numbers, law.d, state.q)
-        phi_out[drawn], rate_out[drawn] = s * phi, s * state.w * speed
+    while drawn < samples.phi.size and drawn * dt <= t + end:
+        _, tau, state, h = fly(structure.forces, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing)
+        phi, speed = angle(structure, law.d, state.q)
+        samples.phi[drawn], samples.rate[drawn] = s * phi, s * state.w * speed
         drawn += 1
     return drawn
 
 
 @compile_kernel
-def follow(
-    linear,
-    numbers,
-    forces,
-    angles,
-    certain,
-    u,
-    factor,
-    v,
-    v_factor,
-    dt,
-    v_dt,
-    ahead,
-    v_ahead,
-    start,
-    rtol,
-    most_impacts,
-    every,
-    phi_out,
-    rate_out,
-    impacts,
-    marks,
-):
+def follow(structure, motion, start, rtol, most_impacts, samples, marks):
     """Follow one motion to its end: at rest, overturned, or still rocking after `most_impacts` impacts.
 
-    `numbers` is this run's own; the other arguments are those of `run`, cut to one structure, record and history.
-    Returns how it ended.
+    It begins at rest, with q = `start`. Returns how it ended.
     """
+    linear, numbers, forces, _, _ = structure
+    u, factor, dt, v, v_factor, v_dt, ahead, v_ahead = motion
+    every, phi_out, rate_out, impacts = samples
     marks[:] = nan
     marks[PEAK : PEAK + 2] = 0.0
     marks[IMPACTS] = 0.0
@@ -528,7 +564,7 @@ def follow(
                 k += 1
             t = k * dt
         if shaken and k < every * phi_out.size and k % every == 0:  # t is the time of sample k
-            phi, speed = (q, 1.0) if linear else angle(angles, numbers, d, q)
+            phi, speed = angle(structure, d, q)
             drawn = k // every
             phi_out[drawn], rate_out[drawn] = s * phi, s * w * speed
             drawn += 1
@@ -596,24 +632,8 @@ def follow(
                 began, state, step = tau, State(q, w, f), h
                 event, tau, (q, w, f), h = fly(forces, law, ground, t, tau, end, state, h, rtol, marks)
                 if not shaken and drawn * out_dt <= t + tau and drawn < phi_out.size:
-                    drawn = draw(
-                        linear,
-                        numbers,
-                        forces,
-                        angles,
-                        law,
-                        ground,
-                        t,
-                        began,
-                        tau,
-                        state,
-                        step,
-                        rtol,
-                        out_dt,
-                        drawn,
-                        phi_out,
-                        rate_out,
-                    )
+                    flight = (began, tau, state, step)
+                    drawn = draw(structure, law, ground, t, flight, rtol, out_dt, drawn, samples)
                 if event == STUCK:
                     marks[ENDED], marks[SIDE] = t + tau, d
                     return STALLED
@@ -647,7 +667,7 @@ def follow(
             if k < v_ahead.size and v_ahead[k] > 0:  # less weight to pull it over
                 weight = 1 - v_ahead[k] * v_factor / gravity
                 strongest = strongest / weight if weight > 0 else inf
-            if is_certain(linear, numbers, certain, d, q, strongest):
+            if is_certain(structure, d, q, strongest):
                 marks[ENDED], marks[SIDE] = t, d
                 return OVERTURNED
         if marks[IMPACTS] - before > most_impacts or idle > IDLE:
@@ -656,28 +676,25 @@ def follow(
 
 
 @compile_kernel
-def run(
-    first,
-    stop,
-    runs,
-    structures,
-    all_numbers,
-    all_forces,
-    all_angles,
-    all_certain,
-    records,
-    u,
-    v,
-    ahead,
-    v_ahead,
-    rtol,
-    most_impacts,
-    every,
-    phi_out,
-    rate_out,
-    impacts,
-    all_marks,
-):
+def numbers_of(usual, what):
+    """The numbers of one history: those of its structure, in its size and with its restitution.
+
+    A structure of another size has the same motion as this one under accelerations divided by its size.
+    """
+    numbers = usual.copy()
+    for d in range(2):
+        numbers[d, P] /= sqrt(what[SIZE])
+        numbers[d, REST] /= sqrt(what[SIZE])
+        numbers[d, GRAVITY] /= what[SIZE]
+        numbers[d, KAPPA_G] *= what[SIZE]
+        eta = what[ETA_POSITIVE + d]
+        if isfinite(eta):
+            numbers[d, ETA] = eta
+    return numbers
+
+
+@compile_kernel
+def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
     """Follow the histories first to stop of `runs`, one after the other.
 
     Parameters
@@ -688,81 +705,41 @@ def run(
         What each history is of, see the columns above: structure and record by number, factors on the two components
         (s of the horizontal one is the polarity), size of the structure as a factor, restitution of either direction,
         and q to start from at rest, negative in the negative direction.
-    structures : ndarray of int, shape (m, 3)
-        For each structure first row and number of rows of its tables, and whether it is linear.
-    all_numbers : ndarray, shape (m, 2, COLUMNS)
-        See the columns above.
-    all_forces, all_angles : ndarray, shape (cells, 2, 8)
-        In each cell, for either direction, the cubics of G/sqrt(I) and B/sqrt(I), and of phi and dphi/dq, powers 0 to
-        3 of the place in the cell.
-    all_certain : ndarray, shape (cells, 2)
-        Largest ground acceleration that cannot stop an outward motion from there on, over g.
-    records : ndarray, shape (k, 8)
-        See the columns above.
-    u, v : ndarray
-        Horizontal and vertical ground acceleration of all records [m/s2], straight between samples, zero after the
-        last.
-    ahead, v_ahead : ndarray
-        At each sample of the horizontal component, the largest |u| and -v from there on [m/s2].
+    deck : Deck
+        The structures and records.
     rtol : float
         Relative local error of a step.
     most_impacts : int
         When to give up after the end of the record.
-    every : int
-        Of how many samples of the ground motion one is kept of the history.
-    phi_out, rate_out : ndarray, shape (samples,)
-        Signed rotation [rad] and rate [rad/s] of the last history at the samples kept, to be filled; NaN after
-        overturning.
-    impacts : ndarray, shape (most, 3)
-        Time [s], sign of the direction that ends and rate before [rad/s] of its first impacts, to be filled.
+    samples : Samples
+        Takes the samples and impacts of the last history.
     all_marks : ndarray, shape (n, MARKS)
         For each history peaks of both directions [rad], last upward crossing of phi_cr, first uplift, number of
         impacts, end time, index of the direction it ended in, and how it ended; to be filled.
     """
-    numbers = np.empty((2, COLUMNS))
     for i in range(first, stop):
         what = runs[i]
         m, r = int(what[STRUCTURE]), int(what[RECORD])
-        size = what[SIZE]
-        # A structure of another size has the same motion as this one under accelerations divided by its size.
-        for d in range(2):
-            numbers[d] = all_numbers[m, d]
-            numbers[d, P] /= sqrt(size)
-            numbers[d, REST] /= sqrt(size)
-            numbers[d, GRAVITY] /= size
-            numbers[d, KAPPA_G] *= size
-            eta = what[ETA_POSITIVE + d]
-            if isfinite(eta):
-                numbers[d, ETA] = eta
-        cells = slice(structures[m, 0], structures[m, 0] + structures[m, 1])
-        of = records[r]
+        numbers = numbers_of(deck.numbers[m], what)
+        cells = slice(deck.structures[m, 0], deck.structures[m, 0] + deck.structures[m, 1])
+        linear = deck.structures[m, 2] == 1
+        structure = Structure(linear, numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells])
+        of, size = deck.records[r], what[SIZE]
         horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
         vertical = slice(int(of[V_FIRST]), int(of[V_FIRST]) + int(of[V_SIZE]))
         later = slice(int(of[AHEAD_FIRST]), int(of[AHEAD_FIRST]) + int(of[AHEAD_SIZE]))
         v_later = later if of[V_SIZE] > 0 else slice(0, 0)
-        marks = all_marks[i]
-        marks[STATUS] = follow(
-            structures[m, 2] == 1,
-            numbers,
-            all_forces[cells],
-            all_angles[cells],
-            all_certain[cells],
-            u[horizontal],
+        motion = Motion(
+            deck.u[horizontal],
             what[FACTOR] / size,
-            v[vertical],
-            what[V_FACTOR] / size,
             of[DT],
+            deck.v[vertical],
+            what[V_FACTOR] / size,
             of[V_DT],
-            ahead[later],
-            v_ahead[v_later],
-            what[START],
-            rtol,
-            most_impacts,
-            every,
-            phi_out,
-            rate_out,
-            impacts,
-            marks,
+            deck.ahead[later],
+            deck.v_ahead[v_later],
         )
+        marks = all_marks[i]
+        marks[STATUS] = follow(structure, motion, what[START], rtol, most_impacts, samples, marks)
         for d in range(2):
-            marks[PEAK + d], _ = angle(all_angles[cells], numbers, d, marks[PEAK + d])
+            marks[PEAK + d], _ = angle(structure, d, marks[PEAK + d])

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
+from matplotlib.ticker import PercentFormatter
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
@@ -76,7 +76,7 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
     if stop > WIDEST * start:
         fine = np.geomspace(start / 1.1, stop * 1.1, FINE)
         axes.set_xscale("log")
-        _plain_numbers(axes.xaxis)
+        style.plain_numbers(axes.xaxis)
     else:
         fine = np.linspace(0.0, stop * 1.05, FINE)
     for k, each in enumerate(drawn):
@@ -234,7 +234,7 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
                           fontsize=style.SMALL)  # fmt: skip
     if intensity[-1] > WIDEST * intensity[0]:
         axes.set_xscale("log")
-        _plain_numbers(axes.xaxis)
+        style.plain_numbers(axes.xaxis)
     axes.set_xlim(float(intensity[0]), float(intensity[-1]))
     axes.set_ylim(0.0, top)
     axes.set_yticks([*np.arange(0.0, 1.1, 0.2), middle], [*(f"{y:.1f}" for y in np.arange(0.0, 1.1, 0.2)), "overturns"])
@@ -294,7 +294,7 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     said += [f"one of {every} is drawn"] if every > 1 else []
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in said]
     for axis in (axes.xaxis, axes.yaxis):
-        _plain_numbers(axis)
+        style.plain_numbers(axis)
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1])
     axes.set_xlabel(labels[0], fontsize=style.LABEL)
@@ -313,10 +313,3 @@ def _some(found: Bivariate, number: Integers, every: int) -> tuple[Reals, Reals]
 
 def _head(axes: Axes, title: str) -> None:
     style.heading(axes, title)
-
-
-def _plain_numbers(axis: Any) -> None:
-    """Plain numbers along a logarithmic axis."""
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())

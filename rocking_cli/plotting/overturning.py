@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from rocking_cli import names
@@ -150,9 +149,7 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
         axes.set_ylim(found.top / 10, found.top)  # there is no curve to choose them by
         style.note(axes, "none overturns")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axis.set_minor_formatter(NullFormatter())
+        style.plain_numbers(axis)
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
     axes.set_xlabel("period of the pulse [s]", fontsize=style.LABEL)
     axes.set_ylabel("least amplitude that overturns [g]", fontsize=style.LABEL)

@@ -11,7 +11,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, PercentFormatter
+from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from rocking_cli.plotting import style
 from rocking_cli.studies.shaken import Reals
@@ -133,9 +133,7 @@ def _scale_peaks(axes: Axes, top: float, rows: int) -> None:
 
 def _log_ticks(axis: Axis, ratio: float) -> None:
     """Ticks in plain numbers on a logarithmic axis over this ratio of its ends."""
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if ratio > SHORT else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
+    style.plain_numbers(axis, (1.0, 2.0, 5.0) if ratio > SHORT else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
 
 
 def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
