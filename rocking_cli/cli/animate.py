@@ -9,6 +9,7 @@ import click
 
 from rocking_cli.cli import motions, options, shaking, terminal
 from rocking_cli.errors import INCOMPLETE, InputError, Problem, RockingError
+from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
@@ -100,7 +101,7 @@ def command(
     several = len(paths) + missing + len(pulses) > 1
     if not paths and not pulses:
         ctx.exit(InputError.exit_code)
-    from rocking_cli.cli import responses, structures
+    from rocking_cli.cli import responses
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.dynamics.history import RTOL, TAIL
     from rocking_cli.io.files import keep_apart
@@ -130,7 +131,7 @@ def command(
         try:
             (history,) = shaking.respond(models, motion, None, TAIL, RTOL).values()
             film = Film(drawn, history, motion)
-            found = _write(place, film, structures.label(mechanism), speed, fps)
+            found = _write(place, film, heading(mechanism), speed, fps)
         except RockingError as error:
             if not several:
                 raise
@@ -162,7 +163,7 @@ def command(
             if beside is not None:
                 terminal.result(str(beside))
     if several and not as_json:
-        terminal.table(structures.label(mechanism), ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
+        terminal.table(heading(mechanism), ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
     if rows and not as_json:
         terminal.result(responses.restitution_used(mechanism, blocks))
     if missing or refused:

@@ -9,6 +9,7 @@ import click
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.pictures import write_picture
+from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from rocking_cli.core import Angle, Length, Mechanism
@@ -62,11 +63,11 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
     if plot is not None:
         from rocking_cli.plotting.structure import draw_structure
 
-        write_picture(plot, draw_structure(shown, structures.label(mechanism), ratio))
+        write_picture(plot, draw_structure(shown, heading(mechanism), ratio))
     if as_json:
         terminal.print_json(shown.as_dict())
         return
-    terminal.result(structures.label(mechanism))
+    terminal.result(heading(mechanism))
     measured: list[Length | Angle] = [*shown.sketch.lengths, *shown.sketch.angles]
     for each in measured:
         where = f" ({each.direction.label})" if each.direction is not None else ""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rocking_cli.cli import terminal
 from rocking_cli.errors import INCOMPLETE as INCOMPLETE
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.views.view import ABSENT, number
 
 if TYPE_CHECKING:
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility
@@ -182,8 +183,8 @@ def _print_curves(structure: str, measure: str, curves: Sequence[Fragility], con
             each.curve.kind,
             _estimate(each.curve.median),
             _estimate(spread(each.curve)),
-            terminal.number(None if each.curve.goodness is None else each.curve.goodness.p_value, 2),
-            *([terminal.number(None if each.rate is None else each.rate.rate, 3)] if rated else []),
+            number(None if each.curve.goodness is None else each.curve.goodness.p_value, 2),
+            *([number(None if each.rate is None else each.rate.rate, 3)] if rated else []),
         ]
         for each in curves
     ]
@@ -243,7 +244,7 @@ def spread(curve: Curve) -> Estimate | None:
 
 def _estimate(estimate: Estimate | None) -> str:
     """A number above its interval."""
-    return terminal.ABSENT if estimate is None else f"{estimate.value:.4g}\n{estimate.low:.3g} - {estimate.high:.3g}"
+    return ABSENT if estimate is None else f"{estimate.value:.4g}\n{estimate.low:.3g} - {estimate.high:.3g}"
 
 
 def _as_json(

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rocking_cli.cli import motions, options
+from rocking_cli.cli import motions, options, terminal
 from rocking_cli.errors import INCOMPLETE, InputError
+from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from rocking_cli.cli.motions import Scaled
@@ -72,10 +73,10 @@ def command(
     if not neighbours:
         raise click.UsageError("A share needs neighbours: --neighbours must be at least 1 here.")
     motions.check_scaling(scale, target_pga, target_pgv)
-    from rocking_cli.cli import margin_results as results
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.neighbours import Around
+    from rocking_cli.views.margin import view
 
     paths, missing = motions.find(records)
     keep_apart([("--plot", plot)], [file, *(str(path) for path in paths)])
@@ -92,8 +93,8 @@ def command(
         from rocking_cli.cli.pictures import write_picture
         from rocking_cli.plotting.margin import draw_margins
 
-        write_picture(plot, draw_margins({row.name: row.margin for row in rows}, structures.label(mechanism)))
-    results.give(mechanism, rows, polarity, around, as_json=as_json)
+        write_picture(plot, draw_margins({row.name: row.margin for row in rows}, heading(mechanism)))
+    terminal.show(view(mechanism, rows, polarity, around), as_json=as_json)
     if missing or refused:
         ctx.exit(INCOMPLETE)
 
@@ -101,8 +102,8 @@ def command(
 def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], around: Around) -> list[Any]:
     """The margin of each motion, and the share next to the motion itself."""
     from rocking_cli.cli import work
-    from rocking_cli.cli.margin_results import Row
     from rocking_cli.studies.margin import FACTORS, margin
+    from rocking_cli.views.margin import Row
 
     rows = []
     each_has = (FACTORS.size + 1) * around.count * len(polarities)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.views.view import ABSENT
 
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
@@ -129,7 +130,7 @@ def _one(cls: type[Mechanism], package: str, as_json: bool) -> None:
             row["symbol"],
             row["unit"],
             row["bounds"],
-            "required" if row["required"] else terminal.ABSENT if row["default"] is None else str(row["default"]),
+            "required" if row["required"] else ABSENT if row["default"] is None else str(row["default"]),
             row["description"],
         ]
         for row in rows

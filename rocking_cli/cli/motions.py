@@ -14,6 +14,7 @@ import click
 
 from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.views.view import FEW
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.pulses import Pulse
 
 MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and past following in a reasonable time
-FEW = 3  # motions of which each gets its own lines; of more there is a summary
 
 
 def check_scaling(scale: float | None, target_pga: float | None, target_pgv: float | None) -> None:

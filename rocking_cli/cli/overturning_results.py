@@ -17,6 +17,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.tables import write_table
 from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
 from rocking_cli.studies.shaken import Reals, Shaken
+from rocking_cli.views.view import ABSENT
 
 ROWS = 9  # of a table: the curves themselves are in --out and --json
 FROM_KINEMATICS = " (from kinematics, not measured)"
@@ -147,7 +148,7 @@ def _some(count: int) -> list[int]:
 
 
 def _cell(value: float) -> str:
-    return terminal.ABSENT if value != value else f"{value:.3g}"
+    return ABSENT if value != value else f"{value:.3g}"
 
 
 def give_comparison(
@@ -204,7 +205,7 @@ def _together(names: Sequence[str]) -> str:
 
 
 def _goes_first(names: Sequence[str]) -> str:
-    return (names[0] if len(names) == 1 else "a tie") if names else terminal.ABSENT
+    return (names[0] if len(names) == 1 else "a tie") if names else ABSENT
 
 
 def _print_comparison(found: Comparison, title: str) -> None:
@@ -224,7 +225,7 @@ def _print_comparison(found: Comparison, title: str) -> None:
         )
         terminal.result(f"Goes first, of the periods: {said}.")
     if np.isnan(found.least).any():
-        terminal.result(f"{terminal.ABSENT}: none up to {found.top:.4g} g {names.OVERTURNS} it.")
+        terminal.result(f"{ABSENT}: none up to {found.top:.4g} g {names.OVERTURNS} it.")
     low = [each.name for each in found.structures if found.top * STANDARD_GRAVITY <= each.unit]
     if low:
         terminal.result(f"Not even {found.top:.4g} g lifts {', '.join(low)}.")

@@ -9,6 +9,7 @@ import click
 from rocking_cli import names
 from rocking_cli.cli import options, terminal
 from rocking_cli.names import percent
+from rocking_cli.views.view import ABSENT, number
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.pulse_response import ClosedForm, ExactPulse
@@ -125,7 +126,7 @@ def _on_block(a: float, omega: float, eta: float, shape: str, as_json: bool) -> 
     terminal.result(_verdict(a, closed, exact))
 
 
-YES_NO = {True: "yes", False: "no", None: terminal.ABSENT}
+YES_NO = {True: "yes", False: "no", None: ABSENT}
 
 
 def closed_json(closed: ClosedForm) -> dict[str, Any]:
@@ -168,7 +169,6 @@ def _fate(overturns: bool | None) -> str:
 def _closed_rows(closed: ClosedForm) -> list[list[str]]:
     from rocking_cli.dynamics.pulse_response import CONDITIONS
 
-    number = terminal.number
     return [
         ["closed form D0*", number(closed.D0), "energy of the free motion after the pulse (Eq. 42)"],
         ["  max ratio", number(closed.max_ratio), "peak of the first rebound over phi_cr (Eq. 41)"],
@@ -178,7 +178,6 @@ def _closed_rows(closed: ClosedForm) -> list[list[str]]:
 
 
 def _exact_rows(exact: ExactPulse) -> list[list[str]]:
-    number = terminal.number
     return [
         ["exact max ratio", number(exact.max_ratio), "largest rotation over phi_cr"],
         ["  first excursion", number(exact.first_excursion), "peak before the first impact"],

@@ -10,6 +10,7 @@ from rocking_cli.cli import terminal
 from rocking_cli.cli.responses import pulse_json
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, fit_pulses
+from rocking_cli.views.view import number
 
 PATIENCE = 1.0  # s without a word
 
@@ -60,17 +61,17 @@ def print_tables(name: str, fits: Sequence[PulseFit]) -> None:
 
 
 def _rows(fits: Sequence[PulseFit]) -> list[list[str]]:
-    def number(values: list[float | None]) -> list[str]:
-        return [terminal.number(value, 4) for value in values]
+    def each(values: list[float | None]) -> list[str]:
+        return [number(value, 4) for value in values]
 
     further = [pulse_json(fit.pulse) for fit in fits]
     return [
         ["energy captured", *(f"{100 * fit.captured:.1f}" for fit in fits), "%"],
-        ["a_p", *number([fit.pulse.amplitude / STANDARD_GRAVITY for fit in fits]), "g"],
-        ["T_p", *number([fit.pulse.period for fit in fits]), "s"],
-        ["start", *number([fit.start for fit in fits]), "s"],
-        ["centre", *number([fit.centre for fit in fits]), "s"],
+        ["a_p", *each([fit.pulse.amplitude / STANDARD_GRAVITY for fit in fits]), "g"],
+        ["T_p", *each([fit.pulse.period for fit in fits]), "s"],
+        ["start", *each([fit.start for fit in fits]), "s"],
+        ["centre", *each([fit.centre for fit in fits]), "s"],
         ["sign", *(f"{fit.sign:+d}" for fit in fits), ""],
-        ["phase", *number([pulse.get("phase") for pulse in further]), "deg"],
-        ["cycles", *number([pulse.get("cycles") for pulse in further]), ""],
+        ["phase", *each([pulse.get("phase") for pulse in further]), "deg"],
+        ["cycles", *each([pulse.get("cycles") for pulse in further]), ""],
     ]

@@ -25,6 +25,7 @@ from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.names import percent
+from rocking_cli.views.view import ABSENT, heading, number
 
 KAPPAS = {"linear1": 1, "linear2": 2}
 
@@ -235,7 +236,6 @@ def _as_json(
 
 
 def _print_pulse(mechanism: Mechanism, equivalence: Equivalence, pulse: Pulse) -> None:
-    number = terminal.number
     rows = []
     for label, block in _directions(equivalence).items():
         scaled = _scaled(mechanism, block, pulse)
@@ -243,7 +243,7 @@ def _print_pulse(mechanism: Mechanism, equivalence: Equivalence, pulse: Pulse) -
     if equivalence.symmetric:
         rows = [["both", *rows[0][1:]]]
     terminal.table(
-        f"{structures.label(mechanism)}, {pulse}",
+        f"{heading(mechanism)}, {pulse}",
         ["direction", "omega", "a\nkappa1", "a\nkappa2", "eta"],
         rows,
         numbers=range(1, 5),
@@ -251,10 +251,10 @@ def _print_pulse(mechanism: Mechanism, equivalence: Equivalence, pulse: Pulse) -
 
 
 def _print_answers(title: str, answers: Mapping[str, Answer]) -> None:
-    number, found = terminal.number, list(answers.values())
+    found = list(answers.values())
 
     def in_degrees(phi: float | None) -> str:
-        return terminal.ABSENT if phi is None else number(degrees(phi), 5)
+        return ABSENT if phi is None else number(degrees(phi), 5)
 
     rows = [
         ["pulse", *("exact" if each.exact else "sampled" for each in found), ""],
@@ -299,7 +299,6 @@ def _verdict(answers: Mapping[str, Answer]) -> str:
 
 
 def _print_closed(found: Mapping[str, Closed], answers: Mapping[str, Answer]) -> None:
-    number = terminal.number
     closed = [each.closed for each in found.values()]
     rows = [
         ["D0* (Eq. 42)", *(number(each.D0) for each in closed)],

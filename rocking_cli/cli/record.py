@@ -12,6 +12,7 @@ import click
 from rocking_cli.cli import motions, options, terminal
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
+from rocking_cli.views.view import ABSENT, number
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
@@ -256,10 +257,9 @@ def _as_json(record: Shown) -> dict[str, Any]:
 
 def _rows(records: Sequence[Shown]) -> list[list[str]]:
     """The rows of the table: a label, a cell for each record, a unit."""
-    number = terminal.number
     rows = [
         ("format", [_folded(r.motion.format) for r in records], ""),
-        ("channel", [_channel(r) or terminal.ABSENT for r in records], ""),
+        ("channel", [_channel(r) or ABSENT for r in records], ""),
         ("unit in the file", [r.motion.unit for r in records], ""),
         ("points", [str(r.motion.npts) for r in records], ""),
         ("dt", [number(r.motion.dt) for r in records], "s"),
@@ -275,7 +275,7 @@ def _rows(records: Sequence[Shown]) -> list[list[str]]:
         ("mean acceleration", [number(r.measures.mean, 2) for r in records], "g"),
         ("p dt", [number(r.p_dt, 2) for r in records], ""),
     ]
-    silent = {"channel": terminal.ABSENT, "scaled by": "1", "p dt": terminal.ABSENT}  # says nothing if all are this
+    silent = {"channel": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
     return [
         [label, *cells, unit]
         for label, cells, unit in rows

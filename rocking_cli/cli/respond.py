@@ -10,6 +10,7 @@ import click
 
 from rocking_cli.cli import motions, options, shaking, terminal
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
+from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
@@ -189,7 +190,6 @@ def command(
     if shaken and not paths and not pulses:
         ctx.exit(InputError.exit_code)
     from rocking_cli.cli import respond_results as results
-    from rocking_cli.cli import structures
     from rocking_cli.cli.answers import Question, answer
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.io.files import keep_apart
@@ -227,7 +227,7 @@ def command(
     table, details = results.Several(mechanism, equivalence, chosen), []
     with terminal.progress(len(outs), "motions") as advance:
         for each, to, picture in zip(given, outs, plots, strict=True):
-            title = structures.label(mechanism)
+            title = heading(mechanism)
             try:
                 found = answer(built, each, asked)
             except RockingError as error:

@@ -18,6 +18,7 @@ from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import percent
 from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
+from rocking_cli.views.view import ABSENT, heading
 
 
 def write(found: Answer, out: Path | None, plot: Path | None, title: str) -> None:
@@ -92,7 +93,7 @@ class Several:
     """
 
     def __init__(self, mechanism: Mechanism, blocks: Equivalence, models: Sequence[ModelName]) -> None:
-        self._title = structures.label(mechanism)
+        self._title = heading(mechanism)
         self._restitution = responses.restitution_used(mechanism, blocks)
         self._models = models
         self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
@@ -119,7 +120,7 @@ class Several:
         self._fallen += any(histories[self._best].overturned for histories in found.runs.values())
 
     def _row(self, what: str, pga: str, histories: responses.Histories, near: Neighbours | None) -> None:
-        around = [percent(near.overturned), _peak(near.peak_ratio[1])] if near is not None else [terminal.ABSENT] * 2
+        around = [percent(near.overturned), _peak(near.peak_ratio[1])] if near is not None else [ABSENT] * 2
         self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models), *around])
 
     def print(self) -> None:

@@ -16,6 +16,7 @@ from rocking_cli.dynamics.verdict import SENSE, agreements, governs, verdict
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
+from rocking_cli.views.view import ABSENT, number
 
 Histories = Mapping[ModelName, History]
 Runs = Mapping[int, Histories]
@@ -164,11 +165,10 @@ def print_tables(title: str, runs: Runs, near: Mapping[int, Neighbours], etas: E
 
 
 def _print_table(title: str, histories: Histories) -> None:
-    number = terminal.number
     runs = list(histories.values())
 
     def in_degrees(phi: float | None) -> str:
-        return terminal.ABSENT if phi is None else number(degrees(phi), 5)
+        return ABSENT if phi is None else number(degrees(phi), 5)
 
     rows = [
         ["outcome", *(run.words for run in runs), ""],
@@ -185,7 +185,7 @@ def _print_table(title: str, histories: Histories) -> None:
 
 def _print_impacts(title: str, history: History, etas: Equivalence) -> None:
     rows = [
-        [f"{time:.4f}", SENSE[direction], terminal.number(before, 4), terminal.number(after, 4)]
+        [f"{time:.4f}", SENSE[direction], number(before, 4), number(after, 4)]
         for time, direction, before, after in _impacts(history, etas, FIRST)
     ]
     columns = ["time [s]", "ends motion", "before [rad/s]", "after [rad/s]"]

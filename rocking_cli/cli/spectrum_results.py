@@ -18,6 +18,7 @@ from rocking_cli.io.tables import write_table
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
 from rocking_cli.studies.shaken import Integers, Reals
 from rocking_cli.studies.spectrum import Spectrum
+from rocking_cli.views.view import ABSENT
 
 ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
 LISTED = 3  # histories that could not be followed
@@ -152,7 +153,7 @@ def _finite(values: Reals) -> list[float | None]:
 
 def _peak(value: float) -> str:
     if value != value:
-        return terminal.ABSENT
+        return ABSENT
     return OVERTURNS if np.isinf(value) else f"{value:.3g}"
 
 

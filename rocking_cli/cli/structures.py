@@ -110,8 +110,3 @@ def told_apart(mechanisms: Sequence[Mechanism], files: Sequence[str]) -> list[Me
         each.model_copy(update={"name": name}) if names.count(each.name) > 1 else each
         for each, name in zip(mechanisms, longer, strict=True)
     ]
-
-
-def label(mechanism: Mechanism) -> str:
-    """A structure's name and kind, for a heading."""
-    return f"{mechanism.name}: {mechanism.title}"

@@ -8,17 +8,19 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
 from time import monotonic
-from typing import Any, Protocol, TextIO
+from typing import TYPE_CHECKING, Any, Protocol, TextIO
 
 import click
 
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
-ABSENT = "-"
+if TYPE_CHECKING:
+    from rocking_cli.views.view import View
+
 PATIENCE = 1.0  # s of work before it is shown
 NARROW = 76  # columns below which a table's explanations are left out: they would break into syllables
 
@@ -162,7 +164,7 @@ def table(
     columns: Sequence[str],
     rows: Sequence[Sequence[str]],
     *,
-    numbers: Sequence[int] = (),
+    numbers: Collection[int] = (),
     explained: bool = False,
 ) -> None:
     """A table of the result.
@@ -175,7 +177,7 @@ def table(
         Headings; a line break in one, or in a cell, is kept.
     rows : sequence of sequence of str
         Cells.
-    numbers : sequence of int
+    numbers : collection of int
         Indexes of columns to align to the right; these and the first never wrap.
     explained : bool
         Whether the last column only explains, and may be left out on a narrow terminal.
@@ -215,10 +217,17 @@ def table(
     console.print(drawn)
 
 
+def show(view: View, *, as_json: bool) -> None:
+    """Print a result: as one line of JSON, or as its tables and sentences."""
+    if as_json:
+        print_json(view.data)
+        return
+    for part in view.parts:
+        if isinstance(part, str):
+            result(as_typed(part))
+        else:
+            table(part.title, part.columns, part.rows, numbers=part.numbers, explained=part.explained)
+
+
 def _widest_line(text: str) -> int:
     return max(len(line) for line in text.split("\n"))
-
-
-def number(value: float | None, digits: int = 6) -> str:
-    """A number as people read it; a dash where there is none."""
-    return ABSENT if value is None else f"{value:.{digits}g}"

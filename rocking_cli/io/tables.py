@@ -42,19 +42,19 @@ def write_table(path: Path, blocks: Iterable[Columns]) -> None:
     write_whole(path, lambda stream: write(stream, blocks))
 
 
-def write_csv(stream: BinaryIO, blocks: Iterable[Columns]) -> None:
-    """Write a table as comma-separated text; see `write_table`."""
+def write_csv(stream: BinaryIO, blocks: Iterable[Columns], *, digits: int | None = 9) -> None:
+    """Write a table as comma-separated text; see `write_table`. Without `digits` numbers are written with all."""
     text = io.TextIOWrapper(stream, encoding="utf-8", newline="", write_through=True)
     writer = csv.writer(text, lineterminator="\n")
     for k, columns in enumerate(blocks):
         if k == 0:
             writer.writerow([printable(name) for name in columns])
         values = list(columns.values())
-        if all(isinstance(each, np.ndarray) and each.dtype == np.float64 for each in values):
+        if digits == 9 and all(isinstance(each, np.ndarray) and each.dtype == np.float64 for each in values):
             for start in range(0, len(values[0]), ROWS):
                 text.write(_lines(np.column_stack([np.asarray(each[start : start + ROWS]) for each in values])))
         else:
-            writer.writerows(zip(*([_field(value) for value in column] for column in values), strict=True))
+            writer.writerows(zip(*([_field(value, digits) for value in column] for column in values), strict=True))
     text.detach()
 
 
@@ -64,12 +64,12 @@ def _lines(table: np.ndarray) -> str:
     return (line * len(table) % tuple((table + 0.0).ravel().tolist())).replace("nan", "")  # no -0
 
 
-def _field(value: object) -> object:
+def _field(value: object, digits: int | None) -> object:
     if isinstance(value, str):
         return printable(value)  # a name may hold what no text file can
     if not isinstance(value, float):
         return value
-    return "" if value != value else f"{value + 0.0:.9g}"  # no -0
+    return "" if value != value else repr(value + 0.0) if digits is None else f"{value + 0.0:.{digits}g}"  # no -0
 
 
 def _write_parquet(stream: BinaryIO, blocks: Iterable[Columns]) -> None:

@@ -1,4 +1,4 @@
-"""Margins to overturning as people and programs read them."""
+"""Margins to overturning, as people and programs read them."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from textwrap import shorten
 from typing import Any, NamedTuple
 
-from rocking_cli.cli import structures, terminal
-from rocking_cli.cli.motions import FEW
 from rocking_cli.core import Mechanism
 from rocking_cli.names import percent
 from rocking_cli.studies.margin import LEVELS, Margin, in_words
 from rocking_cli.studies.neighbours import Around
+from rocking_cli.views.view import FEW, Table, View, heading, number
 
 NAME = 36  # characters of a motion's name in the table
 
@@ -25,42 +24,39 @@ class Row(NamedTuple):
     margin: Margin
 
 
-def give(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around, *, as_json: bool) -> None:
-    """Print margins."""
-    if as_json:
-        terminal.print_json(_json(mechanism, rows, polarity, around))
-        return
+def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around) -> View:
+    """The margins of a structure under some motions."""
     heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
     heads += [f"{percent(level)}\nfrom" for level in LEVELS] + [f"below\n{percent(level)} to" for level in LEVELS]
     cells = [
         [
             shorten(row.name, NAME, placeholder=" ..."),
             f"{row.pga:.3g}",
-            terminal.number(row.margin.uplift, 3),
+            number(row.margin.uplift, 3),
             percent(row.margin.itself),
-            *(terminal.number(row.margin.first(level), 3) for level in LEVELS),
+            *(number(row.margin.first(level), 3) for level in LEVELS),
             *(_last(row.margin, level) for level in LEVELS),
         ]
         for row in rows
     ]
     either = {"1": "", "-1": ", reversed", "both": ", the worse of two polarities"}[polarity]
-    terminal.result(structures.label(mechanism))
-    terminal.result(
+    parts: list[Table | str] = [
+        heading(mechanism),
         f"Factors on the motion{either}, and the share of the {around.count} motions next to each that overturn it: "
-        f"within {percent(around.amplitude)} in amplitude and {around.restitution:g} in restitution."
-    )
-    terminal.table("", heads, cells, numbers=range(1, len(heads)))
-    for row in rows if len(rows) <= FEW else []:
-        terminal.result(f"{row.name}: {in_words(row.margin)}")
+        f"within {percent(around.amplitude)} in amplitude and {around.restitution:g} in restitution.",
+        Table("", heads, cells, numbers=range(1, len(heads))),
+    ]
+    parts += [f"{row.name}: {in_words(row.margin)}" for row in rows] if len(rows) <= FEW else []
+    return View(_data(mechanism, rows, polarity, around), parts)
 
 
 def _last(found: Margin, level: float) -> str:
     """Up to which factor fewer overturn; a plus where that is the largest tried."""
     last = found.last_below(level)
-    return f"{terminal.number(last, 3)}{'+' if last == found.factors[-1] else ''}"
+    return f"{number(last, 3)}{'+' if last == found.factors[-1] else ''}"
 
 
-def _json(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around) -> dict[str, Any]:
+def _data(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around) -> dict[str, Any]:
     return {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "model": "nonlinear",
@@ -71,7 +67,7 @@ def _json(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Arou
                 "name": row.name,
                 "scale": row.factor,
                 "pga": row.pga,
-                **margin_json(row.margin),
+                **margin_data(row.margin),
                 "verdict": in_words(row.margin),
             }
             for row in rows
@@ -79,7 +75,7 @@ def _json(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Arou
     }
 
 
-def margin_json(found: Margin) -> dict[str, Any]:
+def margin_data(found: Margin) -> dict[str, Any]:
     """A margin: the shares, and where they pass each level."""
     return {
         "uplift": found.uplift,
