@@ -123,17 +123,17 @@ class TestRespond:
         assert run("respond", FRAME, "--record", "bad.csv", "--record", "no.csv", code=2).stdout == ""
 
     def test_one_that_cannot_be_followed_is_left_out(self, records, monkeypatch):
-        from rocking_cli.cli import shaking
         from rocking_cli.errors import SolverError
+        from rocking_cli.studies import response
 
-        whole = shaking.respond
+        whole = response.histories
 
         def some_fail(models, motion, *more):
             if "north" in motion.name:
                 raise SolverError("too small steps")
             return whole(models, motion, *more)
 
-        monkeypatch.setattr(shaking, "respond", some_fail)
+        monkeypatch.setattr(response, "histories", some_fail)
         for command in (("respond",), ("animate", "--out", "m.html")):
             result = run(*command, BLOCK, "--record", records, "--json", code=5)
             assert len(result.stdout.splitlines()) == 2 and "north.csv: too small steps" in result.stderr

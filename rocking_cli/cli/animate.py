@@ -101,7 +101,6 @@ def command(
     several = len(paths) + missing + len(pulses) > 1
     if not paths and not pulses:
         ctx.exit(InputError.exit_code)
-    from rocking_cli.cli import responses
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.dynamics.history import RTOL, TAIL
     from rocking_cli.io.files import keep_apart
@@ -109,6 +108,8 @@ def command(
     from rocking_cli.studies import neighbours as near
     from rocking_cli.studies.film import Film
     from rocking_cli.studies.picture import picture
+    from rocking_cli.studies.response import histories
+    from rocking_cli.views import response
 
     inputs = [*files, *(str(path) for path in paths)]
     keep_apart([("--out", out)], inputs)
@@ -129,7 +130,7 @@ def command(
         assert place is not None
         motion = each.motion.scaled(int(polarity) * each.factor)
         try:
-            (history,) = shaking.respond(models, motion, None, TAIL, RTOL).values()
+            (history,) = histories(models, motion, None, TAIL, RTOL).values()
             film = Film(drawn, history, motion)
             found = _write(place, film, heading(mechanism), speed, fps)
         except RockingError as error:
@@ -149,8 +150,8 @@ def command(
                     "model": model,
                     "outcome": history.outcome.name.lower(),
                     "peak_ratio": history.peak_ratio,
-                    "restitution": responses.restitution_json(mechanism, blocks),
-                    "neighbours": responses.neighbours_json(beside) if beside is not None else None,
+                    "restitution": response.restitution_data(mechanism, blocks),
+                    "neighbours": response.neighbours_data(beside) if beside is not None else None,
                     "verdict": film.verdict,
                     "start": film.start,
                     "end": film.end,
@@ -165,7 +166,7 @@ def command(
     if several and not as_json:
         terminal.table(heading(mechanism), ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
     if rows and not as_json:
-        terminal.result(responses.restitution_used(mechanism, blocks))
+        terminal.result(response.restitution_used(mechanism, blocks))
     if missing or refused:
         ctx.exit(INCOMPLETE)
 

@@ -12,8 +12,8 @@ from rocking_cli.errors import INCOMPLETE, InputError
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from rocking_cli.cli.motions import Scaled
     from rocking_cli.dynamics.model import Model
+    from rocking_cli.excitation.scaled import Scaled
     from rocking_cli.studies.neighbours import Around
 
 POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}

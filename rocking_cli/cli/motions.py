@@ -8,12 +8,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from textwrap import shorten
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import click
 
 from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import FEW
 
 if TYPE_CHECKING:
@@ -80,15 +81,6 @@ def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
     """Say on standard error what makes a motion doubtful."""
     for doubt in found:
         terminal.warning(f"{motion.name}: {doubt.text}")
-
-
-class Scaled(NamedTuple):
-    """A ground motion as read, the factor on it, and the pulse or the file that it comes from."""
-
-    motion: GroundMotion
-    factor: float
-    pulse: Pulse | None = None
-    file: Path | None = None
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:

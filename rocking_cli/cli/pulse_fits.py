@@ -7,9 +7,9 @@ from time import perf_counter
 from typing import Any
 
 from rocking_cli.cli import terminal
-from rocking_cli.cli.responses import pulse_json
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, fit_pulses
+from rocking_cli.views.response import pulse_data
 from rocking_cli.views.view import number
 
 PATIENCE = 1.0  # s without a word
@@ -35,7 +35,7 @@ def fit_json(fit: PulseFit) -> dict[str, Any]:
         "start": fit.start,
         "centre": fit.centre,
         "sign": fit.sign,
-        **pulse_json(fit.pulse),
+        **pulse_data(fit.pulse),
     }
 
 
@@ -64,7 +64,7 @@ def _rows(fits: Sequence[PulseFit]) -> list[list[str]]:
     def each(values: list[float | None]) -> list[str]:
         return [number(value, 4) for value in values]
 
-    further = [pulse_json(fit.pulse) for fit in fits]
+    further = [pulse_data(fit.pulse) for fit in fits]
     return [
         ["energy captured", *(f"{100 * fit.captured:.1f}" for fit in fits), "%"],
         ["a_p", *each([fit.pulse.amplitude / STANDARD_GRAVITY for fit in fits]), "g"],

@@ -12,7 +12,6 @@ import click
 from rocking_cli import names
 from rocking_cli.cli import structures, terminal
 from rocking_cli.cli.pulse import YES_NO, closed_json, how_far_off, impacts, off_exact
-from rocking_cli.cli.responses import pulse_json, restitution_json, restitution_used
 from rocking_cli.cli.work import say_if_compiling
 from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism
 from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
@@ -25,6 +24,7 @@ from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.names import percent
+from rocking_cli.views.response import pulse_data, restitution_data, restitution_used
 from rocking_cli.views.view import ABSENT, heading, number
 
 KAPPAS = {"linear1": 1, "linear2": 2}
@@ -219,8 +219,8 @@ def _as_json(
     }
     return {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
-        "pulse": {**pulse_json(pulse), "polarity": polarity if polarity == "both" else int(polarity)},
-        "restitution": restitution_json(mechanism, equivalence),
+        "pulse": {**pulse_data(pulse), "polarity": polarity if polarity == "both" else int(polarity)},
+        "restitution": restitution_data(mechanism, equivalence),
         "directions": {label: _scaled(mechanism, block, pulse) for label, block in _directions(equivalence).items()},
         "closed_form": {
             name: {

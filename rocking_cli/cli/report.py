@@ -171,11 +171,10 @@ def _command_line(ctx: click.Context) -> str:
 
 
 def _as_json(content: Content) -> dict[str, Any]:
-    from rocking_cli.cli.pulse_fits import fit_json
-    from rocking_cli.cli.responses import runs_json
     from rocking_cli.core import Direction
     from rocking_cli.report import words
     from rocking_cli.views.margin import margin_data
+    from rocking_cli.views.response import fit_data, runs_data
 
     verdicts = words.verdicts(content)
     return {
@@ -198,10 +197,10 @@ def _as_json(content: Content) -> dict[str, Any]:
                 "headline": said.headline,
                 "answers": {item.question: item.answer for item in said.answers},
                 "doubts": list(said.doubts),
-                **runs_json(each.runs, each.neighbours, None),
+                **runs_data(each.runs, each.neighbours, None),
                 "polarity": each.polarity,
                 "margin": margin_data(each.margin),
-                "pulses": [fit_json(fit) for fit in each.fits],
+                "pulses": [fit_data(fit) for fit in each.fits],
             }
             for each, said in zip(content.shakings, verdicts, strict=True)
         ],

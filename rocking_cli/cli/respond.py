@@ -9,11 +9,16 @@ from typing import TYPE_CHECKING, cast
 import click
 
 from rocking_cli.cli import motions, options, shaking, terminal
+from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
-from rocking_cli.views.view import heading
+from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
+    from rocking_cli.dynamics.history import History
     from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.excitation.pulse_fit import PulseFit
+    from rocking_cli.studies.response import Answer
 
 # The models, the pulses that are fitted and the least tolerance stand here again so that `--help` needs no numpy.
 NAMES = ("nonlinear", "linear1", "linear2")
@@ -189,19 +194,21 @@ def command(
         raise click.UsageError("--vertical is that of one motion: give one --record FILE or one --pulse PULSE.")
     if shaken and not paths and not pulses:
         ctx.exit(InputError.exit_code)
-    from rocking_cli.cli import respond_results as results
-    from rocking_cli.cli.answers import Question, answer
+    from rocking_cli.cli import structures
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.neighbours import Around
+    from rocking_cli.studies.response import Question, answer
+    from rocking_cli.views.response import view
+    from rocking_cli.views.several import Several
 
     inputs = [*files, *(str(path) for path in paths), vertical]
     keep_apart([("--out", out), ("--plot", plot)], inputs)
     check_table(out)
     structure = shaking.structure(files, records)
     mechanism, equivalence = structure.mechanism, structure.equivalence
-    given: Sequence[motions.Scaled | None] = [None]  # a free release
+    given: Sequence[Scaled | None] = [None]  # a free release
     refused = 0
     if shaken:
         up = (vertical, vertical_dt, vertical_channel) if vertical is not None else None
@@ -224,7 +231,7 @@ def command(
     built = structure.models(chosen)
     around = Around(neighbours, within_amplitude, within_restitution)
     asked = Question((1, -1) if polarity == "both" else (int(polarity),), release, tail, rtol, with_pulse, around)
-    table, details = results.Several(mechanism, equivalence, chosen), []
+    table, details = Several(mechanism, equivalence, chosen), []
     with terminal.progress(len(outs), "motions") as advance:
         for each, to, picture in zip(given, outs, plots, strict=True):
             title = heading(mechanism)
@@ -241,17 +248,48 @@ def command(
             if several and each is not None:
                 title = f"{title}, under {each.motion.name}"
                 table.add(found)
-            results.write(found, to, picture, title)
-            if as_json:
-                terminal.print_json(results.as_json(found, mechanism, equivalence, asked, polarity, impacts=impacts))
-            elif not several:
-                results.print_one(found, mechanism, equivalence, title, impacts=impacts)
+            _say_which_pulse(found.fit)
+            _write(found, to, picture, title)
+            doubts = structures.doubts(mechanism)
+            one = view(found, mechanism, equivalence, asked, polarity, title, doubts, impacts=impacts)
+            if as_json or not several:
+                terminal.show(one, as_json=as_json)
             elif impacts:
-                details.append((found, title))
+                details += ["", *one.parts]
     if several and not as_json:
-        table.print()
-        for one, title in details:
-            terminal.result()
-            results.print_one(one, mechanism, equivalence, title, impacts=True)
+        terminal.show(View({}, [*table.parts(), *details]), as_json=False)
     if missing or refused:
         ctx.exit(INCOMPLETE)
+
+
+def _say_which_pulse(fit: PulseFit | None) -> None:
+    from rocking_cli.excitation.base import STANDARD_GRAVITY
+
+    if fit is not None:
+        terminal.note(
+            f"pulse: {fit.pulse.title}, a_p = {fit.pulse.amplitude / STANDARD_GRAVITY:.4g} g, "
+            f"T_p = {fit.pulse.period:.4g} s, from {fit.start:.4g} s, sign {fit.sign:+d}: "
+            f"{100 * fit.captured:.0f} % of the energy of the velocity"
+        )
+
+
+def _write(found: Answer, out: Path | None, plot: Path | None, title: str) -> None:
+    """Write the histories and their picture to the files asked for.
+
+    In a table those of the second polarity, or to the pulse alone, stand last, under names that say so.
+    """
+    first, *others = found.runs.values()
+    if out is not None:
+        from rocking_cli.io.tables import write_table
+        from rocking_cli.views import history_table
+
+        columns: dict[str, History] = dict(first.items())
+        columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
+        columns |= {f"pulse {name}": run for name, run in (found.to_pulse or {}).items()}
+        write_table(out, history_table.blocks(columns, found.first))
+        terminal.note(f"wrote {out}")
+    if plot is not None:
+        from rocking_cli.plotting.history import draw_history
+
+        pulse = (found.fit, found.to_pulse) if found.fit is not None and found.to_pulse is not None else None
+        write_picture(plot, draw_history(first, found.first, title, others[0] if others else None, pulse))

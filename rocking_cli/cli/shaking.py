@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import motions, terminal
+from rocking_cli.excitation.scaled import Scaled
 
 if TYPE_CHECKING:
     from rocking_cli.core import Equivalence
-    from rocking_cli.dynamics.history import History
-    from rocking_cli.dynamics.model import Model, ModelName
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.measures import Measures
@@ -118,7 +117,7 @@ def gather(
     *,
     several: bool,
     vertical: tuple[str, float | None, str | None] | None = None,
-) -> tuple[list[motions.Scaled], int]:
+) -> tuple[list[Scaled], int]:
     """The motions that shake a structure, and how many of those asked for cannot be used.
 
     A single one is introduced in full, and an error in it ends the command. Of `several` each is reported by itself.
@@ -137,13 +136,4 @@ def gather(
     if vertical is not None:
         place, own, part = vertical
         motion = replace(motion, vertical=read_vertical(place, dt, own, units, part))
-    return [motions.Scaled(motion, judge(motion, blocks, *asked), pulse, file)], 0
-
-
-def respond(
-    models: Sequence[Model], motion: GroundMotion | None, release: float | None, tail: float, rtol: float
-) -> dict[ModelName, History]:
-    """The histories of the models under one motion."""
-    from rocking_cli.dynamics.history import follow
-
-    return {model.name: follow(model, motion, release=release or 0.0, tail=tail, rtol=rtol) for model in models}
+    return [Scaled(motion, judge(motion, blocks, *asked), pulse, file)], 0

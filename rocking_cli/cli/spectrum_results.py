@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.cli import terminal
-from rocking_cli.cli.motions import Scaled
 from rocking_cli.cli.overturning_results import FROM_KINEMATICS, numbers
 from rocking_cli.cli.pictures import write_picture
+from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.io.tables import write_table
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
 from rocking_cli.studies.shaken import Integers, Reals

@@ -1,17 +1,20 @@
-"""What one ground motion does to a structure, as `respond` is asked: both polarities, and the pulse in it alone."""
+"""What one ground motion does to a structure: in either polarity, with its neighbours, and the pulse in it alone."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rocking_cli.cli import shaking, terminal
-from rocking_cli.cli.motions import Scaled
-from rocking_cli.cli.responses import Histories, Runs
-from rocking_cli.dynamics.model import Model
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.dynamics.history import History, follow
+from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
+from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
+
+Histories = Mapping[ModelName, History]
+Runs = Mapping[int, Histories]
+"""Histories under each polarity asked for, 1 or -1."""
 
 # The pulses that are fitted, and the word for the one that fits best.
 FITTED = ("sine", "ricker", "mavroeidis")
@@ -72,33 +75,34 @@ class Answer:
     to_pulse: Histories | None = None
 
 
+def histories(
+    models: Sequence[Model], motion: GroundMotion | None, release: float | None, tail: float, rtol: float
+) -> dict[ModelName, History]:
+    """The histories of the models under one motion."""
+    return {model.name: follow(model, motion, release=release or 0.0, tail=tail, rtol=rtol) for model in models}
+
+
 def answer(models: Sequence[Model], given: Scaled | None, asked: Question) -> Answer:
     """Follow the models of a structure under a motion, or freely from a release."""
 
-    def follow(motion: GroundMotion | None) -> Histories:
-        return shaking.respond(models, motion, asked.release, asked.tail, asked.rtol)
+    def respond(motion: GroundMotion | None) -> Histories:
+        return histories(models, motion, asked.release, asked.tail, asked.rtol)
 
     under = {sign: given.motion.scaled(sign * given.factor) if given is not None else None for sign in asked.signs}
     first = under[asked.signs[0]]
     fit = _find(first, asked.with_pulse) if first is not None and asked.with_pulse is not None else None
-    runs = {sign: follow(motion) for sign, motion in under.items()}
+    runs = {sign: respond(motion) for sign, motion in under.items()}
     best = next((model for model in models if not model.is_linear), models[0])
     near = {
         sign: neighbours(best, motion, asked.around, release=asked.release, rtol=asked.rtol)
         for sign, motion in under.items()
         if asked.around.count
     }
-    alone = follow(fit.alone(first)) if fit is not None and first is not None else None
+    alone = respond(fit.alone(first)) if fit is not None and first is not None else None
     return Answer(given, first, runs, near, fit, alone)
 
 
 def _find(motion: GroundMotion, shape: str) -> PulseFit:
     """The pulse of a shape, or of the best, that captures most energy of the velocity of a motion."""
     fits = fit_pulses(motion, FITTED if shape == BEST else (shape,), ("velocity",))
-    fit = max(fits, key=lambda each: each.captured)
-    terminal.note(
-        f"pulse: {fit.pulse.title}, a_p = {fit.pulse.amplitude / STANDARD_GRAVITY:.4g} g, "
-        f"T_p = {fit.pulse.period:.4g} s, from {fit.start:.4g} s, sign {fit.sign:+d}: "
-        f"{100 * fit.captured:.0f} % of the energy of the velocity"
-    )
-    return fit
+    return max(fits, key=lambda each: each.captured)

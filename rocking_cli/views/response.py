@@ -1,42 +1,40 @@
-"""Responses as people and programs read them: of one polarity of the record, or of both."""
+"""What one ground motion does to a structure, as people and programs read it: in one polarity, or in both."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from math import degrees, isinf
 from typing import Any
 
-from rocking_cli.cli import terminal
 from rocking_cli.core import Direction, Equivalence, Mechanism
 from rocking_cli.core.restitution import restitution_in_words
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import SENSE, agreements, governs, verdict
+from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
-from rocking_cli.views.view import ABSENT, number
+from rocking_cli.studies.response import Answer, Histories, Question, Runs
+from rocking_cli.views.view import ABSENT, Table, View, number
 
-Histories = Mapping[ModelName, History]
-Runs = Mapping[int, Histories]
-"""Histories under each polarity asked for, 1 or -1."""
-
-FIRST = 12  # impacts of a model in its table; --json has all
+FIRST = 12  # impacts of a model in its table; the data have all
 
 
-def record_json(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
+def record_data(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
     """The record as read, or the pulse as given, and what was done to it."""
     return {
-        **_motion_json(motion),
-        **({"pulse": pulse_json(pulse)} if pulse is not None else {}),
-        "vertical": _motion_json(motion.vertical) if motion.vertical is not None else None,
+        **_motion_data(motion),
+        **({"pulse": pulse_data(pulse)} if pulse is not None else {}),
+        "vertical": _motion_data(motion.vertical) if motion.vertical is not None else None,
         "scale": factor,
         "polarity": polarity if polarity == "both" else int(polarity),
     }
 
 
-def pulse_json(pulse: Pulse) -> dict[str, Any]:
+def pulse_data(pulse: Pulse) -> dict[str, Any]:
     """A pulse: its shape, amplitude [g], period and duration [s], and what else its shape has."""
     return {
         "shape": pulse.name,
@@ -48,7 +46,19 @@ def pulse_json(pulse: Pulse) -> dict[str, Any]:
     }
 
 
-def _motion_json(motion: GroundMotion) -> dict[str, Any]:
+def fit_data(fit: PulseFit) -> dict[str, Any]:
+    """A fitted pulse, and where it is in its record."""
+    return {
+        "criterion": fit.criterion,
+        "captured": fit.captured,
+        "start": fit.start,
+        "centre": fit.centre,
+        "sign": fit.sign,
+        **pulse_data(fit.pulse),
+    }
+
+
+def _motion_data(motion: GroundMotion) -> dict[str, Any]:
     return {
         "name": motion.name,
         "npts": motion.npts,
@@ -59,13 +69,13 @@ def _motion_json(motion: GroundMotion) -> dict[str, Any]:
     }
 
 
-def runs_json(runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None) -> dict[str, Any]:
+def runs_data(runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None) -> dict[str, Any]:
     """Responses and neighbours, under their polarities if there are two; with the impacts if there are `etas`."""
     each = {
         str(polarity): {
-            "responses": histories_json(histories, etas),
-            "agreement": agreement_json(histories),
-            "neighbours": neighbours_json(near[polarity]) if polarity in near else None,
+            "responses": histories_data(histories, etas),
+            "agreement": agreement_data(histories),
+            "neighbours": neighbours_data(near[polarity]) if polarity in near else None,
             "verdict": verdict(histories),
         }
         for polarity, histories in runs.items()
@@ -73,12 +83,12 @@ def runs_json(runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | No
     return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]}
 
 
-def histories_json(histories: Histories, etas: Equivalence | None) -> dict[str, Any]:
+def histories_data(histories: Histories, etas: Equivalence | None) -> dict[str, Any]:
     """The response of each model; with the impacts if there are `etas`."""
-    return {name: _history_json(run, etas) for name, run in histories.items()}
+    return {name: _history_data(run, etas) for name, run in histories.items()}
 
 
-def neighbours_json(near: Neighbours) -> dict[str, Any]:
+def neighbours_data(near: Neighbours) -> dict[str, Any]:
     """What became of the neighbours of a motion; a peak of those that overturn is null."""
     peaks = zip(FRACTILES, near.peak_ratio, strict=True)
     return {
@@ -91,7 +101,7 @@ def neighbours_json(near: Neighbours) -> dict[str, Any]:
     }
 
 
-def agreement_json(histories: Histories) -> dict[str, Any]:
+def agreement_data(histories: Histories) -> dict[str, Any]:
     """How the motions of the equivalent blocks compare with the nonlinear one; empty without that."""
     return {
         name: {
@@ -105,7 +115,7 @@ def agreement_json(histories: Histories) -> dict[str, Any]:
     }
 
 
-def restitution_json(mechanism: Mechanism, etas: Equivalence) -> dict[str, Any]:
+def restitution_data(mechanism: Mechanism, etas: Equivalence) -> dict[str, Any]:
     """The restitution that the histories used, and where it comes from."""
     return {
         "positive_to_negative": etas.positive.eta,
@@ -119,7 +129,7 @@ def restitution_used(mechanism: Mechanism, etas: Equivalence) -> str:
     return restitution_in_words([etas[each].eta for each in Direction], given=mechanism.restitution is not None)
 
 
-def _history_json(history: History, etas: Equivalence | None) -> dict[str, Any]:
+def _history_data(history: History, etas: Equivalence | None) -> dict[str, Any]:
     found: dict[str, Any] = {
         "peak_positive": history.peak_positive,
         "peak_negative": history.peak_negative,
@@ -146,25 +156,72 @@ def _impacts(history: History, etas: Equivalence, most: int) -> list[tuple[float
     return [(time, direction, rate, etas[direction].eta * rate) for time, direction, rate in rows]
 
 
-def print_tables(title: str, runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None) -> None:
+def view(
+    found: Answer,
+    mechanism: Mechanism,
+    blocks: Equivalence,
+    asked: Question,
+    polarity: str,
+    title: str,
+    doubts: Sequence[str] = (),
+    *,
+    impacts: bool,
+) -> View:
+    """The responses to one motion.
+
+    Parameters
+    ----------
+    found : Answer
+        What became of the structure.
+    mechanism, blocks : Mechanism, Equivalence
+        The structure, and its equivalent blocks.
+    asked : Question
+        What was asked.
+    polarity : str
+        `1`, `-1` or `both`.
+    title : str
+        Above the tables.
+    doubts : sequence of str
+        What is doubtful about the structure.
+    impacts : bool
+        Whether to list the impacts: the first in a table, all in the data.
+    """
+    given, etas = found.given, blocks if impacts else None
+    notes = vertical_notes(found.first, mechanism.gravity) if found.first is not None else []
+    data: dict[str, Any] = {
+        "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
+        "record": record_data(given.motion, given.factor, polarity, given.pulse) if given else None,
+        "release": asked.release,
+        "restitution": restitution_data(mechanism, blocks),
+        **runs_data(found.runs, found.neighbours, etas),
+    }
+    if found.fit is None or found.to_pulse is None:
+        parts = _tables(title, found.runs, found.neighbours, etas)
+    else:
+        data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, etas)}
+        parts = _tables(f"{title}, under the record", found.runs, found.neighbours, etas)
+        parts += ["", *_tables(f"{title}, under its pulse alone", {1: found.to_pulse}, {}, etas)]
+        parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse))
+    return View({**data, "notes": [*doubts, *notes]}, [*parts, restitution_used(mechanism, blocks), *notes])
+
+
+def _tables(
+    title: str, runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None
+) -> list[Table | str]:  # fmt: skip
     """A table and sentences on each polarity, which of two governs, and the first impacts if there are `etas`."""
+    parts: list[Table | str] = []
     for polarity, histories in runs.items():
         heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
-        _print_table(heading, histories)
-        terminal.result(verdict(histories))
-        if polarity in near:
-            terminal.result(str(near[polarity]))
-        for name, run in histories.items() if etas is not None else ():
-            assert etas is not None
-            terminal.result()
-            _print_impacts(f"{heading}: impacts, {name}", run, etas)
-        if len(runs) > 1:
-            terminal.result()
-    if len(runs) > 1:
-        terminal.result(governs(runs)[1])
+        parts += [_table(heading, histories), verdict(histories)]
+        parts += [str(near[polarity])] if polarity in near else []
+        if etas is not None:
+            for name, run in histories.items():
+                parts += ["", *_impact_table(f"{heading}: impacts, {name}", run, etas)]
+        parts += [""] if len(runs) > 1 else []
+    return [*parts, governs(runs)[1]] if len(runs) > 1 else parts
 
 
-def _print_table(title: str, histories: Histories) -> None:
+def _table(title: str, histories: Histories) -> Table:
     runs = list(histories.values())
 
     def in_degrees(phi: float | None) -> str:
@@ -179,19 +236,17 @@ def _print_table(title: str, histories: Histories) -> None:
         ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
         ["impacts", *(str(run.impact_count) for run in runs), ""],
     ]
-    columns = ["", *(run.model for run in runs), "unit"]
-    terminal.table(title, columns, rows, numbers=range(1, len(runs) + 1))
+    return Table(title, ["", *(run.model for run in runs), "unit"], rows, numbers=range(1, len(runs) + 1))
 
 
-def _print_impacts(title: str, history: History, etas: Equivalence) -> None:
+def _impact_table(title: str, history: History, etas: Equivalence) -> list[Table | str]:
     rows = [
         [f"{time:.4f}", SENSE[direction], number(before, 4), number(after, 4)]
         for time, direction, before, after in _impacts(history, etas, FIRST)
     ]
-    columns = ["time [s]", "ends motion", "before [rad/s]", "after [rad/s]"]
-    terminal.table(title, columns, rows, numbers=(0, 2, 3))
-    if history.impact_count > FIRST:
-        terminal.result(f"{history.impact_count - FIRST} more follow: --json lists them")
+    table = Table(title, ["time [s]", "ends motion", "before [rad/s]", "after [rad/s]"], rows, numbers=(0, 2, 3))
+    more = history.impact_count - FIRST
+    return [table, f"{more} more follow: `as_json` lists them"] if more > 0 else [table]
 
 
 def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
