@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
-from rocking_cli.cli import motions, options, shaking, terminal
+from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli.groups import Near, Shaking
 from rocking_cli.errors import INCOMPLETE, InputError, Problem, RockingError
-from rocking_cli.views.view import heading
+from rocking_cli.names import percent
+from rocking_cli.views.view import ABSENT, Table, View, heading
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
@@ -55,25 +57,16 @@ def _speed(ctx: click.Context, param: click.Parameter, value: float | None) -> f
 @options.around
 @options.as_json
 @click.pass_context
+@options.grouped(shaking=Shaking, near=Near)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    records: tuple[str, ...],
-    pulses: tuple[str, ...],
-    units: str | None,
-    dt: float | None,
-    channel: str | None,
-    scale: float | None,
-    target_pga: float | None,
-    target_pgv: float | None,
-    polarity: str,
+    shaking: Shaking,
     model: str,
     out: Path,
     speed: float | None,
     fps: float,
-    neighbours: int,
-    within_amplitude: float,
-    within_restitution: float,
+    near: Near,
     as_json: bool,
 ) -> None:
     """Show a structure moving under a ground motion, with the traces of rotation and ground below it.
@@ -92,81 +85,54 @@ def command(
       rocking animate frame.yaml --record accel.csv --out frame.html
       rocking animate arch.yaml --pulse sine:0.5g:1.2s --out arch.gif --speed 0.5
     """
-    if bool(records) == bool(pulses):
+    if bool(shaking.records) == bool(shaking.pulses):
         raise click.UsageError("Give --record FILE or --pulse PULSE, and not both.")
-    if not records and any(value is not None for value in (units, dt, channel)):
+    if not shaking.records and any(value is not None for value in shaking.reading):
         raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
-    motions.check_scaling(scale, target_pga, target_pgv)
-    paths, missing = motions.find(records)
-    several = len(paths) + missing + len(pulses) > 1
-    if not paths and not pulses:
+    paths, missing = motions.find(shaking.records)
+    several = len(paths) + missing + len(shaking.pulses) > 1
+    if not paths and not shaking.pulses:
         ctx.exit(InputError.exit_code)
+    from rocking_cli.cli import inputs
     from rocking_cli.cli.work import say_if_compiling
-    from rocking_cli.dynamics.history import RTOL, TAIL
+    from rocking_cli.dynamics.history import RTOL, TAIL, follow
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.names import percent
-    from rocking_cli.studies import neighbours as near
     from rocking_cli.studies.film import Film
+    from rocking_cli.studies.neighbours import neighbours
     from rocking_cli.studies.picture import picture
-    from rocking_cli.studies.response import histories
-    from rocking_cli.views import response
+    from rocking_cli.views.animation import view
 
-    inputs = [*files, *(str(path) for path in paths)]
-    keep_apart([("--out", out)], inputs)
-    structure = shaking.structure(files, records)
-    mechanism, blocks = structure.mechanism, structure.equivalence
-    given, refused = shaking.gather(
-        paths, pulses, (dt, units, channel), (scale, target_pga, target_pgv), blocks, several=several
-    )
+    read = [*files, *(str(path) for path in paths)]
+    keep_apart([("--out", out)], read)
+    structure = inputs.structure(files, shaking.records)
+    given, refused = inputs.gather(paths, shaking, structure.equivalence, several=several)
     if not given:
         ctx.exit(InputError.exit_code)
     places = motions.separate(out, given, several=several)
-    keep_apart([("--out", place) for place in places], inputs)
+    keep_apart([("--out", place) for place in places], read)
     say_if_compiling()
-    models, drawn = structure.models([cast("ModelName", model)]), picture(mechanism)
-    around = near.Around(neighbours, within_amplitude, within_restitution)
-    rows = []
+    built, drawn = structure.model(cast("ModelName", model)), picture(structure.mechanism)
+    rows: list[list[str]] = []
     for each, place in zip(given, places, strict=True):
         assert place is not None
-        motion = each.motion.scaled(int(polarity) * each.factor)
+        motion = each.motion.scaled(shaking.signs[0] * each.factor)
         try:
-            (history,) = histories(models, motion, None, TAIL, RTOL).values()
-            film = Film(drawn, history, motion)
-            found = _write(place, film, heading(mechanism), speed, fps)
+            film = Film(drawn, follow(built, motion, tail=TAIL, rtol=RTOL), motion)
+            found = _write(place, film, heading(structure.mechanism), speed, fps)
         except RockingError as error:
             if not several:
                 raise
             terminal.error(f"{motion.name}: {error}")
             refused += 1
             continue
-        beside = near.neighbours(models[0], motion, around) if around.count else None
-        rows.append([motion.name, film.verdict, "-" if beside is None else percent(beside.overturned)])
-        if as_json:
-            terminal.print_json(
-                {
-                    "mechanism": mechanism.mechanism,
-                    "name": mechanism.name,
-                    "record": motion.name,
-                    "model": model,
-                    "outcome": history.outcome.name.lower(),
-                    "peak_ratio": history.peak_ratio,
-                    "restitution": response.restitution_data(mechanism, blocks),
-                    "neighbours": response.neighbours_data(beside) if beside is not None else None,
-                    "verdict": film.verdict,
-                    "start": film.start,
-                    "end": film.end,
-                    **found,
-                    "file": str(place),
-                }
-            )
-        elif not several:
-            terminal.result(film.verdict)
-            if beside is not None:
-                terminal.result(str(beside))
-    if several and not as_json:
-        terminal.table(heading(mechanism), ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
-    if rows and not as_json:
-        terminal.result(response.restitution_used(mechanism, blocks))
+        beside = neighbours(built, motion, near.around) if near.neighbours else None
+        rows.append([motion.name, film.verdict, ABSENT if beside is None else percent(beside.overturned)])
+        one = view(structure.mechanism, structure.equivalence, film, beside, {**found, "file": str(place)})
+        if as_json or not several:
+            terminal.show(one, as_json=as_json)
+    if several and rows and not as_json:
+        table = Table(heading(structure.mechanism), ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
+        terminal.show(View({}, [table, one.parts[-1]]), as_json=False)
     if missing or refused:
         ctx.exit(INCOMPLETE)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli.groups import Near, Shaking
 from rocking_cli.errors import INCOMPLETE, InputError
 from rocking_cli.views.view import heading
 
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.model import Model
     from rocking_cli.excitation.scaled import Scaled
     from rocking_cli.studies.neighbours import Around
-
-POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 
 
 @click.command(short_help="How close motions are to overturning, as shares over the factor.")
@@ -35,24 +34,10 @@ POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 @options.plot("Draw the shares")
 @options.as_json
 @click.pass_context
+@options.grouped(shaking=Shaking, near=Near)
 def command(
-    ctx: click.Context,
-    file: str | None,
-    records: tuple[str, ...],
-    pulses: tuple[str, ...],
-    units: str | None,
-    dt: float | None,
-    channel: str | None,
-    scale: float | None,
-    target_pga: float | None,
-    target_pgv: float | None,
-    polarity: str,
-    neighbours: int,
-    within_amplitude: float,
-    within_restitution: float,
-    plot: Path | None,
-    as_json: bool,
-) -> None:
+    ctx: click.Context, file: str | None, shaking: Shaking, near: Near, plot: Path | None, as_json: bool
+) -> None:  # fmt: skip
     """How close ground motions are to overturning a structure: the share of overturning over the factor on each.
 
     Overturning comes and goes with the factor, so there is no least one. At each of 60 factors from 0.2 to 5 the
@@ -68,33 +53,28 @@ def command(
       rocking margin frame.yaml --record "records/*.AT2" --polarity 1
       rocking margin --pulse sine:0.5g:0.8s --neighbours 1000
     """
-    if not records and not pulses:
+    if not shaking:
         raise click.UsageError("Nothing to vary: give --record PLACE or --pulse PULSE, each as often as you like.")
-    if not neighbours:
+    if not near.neighbours:
         raise click.UsageError("A share needs neighbours: --neighbours must be at least 1 here.")
-    motions.check_scaling(scale, target_pga, target_pgv)
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.studies.neighbours import Around
     from rocking_cli.views.margin import view
 
-    paths, missing = motions.find(records)
+    paths, missing = motions.find(shaking.records)
     keep_apart([("--plot", plot)], [file, *(str(path) for path in paths)])
     structure = structures.prepared([file] if file else [])
     mechanism, model = structure.mechanism, structure.model("nonlinear")
-    chosen, refused = motions.gather(
-        paths, pulses, (dt, units, channel), (scale, target_pga, target_pgv), structure.p
-    )  # fmt: skip
+    chosen, refused = motions.gather(paths, shaking.pulses, shaking.reading, shaking.scaling, structure.p)
     if not chosen:
         ctx.exit(InputError.exit_code)
-    around = Around(neighbours, within_amplitude, within_restitution)
-    rows = _rows(model, chosen, POLARITIES[polarity], around)
+    rows = _rows(model, chosen, shaking.signs, near.around)
     if plot is not None:
         from rocking_cli.cli.pictures import write_picture
         from rocking_cli.plotting.margin import draw_margins
 
         write_picture(plot, draw_margins({row.name: row.margin for row in rows}, heading(mechanism)))
-    terminal.show(view(mechanism, rows, polarity, around), as_json=as_json)
+    terminal.show(view(mechanism, rows, shaking.polarity, near.around), as_json=as_json)
     if missing or refused:
         ctx.exit(INCOMPLETE)
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +91,26 @@ def plot(what: str, more: str = "") -> Decorator:
         metavar="FILE.png",
         help=f"{what} (.png, .svg or .pdf).{'  ' * bool(more)}{more}",
     )
+
+
+def grouped(**groups: type) -> Decorator:
+    """Hand options to a command as objects: `shaking=Shaking` makes one of the options that are its fields.
+
+    The options themselves are declared by other decorators, above this one.
+    """
+
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def with_groups(*args: Any, **given: Any) -> Any:
+            made = {
+                name: group(**{field.name: given.pop(field.name) for field in fields(group)})
+                for name, group in groups.items()
+            }
+            return command(*args, **made, **given)
+
+        return with_groups
+
+    return decorate
 
 
 def _in_order(*decorators: Decorator) -> Decorator:

@@ -5,19 +5,18 @@ from __future__ import annotations
 import shlex
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import motions, options, shaking, terminal
+from rocking_cli.cli import inputs, motions, options, terminal
+from rocking_cli.cli.groups import Near, Shaking
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
     from rocking_cli.core import Equivalence
     from rocking_cli.dynamics.prepared import Prepared
-    from rocking_cli.report.content import Content, File, Given
-
-POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
+    from rocking_cli.report.content import File, Given
 
 
 @click.command(short_help="A document to hand over: one page with all that there is to say.")
@@ -38,24 +37,10 @@ POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 @options.around
 @options.as_json
 @click.pass_context
+@options.grouped(shaking=Shaking, near=Near)
 def command(
-    ctx: click.Context,
-    files: tuple[str, ...],
-    records: tuple[str, ...],
-    pulses: tuple[str, ...],
-    units: str | None,
-    dt: float | None,
-    channel: str | None,
-    scale: float | None,
-    target_pga: float | None,
-    target_pgv: float | None,
-    polarity: str,
-    out: Path | None,
-    neighbours: int,
-    within_amplitude: float,
-    within_restitution: float,
-    as_json: bool,
-) -> None:
+    ctx: click.Context, files: tuple[str, ...], shaking: Shaking, out: Path | None, near: Near, as_json: bool
+) -> None:  # fmt: skip
     """Write a report on a structure: one HTML file that opens in any browser, without a network, and prints.
 
     A summary in words first: will it uplift, will it overturn, how close, which model to trust, what is doubtful. Then
@@ -70,43 +55,33 @@ def command(
       rocking report frame.yaml --record accel.csv -o report.html
       rocking report arch.yaml --record one.AT2 --record two.AT2 --target-pga 0.3
     """
-    if not records and any(value is not None for value in (units, dt, channel)):
+    if not shaking.records and any(value is not None for value in shaking.reading):
         raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
-    if not neighbours:
+    if not near.neighbours:
         raise click.UsageError("A report says how close a result is: --neighbours must be at least 1 here.")
-    motions.check_scaling(scale, target_pga, target_pgv)
-    if not records and not pulses and any(value is not None for value in (scale, target_pga, target_pgv)):
+    if not shaking and shaking.is_scaled:
         raise click.UsageError(
             "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
         )
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.io.files import check_writable, keep_apart, write_whole
     from rocking_cli.report.content import gather, steps
-    from rocking_cli.studies.neighbours import Around
+    from rocking_cli.report.view import view
 
     if out is None and not as_json:
         out = Path(f"{Path(files[0]).stem if files else 'rocking'}.html")
         check_writable(out)
-    paths, bad = motions.find(records)
+    paths, bad = motions.find(shaking.records)
     keep_apart([("--out", out)], [*files, *(str(path) for path in paths)])
-    structure = shaking.structure(files, records)
-    blocks = structure.equivalence
-    asked = scale, target_pga, target_pgv
-    given = []
-    for path in paths:
-        try:
-            given.append(_record(str(path), blocks, (dt, units, channel), asked))
-        except InputError as error:
-            terminal.error(str(error))
-            bad += 1
-    given += [_pulse(each, blocks, asked) for each in pulses]
+    structure = inputs.structure(files, shaking.records)
+    given, refused = _gather(paths, shaking, structure.equivalence)
+    bad += refused
     if bad and not given:
         ctx.exit(InputError.exit_code)
     say_if_compiling()
     with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
-            structure, _file(structure), given, POLARITIES[polarity],
-            around=Around(neighbours, within_amplitude, within_restitution),
+            structure, _file(structure), given, shaking.signs, around=near.around,
             command=_command_line(ctx), date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"), progress=advance,
         )  # fmt: skip
     if out is not None:
@@ -115,14 +90,21 @@ def command(
         page = render(content).encode()
         write_whole(out, lambda stream: stream.write(page))
         terminal.note(f"wrote {out} ({len(page) / 1e6:.2g} MB)")
-    if as_json:
-        terminal.print_json(_as_json(content))
-    else:
-        from rocking_cli.report.words import in_a_sentence
-
-        terminal.result(in_a_sentence(content))
+    terminal.show(view(content), as_json=as_json)
     if bad:
         ctx.exit(INCOMPLETE)
+
+
+def _gather(paths: list[Path], shaking: Shaking, blocks: Equivalence) -> tuple[list[Given], int]:
+    """The ground motions, and how many records cannot be used."""
+    given, refused = [], 0
+    for path in paths:
+        try:
+            given.append(_record(str(path), blocks, shaking.reading, shaking.scaling))
+        except InputError as error:
+            terminal.error(str(error))
+            refused += 1
+    return given + [_pulse(each, blocks, shaking.scaling) for each in shaking.pulses], refused
 
 
 def _file(structure: Prepared) -> File:
@@ -144,15 +126,15 @@ def _record(
     from rocking_cli.excitation.records.opening import name_of, original
     from rocking_cli.report.content import File, Given
 
-    motion = shaking.read("record", place, *reading)
-    return Given(motion, shaking.judge(motion, blocks, *asked), File(name_of(place), original(place)))
+    motion = inputs.read("record", place, *reading)
+    return Given(motion, inputs.judge(motion, blocks, *asked), File(name_of(place), original(place)))
 
 
 def _pulse(text: str, blocks: Equivalence, asked: tuple[float | None, float | None, float | None]) -> Given:
     from rocking_cli.report.content import Given
 
-    pulse, motion = shaking.make(text)
-    return Given(motion, shaking.judge(motion, blocks, *asked), pulse=pulse)
+    pulse, motion = inputs.make(text)
+    return Given(motion, inputs.judge(motion, blocks, *asked), pulse=pulse)
 
 
 def _command_line(ctx: click.Context) -> str:
@@ -168,44 +150,3 @@ def _command_line(ctx: click.Context) -> str:
             said += [] if isinstance(param, click.Argument) else [param.opts[0]]
             said += [] if each is True else [str(each)]
     return shlex.join(said)
-
-
-def _as_json(content: Content) -> dict[str, Any]:
-    from rocking_cli.core import Direction
-    from rocking_cli.report import words
-    from rocking_cli.views.margin import margin_data
-    from rocking_cli.views.response import fit_data, runs_data
-
-    verdicts = words.verdicts(content)
-    return {
-        "structure": {
-            "mechanism": content.mechanism.mechanism,
-            "name": content.name,
-            "file": content.file.name,
-            "sha256": content.file.checksum,
-        },
-        "answer": words.in_a_sentence(content),
-        "doubts": words.doubts(content),
-        "parameters": {each.label: content.equivalence[each].as_dict() for each in Direction},
-        "motions": [
-            {
-                "name": each.given.motion.name,
-                "file": each.given.file.name if each.given.file else None,
-                "sha256": each.given.file.checksum if each.given.file else None,
-                "factor": each.given.factor,
-                "pga": each.measured.pga,
-                "headline": said.headline,
-                "answers": {item.question: item.answer for item in said.answers},
-                "doubts": list(said.doubts),
-                **runs_data(each.runs, each.neighbours, None),
-                "polarity": each.polarity,
-                "margin": margin_data(each.margin),
-                "pulses": [fit_data(fit) for fit in each.fits],
-            }
-            for each, said in zip(content.shakings, verdicts, strict=True)
-        ],
-        "linearisation": content.trust,
-        "command": content.command,
-        "date": content.date,
-        "versions": dict(content.versions),
-    }

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import motions, options, shaking, terminal
+from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli.groups import History, Near, Output, Shaking, Vertical
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
-    from rocking_cli.dynamics.history import History
+    from rocking_cli.dynamics import history as dynamics
     from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.pulse_fit import PulseFit
-    from rocking_cli.studies.response import Answer
+    from rocking_cli.studies.response import Answer, Question
+    from rocking_cli.views.view import Table
 
 # The models, the pulses that are fitted and the least tolerance stand here again so that `--help` needs no numpy.
 NAMES = ("nonlinear", "linear1", "linear2")
@@ -115,33 +118,16 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 @options.plot("Draw them")
 @options.as_json
 @click.pass_context
+@options.grouped(shaking=Shaking, vertical=Vertical, history=History, near=Near, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    records: tuple[str, ...],
-    pulses: tuple[str, ...],
-    units: str | None,
-    dt: float | None,
-    channel: str | None,
-    vertical: str | None,
-    vertical_dt: float | None,
-    vertical_channel: str | None,
-    scale: float | None,
-    target_pga: float | None,
-    target_pgv: float | None,
-    polarity: str,
-    with_pulse: str | None,
-    release: float | None,
-    models: tuple[str, ...],
-    tail: float,
-    rtol: float,
-    neighbours: int,
-    within_amplitude: float,
-    within_restitution: float,
+    shaking: Shaking,
+    vertical: Vertical,
+    history: History,
+    near: Near,
+    output: Output,
     impacts: bool,
-    out: Path | None,
-    plot: Path | None,
-    as_json: bool,
 ) -> None:
     """Rocking response of a structure to a ground motion, a release from a tilt, or both.
 
@@ -163,103 +149,137 @@ def command(
       rocking respond frame.yaml --pulse ricker:0.4g:1.2s --polarity both
       rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
     """
-    if records and pulses:
-        raise click.UsageError("--record and --pulse exclude each other.")
-    shaken = bool(records or pulses)
-    if not shaken and release is None:
-        raise click.UsageError(
-            "Nothing to respond to: give --record FILE or --pulse PULSE, or --release RATIO, or both."
-        )
-    if not shaken and vertical is not None:
-        raise click.UsageError("--vertical goes with a horizontal component: give --record FILE or --pulse PULSE.")
-    if not records and vertical is None and (units is not None or dt is not None):
-        raise click.UsageError("--units and --dt describe a record: give --record FILE.")
-    if not records and channel is not None:
-        raise click.UsageError("--channel is one of a record: give --record FILE.")
-    if vertical is None and (vertical_dt is not None or vertical_channel is not None):
-        raise click.UsageError("--vertical-dt and --vertical-channel describe one: give --vertical FILE.")
-    motions.check_scaling(scale, target_pga, target_pgv)
-    scaled = any(value is not None for value in (scale, target_pga, target_pgv))
-    if not shaken and (scaled or polarity != "1"):
-        raise click.UsageError(
-            "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE or --pulse PULSE."
-        )
-    if with_pulse is not None and not records:
-        raise click.UsageError("--with-pulse finds the pulse in a record: give --record FILE.")
-    if with_pulse is not None and polarity == "both":
-        raise click.UsageError("--with-pulse and --polarity both exclude each other: ask for one after the other.")
-    paths, missing = motions.find(records)
-    several = len(paths) + missing + len(pulses) > 1
-    if several and vertical is not None:
+    _hold_together(shaking, vertical, history)
+    paths, missing = motions.find(shaking.records)
+    several = len(paths) + missing + len(shaking.pulses) > 1
+    if several and vertical.vertical is not None:
         raise click.UsageError("--vertical is that of one motion: give one --record FILE or one --pulse PULSE.")
-    if shaken and not paths and not pulses:
+    if shaking and not paths and not shaking.pulses:
         ctx.exit(InputError.exit_code)
-    from rocking_cli.cli import structures
+    from rocking_cli.cli import inputs
     from rocking_cli.cli.work import say_if_compiling
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
-    from rocking_cli.studies.neighbours import Around
-    from rocking_cli.studies.response import Question, answer
-    from rocking_cli.views.response import view
-    from rocking_cli.views.several import Several
+    from rocking_cli.studies.response import Question
 
-    inputs = [*files, *(str(path) for path in paths), vertical]
-    keep_apart([("--out", out), ("--plot", plot)], inputs)
-    check_table(out)
-    structure = shaking.structure(files, records)
-    mechanism, equivalence = structure.mechanism, structure.equivalence
-    given: Sequence[Scaled | None] = [None]  # a free release
+    read = [*files, *(str(path) for path in paths), vertical.vertical]
+    keep_apart([("--out", output.out), ("--plot", output.plot)], read)
+    check_table(output.out)
+    structure = inputs.structure(files, shaking.records)
+    chosen: Sequence[Scaled | None] = [None]  # a free release
     refused = 0
-    if shaken:
-        up = (vertical, vertical_dt, vertical_channel) if vertical is not None else None
-        given, refused = shaking.gather(
-            paths,
-            pulses,
-            (dt, units, channel),
-            (scale, target_pga, target_pgv),
-            equivalence,
-            several=several,
-            vertical=up,
-        )
-        if not given:
+    if shaking:
+        chosen, refused = inputs.gather(paths, shaking, structure.equivalence, vertical, several=several)
+        if not chosen:
             ctx.exit(InputError.exit_code)
-    outs, plots = (motions.separate(path, given, several=several) for path in (out, plot))
+    outs, plots = (motions.separate(path, chosen, several=several) for path in (output.out, output.plot))
     if several:
-        keep_apart([*(("--out", each) for each in outs), *(("--plot", each) for each in plots)], inputs)
-    chosen = cast("tuple[ModelName, ...]", models)
+        keep_apart([*(("--out", each) for each in outs), *(("--plot", each) for each in plots)], read)
     say_if_compiling()
-    built = structure.models(chosen)
-    around = Around(neighbours, within_amplitude, within_restitution)
-    asked = Question((1, -1) if polarity == "both" else (int(polarity),), release, tail, rtol, with_pulse, around)
-    table, details = Several(mechanism, equivalence, chosen), []
+    structure.models(history.names)
+    asked = Question(shaking.signs, history.release, history.tail, history.rtol, history.with_pulse, near.around)
+    job = _Job(structure, history.names, asked, shaking.polarity, several, impacts, output.as_json)
     with terminal.progress(len(outs), "motions") as advance:
-        for each, to, picture in zip(given, outs, plots, strict=True):
-            title = heading(mechanism)
-            try:
-                found = answer(built, each, asked)
-            except RockingError as error:
-                if not several or each is None:
-                    raise
-                terminal.error(f"{each.motion.name}: {error}")
-                refused += 1
-                continue
-            finally:
-                advance(1)
-            if several and each is not None:
-                title = f"{title}, under {each.motion.name}"
-                table.add(found)
-            _say_which_pulse(found.fit)
-            _write(found, to, picture, title)
-            doubts = structures.doubts(mechanism)
-            one = view(found, mechanism, equivalence, asked, polarity, title, doubts, impacts=impacts)
-            if as_json or not several:
-                terminal.show(one, as_json=as_json)
-            elif impacts:
-                details += ["", *one.parts]
-    if several and not as_json:
-        terminal.show(View({}, [*table.parts(), *details]), as_json=False)
+        for each, out, plot in zip(chosen, outs, plots, strict=True):
+            refused += not job.follow(each, out, plot)
+            advance(1)
+    job.end()
     if missing or refused:
         ctx.exit(INCOMPLETE)
+
+
+def _hold_together(shaking: Shaking, vertical: Vertical, history: History) -> None:
+    """Refuse options that say nothing, or two things, beside each other."""
+    if shaking.records and shaking.pulses:
+        raise click.UsageError("--record and --pulse exclude each other.")
+    if not shaking and history.release is None:
+        raise click.UsageError(
+            "Nothing to respond to: give --record FILE or --pulse PULSE, or --release RATIO, or both."
+        )
+    if not shaking and vertical.vertical is not None:
+        raise click.UsageError("--vertical goes with a horizontal component: give --record FILE or --pulse PULSE.")
+    if not shaking.records and vertical.vertical is None and (shaking.units is not None or shaking.dt is not None):
+        raise click.UsageError("--units and --dt describe a record: give --record FILE.")
+    if not shaking.records and shaking.channel is not None:
+        raise click.UsageError("--channel is one of a record: give --record FILE.")
+    if not shaking and (shaking.is_scaled or shaking.polarity != "1"):
+        raise click.UsageError(
+            "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE or --pulse PULSE."
+        )
+    if history.with_pulse is not None and not shaking.records:
+        raise click.UsageError("--with-pulse finds the pulse in a record: give --record FILE.")
+    if history.with_pulse is not None and shaking.polarity == "both":
+        raise click.UsageError("--with-pulse and --polarity both exclude each other: ask for one after the other.")
+
+
+class _Job:
+    """The motions of a structure, followed and shown one after the other; of several a table at the end.
+
+    Parameters
+    ----------
+    structure : Prepared
+        The structure.
+    names : tuple of str
+        Of the models to follow.
+    asked : Question
+        What is asked of every motion.
+    polarity : str
+        As it was given.
+    several, impacts, as_json : bool
+        Whether there are several motions, and how each is shown.
+    """
+
+    def __init__(
+        self,
+        structure: Prepared,
+        names: tuple[ModelName, ...],
+        asked: Question,
+        polarity: str,
+        several: bool,
+        impacts: bool,
+        as_json: bool,
+    ) -> None:
+        from rocking_cli.views.several import Several
+
+        self._structure, self._names, self._asked, self._polarity = structure, names, asked, polarity
+        self._several, self._impacts, self._as_json = several, impacts, as_json
+        self._table = Several(structure.mechanism, structure.equivalence, names)
+        self._details: list[Table | str] = []
+
+    def follow(self, given: Scaled | None, out: Path | None, plot: Path | None) -> bool:
+        """Follow one motion, or a free release, and show it; false if it is one of several and cannot be followed."""
+        from rocking_cli.cli import structures
+        from rocking_cli.studies.response import answer
+        from rocking_cli.views.response import view
+
+        mechanism, title = self._structure.mechanism, heading(self._structure.mechanism)
+        try:
+            found = answer(self._structure.models(self._names), given, self._asked)
+        except RockingError as error:
+            if not self._several or given is None:
+                raise
+            terminal.error(f"{given.motion.name}: {error}")
+            return False
+        if self._several and given is not None:
+            title = f"{title}, under {given.motion.name}"
+            self._table.add(found)
+        _say_which_pulse(found.fit)
+        _write(found, out, plot, title)
+        doubts = structures.doubts(mechanism)
+        one = view(
+            found, mechanism, self._structure.equivalence, self._asked, self._polarity, title, doubts,
+            impacts=self._impacts,
+        )  # fmt: skip
+        if self._as_json or not self._several:
+            terminal.show(one, as_json=self._as_json)
+        elif self._impacts:
+            self._details += ["", *one.parts]
+        return True
+
+    def end(self) -> None:
+        """Show the table of several motions."""
+        if self._several and not self._as_json:
+            terminal.show(View({}, [*self._table.parts(), *self._details]), as_json=False)
 
 
 def _say_which_pulse(fit: PulseFit | None) -> None:
@@ -283,7 +303,7 @@ def _write(found: Answer, out: Path | None, plot: Path | None, title: str) -> No
         from rocking_cli.io.tables import write_table
         from rocking_cli.views import history_table
 
-        columns: dict[str, History] = dict(first.items())
+        columns: dict[str, dynamics.History] = dict(first.items())
         columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
         columns |= {f"pulse {name}": run for name, run in (found.to_pulse or {}).items()}
         write_table(out, history_table.blocks(columns, found.first))

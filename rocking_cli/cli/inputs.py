@@ -11,6 +11,7 @@ from rocking_cli.cli import motions, terminal
 from rocking_cli.excitation.scaled import Scaled
 
 if TYPE_CHECKING:
+    from rocking_cli.cli.groups import Shaking, Vertical
     from rocking_cli.core import Equivalence
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
@@ -109,31 +110,23 @@ def _warn(motion: GroundMotion, measured: Measures, blocks: Equivalence) -> None
 
 
 def gather(
-    paths: Sequence[Path],
-    pulses: Sequence[str],
-    reading: tuple[float | None, str | None, str | None],
-    asked: tuple[float | None, float | None, float | None],
-    blocks: Equivalence,
-    *,
-    several: bool,
-    vertical: tuple[str, float | None, str | None] | None = None,
+    paths: Sequence[Path], asked: Shaking, blocks: Equivalence, vertical: Vertical | None = None, *, several: bool
 ) -> tuple[list[Scaled], int]:
     """The motions that shake a structure, and how many of those asked for cannot be used.
 
     A single one is introduced in full, and an error in it ends the command. Of `several` each is reported by itself.
-    `vertical` is the file of the vertical component of a single one, with its own interval and channel.
+    `vertical` may be the vertical component of a single one.
     """
     if several:
         p = max(blocks.positive.p, blocks.negative.p)
-        return motions.gather(paths, pulses, reading, asked, p, "this structure")
-    dt, units, channel = reading
+        return motions.gather(paths, asked.pulses, asked.reading, asked.scaling, p, "this structure")
     pulse, file = None, None
-    if pulses:
-        pulse, motion = make(pulses[0])
+    if asked.pulses:
+        pulse, motion = make(asked.pulses[0])
     else:
         file = paths[0]
-        motion = read("record", file, dt, units, channel)
-    if vertical is not None:
-        place, own, part = vertical
-        motion = replace(motion, vertical=read_vertical(place, dt, own, units, part))
-    return [Scaled(motion, judge(motion, blocks, *asked), pulse, file)], 0
+        motion = read("record", file, *asked.reading)
+    if vertical is not None and vertical.vertical is not None:
+        up = read_vertical(vertical.vertical, asked.dt, vertical.vertical_dt, asked.units, vertical.vertical_channel)
+        motion = replace(motion, vertical=up)
+    return [Scaled(motion, judge(motion, blocks, *asked.scaling), pulse, file)], 0

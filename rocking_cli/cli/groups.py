@@ -1,0 +1,114 @@
+"""Options that belong together, as objects that check themselves; `options.grouped` hands them to a command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import click
+
+from rocking_cli.cli import terminal
+
+if TYPE_CHECKING:
+    from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.studies.neighbours import Around
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """Which ground motions, how records are read, and how both are scaled."""
+
+    records: tuple[str, ...]
+    pulses: tuple[str, ...]
+    units: str | None
+    dt: float | None
+    channel: str | None
+    scale: float | None
+    target_pga: float | None
+    target_pgv: float | None
+    polarity: str
+
+    def __post_init__(self) -> None:
+        if sum(value is not None for value in self.scaling) > 1:
+            raise click.UsageError("--scale, --target-pga and --target-pgv exclude each other.")
+        if self.scale is not None and self.scale < 0:
+            terminal.note(f"--scale {self.scale:g} is negative: it reverses the motion, as --polarity -1 does")
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self.records or self.pulses)
+
+    @property
+    def reading(self) -> tuple[float | None, str | None, str | None]:
+        """`dt`, `units` and `channel` of a record."""
+        return self.dt, self.units, self.channel
+
+    @property
+    def scaling(self) -> tuple[float | None, float | None, float | None]:
+        """`scale`, `target_pga` and `target_pgv`."""
+        return self.scale, self.target_pga, self.target_pgv
+
+    @property
+    def is_scaled(self) -> bool:
+        """Whether a factor is asked for."""
+        return any(value is not None for value in self.scaling)
+
+    @property
+    def signs(self) -> tuple[int, ...]:
+        """The polarities, of 1 and -1."""
+        return (1, -1) if self.polarity == "both" else (int(self.polarity),)
+
+
+@dataclass(frozen=True)
+class Vertical:
+    """The vertical component of a single motion."""
+
+    vertical: str | None
+    vertical_dt: float | None
+    vertical_channel: str | None
+
+    def __post_init__(self) -> None:
+        if self.vertical is None and (self.vertical_dt is not None or self.vertical_channel is not None):
+            raise click.UsageError("--vertical-dt and --vertical-channel describe one: give --vertical FILE.")
+
+
+@dataclass(frozen=True)
+class Near:
+    """The motions next to the one asked for."""
+
+    neighbours: int
+    within_amplitude: float
+    within_restitution: float
+
+    @property
+    def around(self) -> Around:
+        """How to draw them."""
+        from rocking_cli.studies.neighbours import Around
+
+        return Around(self.neighbours, self.within_amplitude, self.within_restitution)
+
+
+@dataclass(frozen=True)
+class History:
+    """Which equations of motion, from where, how long and how exactly."""
+
+    models: tuple[str, ...]
+    release: float | None
+    tail: float
+    rtol: float
+    with_pulse: str | None
+
+    @property
+    def names(self) -> tuple[ModelName, ...]:
+        """Of the models."""
+        return cast("tuple[ModelName, ...]", self.models)
+
+
+@dataclass(frozen=True)
+class Output:
+    """The files to write, and whether the result is one JSON object."""
+
+    out: Path | None
+    plot: Path | None
+    as_json: bool

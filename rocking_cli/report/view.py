@@ -1,0 +1,48 @@
+"""A report as plain data, and in a sentence."""
+
+from __future__ import annotations
+
+from rocking_cli.core import Direction
+from rocking_cli.report import words
+from rocking_cli.report.content import Content
+from rocking_cli.views.margin import margin_data
+from rocking_cli.views.response import fit_data, runs_data
+from rocking_cli.views.view import View
+
+
+def view(content: Content) -> View:
+    """The answer in a sentence, and all that the report says as plain data."""
+    verdicts = words.verdicts(content)
+    data = {
+        "structure": {
+            "mechanism": content.mechanism.mechanism,
+            "name": content.name,
+            "file": content.file.name,
+            "sha256": content.file.checksum,
+        },
+        "answer": words.in_a_sentence(content),
+        "doubts": words.doubts(content),
+        "parameters": {each.label: content.equivalence[each].as_dict() for each in Direction},
+        "motions": [
+            {
+                "name": each.given.motion.name,
+                "file": each.given.file.name if each.given.file else None,
+                "sha256": each.given.file.checksum if each.given.file else None,
+                "factor": each.given.factor,
+                "pga": each.measured.pga,
+                "headline": said.headline,
+                "answers": {item.question: item.answer for item in said.answers},
+                "doubts": list(said.doubts),
+                **runs_data(each.runs, each.neighbours, None),
+                "polarity": each.polarity,
+                "margin": margin_data(each.margin),
+                "pulses": [fit_data(fit) for fit in each.fits],
+            }
+            for each, said in zip(content.shakings, verdicts, strict=True)
+        ],
+        "linearisation": content.trust,
+        "command": content.command,
+        "date": content.date,
+        "versions": dict(content.versions),
+    }
+    return View(data, [words.in_a_sentence(content)])
