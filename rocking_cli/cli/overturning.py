@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
-from rocking_cli.cli import options
+from rocking_cli.cli import options, terminal
+from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Range
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -97,12 +98,13 @@ def command(
     """
     given = {"periods": periods, "accelerations": accelerations, "omega": omega, "a": a}
     _check(files, compare, model, dimensionless, given)
-    from rocking_cli.cli import overturning_results as results
     from rocking_cli.cli import structures, work
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.io.files import keep_apart
+    from rocking_cli.io.tables import write_table
     from rocking_cli.studies import overturning as study
     from rocking_cli.studies.shaken import linear_block, parse_shape, shaken
+    from rocking_cli.views import overturning as views
 
     keep_apart([("--out", out), ("--plot", plot)], files)
     shape, polarities = parse_shape(pulse), POLARITIES[polarity]
@@ -120,7 +122,14 @@ def command(
         pulses = spread.size * study.SCAN * study.PASSES
         with work.histories(study.work(subjects, pulses, polarities), exact=exact) as progress:
             compared = study.compare(subjects, shape, spread, top, polarities=polarities, progress=progress)
-        results.give_comparison(compared, mechanisms, out, plot, as_json=as_json)
+        if out is not None:
+            write_table(out, [views.comparison_table(compared)])
+            terminal.note(f"wrote {out}")
+        if plot is not None:
+            from rocking_cli.plotting.overturning import draw_comparison
+
+            write_picture(plot, draw_comparison(compared, views.comparison_title(compared)))
+        terminal.show(views.comparison_view(compared, mechanisms), as_json=as_json)
         if bad:
             ctx.exit(INCOMPLETE)
         return
@@ -130,7 +139,14 @@ def command(
     with work.histories(study.work([subject], omegas.size * amplitudes.size, polarities), exact=exact) as progress:
         found = study.overturning_map(subject, shape, omegas, amplitudes, polarities=polarities, progress=progress)
     mechanism = mechanisms[0] if mechanisms else None
-    results.give_map(found, mechanism, out, plot, dimensionless=dimensionless, as_json=as_json)
+    if out is not None:
+        write_table(out, [views.map_table(found, mechanism)])
+        terminal.note(f"wrote {out}")
+    if plot is not None:
+        from rocking_cli.plotting.overturning import draw_map
+
+        write_picture(plot, draw_map(found, views.map_title(found), dimensionless=dimensionless))
+    terminal.show(views.map_view(found, mechanism, dimensionless=dimensionless), as_json=as_json)
 
 
 def _check(

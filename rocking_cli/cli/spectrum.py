@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from rocking_cli.cli import motions, options
+from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Sizes
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -146,10 +147,11 @@ def command(
     """
     _check(files, records, pulses, (units, dt, channel))
     motions.check_scaling(scale, target_pga, target_pgv)
-    from rocking_cli.cli import spectrum_results as results
     from rocking_cli.cli import work
     from rocking_cli.io.files import keep_apart
+    from rocking_cli.io.tables import write_table
     from rocking_cli.studies import spectrum as study
+    from rocking_cli.views.spectrum import Results, lost, table, title, view
 
     paths, missing = motions.find(records)
     keep_apart([("--out", out), ("--plot", plot)], [*files, *(str(path) for path in paths)])
@@ -170,9 +172,19 @@ def command(
             threads=jobs,
             progress=progress,
         )
-    lost = results.report_lost(found, chosen)
-    results.give(results.Results(found, chosen, tuple(sorted({*fractiles, 0.5})), polarity), out, plot, as_json=as_json)
-    if missing or refused or lost or bad:
+    results = Results(found, chosen, tuple(sorted({*fractiles, 0.5})), polarity)
+    unfollowed = lost(results)
+    if unfollowed:
+        terminal.error(unfollowed)
+    if out is not None:
+        write_table(out, [table(results)])
+        terminal.note(f"wrote {out}")
+    if plot is not None:
+        from rocking_cli.plotting.spectrum import draw_spectra
+
+        write_picture(plot, draw_spectra(found, results.fractiles, title(results)))
+    terminal.show(view(results), as_json=as_json)
+    if missing or refused or unfollowed or bad:
         ctx.exit(INCOMPLETE)
 
 

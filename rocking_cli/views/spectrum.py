@@ -1,24 +1,20 @@
-"""Rocking spectra as people and programs read them."""
+"""Rocking spectra, as people and programs read them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from textwrap import shorten
 from typing import Any
 
 import numpy as np
 
-from rocking_cli.cli import terminal
-from rocking_cli.cli.overturning_results import FROM_KINEMATICS, numbers
-from rocking_cli.cli.pictures import write_picture
 from rocking_cli.excitation.scaled import Scaled
-from rocking_cli.io.tables import write_table
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
 from rocking_cli.studies.shaken import Integers, Reals
 from rocking_cli.studies.spectrum import Spectrum
-from rocking_cli.views.view import ABSENT
+from rocking_cli.views.overturning import FROM_KINEMATICS, numbers
+from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
 LISTED = 3  # histories that could not be followed
@@ -47,43 +43,46 @@ class Results:
         return what + {"1": "", "-1": ", reversed", "both": ", either polarity"}[self.polarity]
 
 
-def report_lost(spectra: Sequence[Spectrum], motions: Sequence[Scaled]) -> int:
-    """Report histories that could not be followed; how many there are."""
-    lost = [
-        f"{each.shape.structure.name} at 2 pi/p = {each.periods[k]:.4g} s under {motions[m].motion.name}"
-        for each in spectra
+def view(results: Results) -> View:
+    """The peaks over the size of each shape, and what becomes of each."""
+    parts = [part for each in results.spectra for part in _curve(results, each)]
+    data = {
+        "model": results.spectra[0].shape.structure.model.name,
+        "polarity": results.polarity,
+        "fractiles": list(results.fractiles),
+        "motions": [
+            {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt, "pga": motion.pga}
+            | {"scale": factor}
+            for motion, factor, *_ in results.motions
+        ],
+        "spectra": [_data(results, each) for each in results.spectra],
+    }
+    return View(data, [*parts, *(_verdict(results, each) for each in results.spectra)])
+
+
+def title(results: Results) -> str:
+    """What the spectra are under, and how the structures are followed."""
+    return f"{results.shaking}, {results.spectra[0].shape.structure.model.name}"
+
+
+def lost(results: Results) -> str:
+    """Which responses could not be followed; nothing if all were."""
+    found = [
+        f"{each.shape.structure.name} at 2 pi/p = {each.periods[k]:.4g} s under {results.motions[m].motion.name}"
+        for each in results.spectra
         for m, k in np.argwhere(np.isnan(each.peak_ratio)).tolist()
     ]
-    if lost:
-        more = f" and {len(lost) - LISTED} more" if len(lost) > LISTED else ""
-        every = sum(each.peak_ratio.size for each in spectra)
-        terminal.error(
-            f"{len(lost)} of {every} responses could not be followed and are left out: {'; '.join(lost[:LISTED])}{more}"
-        )
-    return len(lost)
+    if not found:
+        return ""
+    more = f" and {len(found) - LISTED} more" if len(found) > LISTED else ""
+    every = sum(each.peak_ratio.size for each in results.spectra)
+    return (
+        f"{len(found)} of {every} responses could not be followed and are left out: {'; '.join(found[:LISTED])}{more}"
+    )
 
 
-def give(results: Results, out: Path | None, plot: Path | None, *, as_json: bool) -> None:
-    """Write spectra to the files asked for, and print them."""
-    if out is not None:
-        write_table(out, [_columns(results)])
-        terminal.note(f"wrote {out}")
-    if plot is not None:
-        from rocking_cli.plotting.spectrum import draw_spectra
-
-        title = f"{results.shaking}, {results.spectra[0].shape.structure.model.name}"
-        write_picture(plot, draw_spectra(results.spectra, results.fractiles, title))
-    if as_json:
-        terminal.print_json(_json(results))
-        return
-    for each in results.spectra:
-        _print_table(results, each)
-    for each in results.spectra:
-        terminal.result(_verdict(results, each))
-
-
-def _columns(results: Results) -> dict[str, Sequence[object]]:
-    """A line for each shape and size."""
+def table(results: Results) -> dict[str, Sequence[object]]:
+    """The columns of the curves, a row for each shape and size."""
     columns: dict[str, list[object]] = {}
 
     def add(heading: str, values: Sequence[object]) -> None:
@@ -108,22 +107,7 @@ def _columns(results: Results) -> dict[str, Sequence[object]]:
     return columns  # type: ignore[return-value]
 
 
-def _json(results: Results) -> dict[str, Any]:
-    structure = results.spectra[0].shape.structure
-    return {
-        "model": structure.model.name,
-        "polarity": results.polarity,
-        "fractiles": list(results.fractiles),
-        "motions": [
-            {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt, "pga": motion.pga}
-            | {"scale": factor}
-            for motion, factor, *_ in results.motions
-        ],
-        "spectra": [_spectrum_json(results, each) for each in results.spectra],
-    }
-
-
-def _spectrum_json(results: Results, each: Spectrum) -> dict[str, Any]:
+def _data(results: Results, each: Spectrum) -> dict[str, Any]:
     structure, blocks = each.shape.structure, each.shape.slenderness is not None
     return {
         "name": structure.name,
@@ -157,7 +141,8 @@ def _peak(value: float) -> str:
     return OVERTURNS if np.isinf(value) else f"{value:.3g}"
 
 
-def _print_table(results: Results, each: Spectrum) -> None:
+def _curve(results: Results, each: Spectrum) -> Iterator[Table | str]:
+    """The table of a shape, below what it is of."""
     structure = each.shape.structure
     shown = sorted({round(k) for k in np.linspace(0, each.scales.size - 1, min(ROWS, each.scales.size)).tolist()})
     if each.given is not None and each.given not in shown:
@@ -176,19 +161,19 @@ def _print_table(results: Results, each: Spectrum) -> None:
         columns.append([f"{value} of {of}" for value, of in zip(each.overturned, each.followed, strict=True)])
     rows = [[column[k] for column in columns] for k in shown]
     side = "" if structure.symmetric else f" ({structure.direction.label})"
-    terminal.result(
+    yield (
         f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
         f"{structure.eta:.4g}{'' if structure.eta_given else FROM_KINEMATICS}, under {results.shaking}"
     )
     if each.shape.own is not None:
         ends = (f"at {each.uplifts[k]:.4g} g at scale {each.scales[k]:.3g}" for k in (0, -1))
-        terminal.result(
+        yield (
             "Masses or loads that do not grow with it change how it rocks: every size was built and followed by itself."
             f" Uplift is {' and '.join(ends)}."
         )
     if not results.one:
-        terminal.result("Median and fractiles of the peak phi/phi_cr; overturning counts as larger than any.")
-    terminal.table("", heads, rows, numbers=range(len(heads)))
+        yield "Median and fractiles of the peak phi/phi_cr; overturning counts as larger than any."
+    yield Table("", heads, rows, numbers=range(len(heads)))
 
 
 def _verdict(results: Results, each: Spectrum) -> str:
