@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import Literal, cast
 
 import click
 
-from rocking_cli import names
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Quantity
 from rocking_cli.errors import INCOMPLETE, InputError
-
-if TYPE_CHECKING:
-    from rocking_cli.studies.equivalent import EquivalentResponses
 
 
 def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
@@ -87,6 +82,7 @@ def command(
     from rocking_cli.io.tables import write_table
     from rocking_cli.studies.equivalent import equivalent, judge
     from rocking_cli.studies.shaken import parse_shape
+    from rocking_cli.views.equivalent import table, title, view
 
     keep_apart([("--out", out), ("--plot", plot)], files)
     given = replace(parse_shape(pulse), amplitude=ag * STANDARD_GRAVITY, period=period)
@@ -97,84 +93,13 @@ def command(
     work.say_if_compiling()
     found = equivalent(mechanisms, given, polarity=int(polarity), kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
     if out is not None:
-        write_table(out, [_columns(found)])
+        write_table(out, [table(found)])
         terminal.note(f"wrote {out}")
-    title = f"{given.title}, a = {found.a:.4g}, omega = {found.omega:.4g}"
     if plot is not None:
         from rocking_cli.plotting.equivalent import draw_equivalent
 
-        write_picture(plot, draw_equivalent(found, title))
-    said = [terminal.as_typed(each) for each in judge(found)]
-    if as_json:
-        terminal.print_json(_as_json(found, said))
-    else:
-        _print(found, title, said)
+        write_picture(plot, draw_equivalent(found, title(found)))
+    verdict = terminal.as_typed(" ".join(judge(found)))
+    terminal.show(view(found, verdict), as_json=as_json)
     if bad:
         ctx.exit(INCOMPLETE)
-
-
-def _print(found: EquivalentResponses, title: str, verdict: list[str]) -> None:
-    rows = [
-        [
-            each.name,
-            f"{each.amplitude:.4g}",
-            f"{each.pulse.period:.4g}",
-            f"{each.eta:.4g}",
-            _peak(each.history.peak_ratio),
-        ]
-        for each in found.members
-    ]
-    rows.append(["linear block", "", "", f"{found.members[0].eta:.4g}", _peak(found.linear_peak)])
-    terminal.table(title, ["", "a_g [g]", "T [s]", "eta", "peak / phi_cr"], rows, numbers=(1, 2, 3, 4))
-    terminal.result(" ".join(verdict))
-
-
-def _peak(ratio: float | None) -> str:
-    if ratio is None:
-        return names.OVERTURNS
-    return f"{ratio:.4g}" if ratio else names.NO_UPLIFT
-
-
-def _columns(found: EquivalentResponses) -> dict[str, Sequence[object]]:
-    """p t, and for each structure its own time and rotation; empty fields where it has come to its end."""
-
-    def padded(values: list[float]) -> list[float]:
-        return values + [float("nan")] * (found.tau.size - len(values))
-
-    columns: dict[str, Sequence[object]] = {"p t": found.tau.tolist()}
-    for each in found.members:
-        columns[f"{each.name} t [s]"] = padded(each.history.time.tolist())
-        columns[f"{each.name} phi/phi_cr"] = padded(each.history.ratio.tolist())
-    columns["linear block phi/phi_cr"] = padded(found.linear.ratio.tolist())
-    return columns
-
-
-def _as_json(found: EquivalentResponses, verdict: list[str]) -> dict[str, Any]:
-    return {
-        "pulse": found.members[0].pulse.name,
-        "polarity": found.polarity,
-        "kappa": found.kappa,
-        "a": found.a,
-        "omega": found.omega,
-        "direction": found.direction.label,
-        "structures": [
-            {
-                "mechanism": each.mechanism,
-                "name": each.name,
-                "p": each.block.p,
-                "lambda": each.block.lambda_,
-                "lambda_lin": each.block.lambda_lin,
-                "ag": each.amplitude,
-                "period": each.pulse.period,
-                "eta": each.eta,
-                "own_eta": each.own_eta,
-                "peak_ratio": each.history.peak_ratio,
-                "overturned": each.history.overturned,
-            }
-            for each in found.members
-        ],
-        "linear_peak_ratio": found.linear_peak,
-        "spread": found.spread,
-        "relative_spread": found.relative_spread,
-        "verdict": " ".join(verdict),
-    }

@@ -1,0 +1,79 @@
+"""Pulses to which structures are equivalently vulnerable, as people and programs read them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rocking_cli.names import NO_UPLIFT, OVERTURNS
+from rocking_cli.studies.equivalent import EquivalentResponses
+from rocking_cli.views.view import Table, View
+
+
+def view(found: EquivalentResponses, verdict: str) -> View:
+    """Each structure under its own pulse and the linear block that they share, and a verdict on them."""
+    data = {
+        "pulse": found.members[0].pulse.name,
+        "polarity": found.polarity,
+        "kappa": found.kappa,
+        "a": found.a,
+        "omega": found.omega,
+        "direction": found.direction.label,
+        "structures": [
+            {
+                "mechanism": each.mechanism,
+                "name": each.name,
+                "p": each.block.p,
+                "lambda": each.block.lambda_,
+                "lambda_lin": each.block.lambda_lin,
+                "ag": each.amplitude,
+                "period": each.pulse.period,
+                "eta": each.eta,
+                "own_eta": each.own_eta,
+                "peak_ratio": each.history.peak_ratio,
+                "overturned": each.history.overturned,
+            }
+            for each in found.members
+        ],
+        "linear_peak_ratio": found.linear_peak,
+        "spread": found.spread,
+        "relative_spread": found.relative_spread,
+        "verdict": verdict,
+    }
+    rows = [
+        [
+            each.name,
+            f"{each.amplitude:.4g}",
+            f"{each.pulse.period:.4g}",
+            f"{each.eta:.4g}",
+            _peak(each.history.peak_ratio),
+        ]
+        for each in found.members
+    ]
+    rows.append(["linear block", "", "", f"{found.members[0].eta:.4g}", _peak(found.linear_peak)])
+    heads = ["", "a_g [g]", "T [s]", "eta", "peak / phi_cr"]
+    return View(data, [Table(title(found), heads, rows, numbers=(1, 2, 3, 4)), verdict])
+
+
+def title(found: EquivalentResponses) -> str:
+    """The shape of the pulses, and what they have in common."""
+    return f"{found.members[0].pulse.title}, a = {found.a:.4g}, omega = {found.omega:.4g}"
+
+
+def _peak(ratio: float | None) -> str:
+    if ratio is None:
+        return OVERTURNS
+    return f"{ratio:.4g}" if ratio else NO_UPLIFT
+
+
+def table(found: EquivalentResponses) -> dict[str, Sequence[object]]:
+    """The columns: p t, and for each structure its own time and rotation; empty fields where it has come to its end."""
+
+    def padded(values: list[float]) -> list[float]:
+        return values + [float("nan")] * (found.tau.size - len(values))
+
+    columns: dict[str, Sequence[object]] = {"p t": found.tau.tolist()}
+    for each in found.members:
+        columns[f"{each.name} t [s]"] = padded(each.history.time.tolist())
+        columns[f"{each.name} phi/phi_cr"] = padded(each.history.ratio.tolist())
+    columns["linear block phi/phi_cr"] = padded(found.linear.ratio.tolist())
+    return columns
