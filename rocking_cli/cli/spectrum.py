@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import pi
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import click
 
 from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli.groups import Output, Shaking
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Sizes
 from rocking_cli.errors import INCOMPLETE, InputError
@@ -18,9 +19,9 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.studies.shaken import Reals
     from rocking_cli.studies.spectrum import Shape
+    from rocking_cli.views.spectrum import Results
 
 MODELS = ("nonlinear", "linear1", "linear2")
-POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 SIZES, MOST = 60, 2000  # of a curve, unless asked otherwise and at most
 AROUND = 10.0  # scale up to which, and one over which down to, a structure is shown
 RIGHT = "no angle in rad between 0 and pi/2: alpha = atan(b/h) of a block 2b wide, 2h high"
@@ -57,6 +58,16 @@ def _numbers(low: float, high: float, what: str) -> Any:
         return found
 
     return read
+
+
+@dataclass(frozen=True)
+class Sizing:
+    """What there is a curve of besides the files, in which sizes, and by which equation of motion."""
+
+    slenderness: tuple[float, ...]
+    sizes: tuple[float, float, int] | None
+    model: str
+    eta: float | None
 
 
 @click.command(short_help="Peak rotation and overturning over the size of structures.")
@@ -105,27 +116,15 @@ def _numbers(low: float, high: float, what: str) -> Any:
 @options.plot("Draw them")
 @options.as_json
 @click.pass_context
+@options.grouped(shaking=Shaking, sizing=Sizing, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    records: tuple[str, ...],
-    pulses: tuple[str, ...],
-    slenderness: tuple[float, ...],
-    sizes: tuple[float, float, int] | None,
-    model: str,
-    eta: float | None,
-    units: str | None,
-    dt: float | None,
-    channel: str | None,
-    scale: float | None,
-    target_pga: float | None,
-    target_pgv: float | None,
-    polarity: str,
+    shaking: Shaking,
+    sizing: Sizing,
     fractiles: tuple[float, ...],
     jobs: int | None,
-    out: Path | None,
-    plot: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> None:
     """Rocking response spectrum: the peak rotation and overturning over the size, under one or more ground motions.
 
@@ -145,63 +144,50 @@ def command(
 
     Source: Makris and Konstantinidis (2003).
     """
-    _check(files, records, pulses, (units, dt, channel))
-    motions.check_scaling(scale, target_pga, target_pgv)
+    if not shaking:
+        raise click.UsageError(
+            "Nothing to respond to: give --record PLACE or --pulse PULSE, each as often as you like."
+        )
+    if not shaking.records and any(value is not None for value in shaking.reading):
+        raise click.UsageError("--units, --dt and --channel describe records: give --record PLACE.")
+    motions.check_strays(files, shaking.records)
     from rocking_cli.cli import work
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.io.tables import write_table
     from rocking_cli.studies import spectrum as study
-    from rocking_cli.views.spectrum import Results, lost, table, title, view
+    from rocking_cli.views.spectrum import Results, lost
 
-    paths, missing = motions.find(records)
-    keep_apart([("--out", out), ("--plot", plot)], [*files, *(str(path) for path in paths)])
-    shapes, bad = _shapes(files, slenderness, cast("ModelName", model), eta)
-    periods = _sizes(shapes, sizes)
+    paths, missing = motions.find(shaking.records)
+    keep_apart([("--out", output.out), ("--plot", output.plot)], [*files, *(str(path) for path in paths)])
+    shapes, bad = _shapes(files, sizing.slenderness, cast("ModelName", sizing.model), sizing.eta)
+    periods = _sizes(shapes, sizing.sizes)
     smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])
-    asked = scale, target_pga, target_pgv
-    chosen, refused = motions.gather(paths, pulses, (dt, units, channel), asked, 2 * pi / smallest)
+    chosen, refused = motions.gather(paths, shaking.pulses, shaking.reading, shaking.scaling, 2 * pi / smallest)
     if not chosen:
         ctx.exit(InputError.exit_code)
-    polarities = POLARITIES[polarity]
-    with work.histories(study.work(shapes, periods, len(chosen), polarities)) as progress:
-        found = study.spectra(
-            shapes,
-            periods,
-            [each.motion.scaled(each.factor) for each in chosen],
-            polarities=polarities,
-            threads=jobs,
-            progress=progress,
-        )
-    results = Results(found, chosen, tuple(sorted({*fractiles, 0.5})), polarity)
-    unfollowed = lost(results)
-    if unfollowed:
+    scaled = [each.motion.scaled(each.factor) for each in chosen]
+    with work.histories(study.work(shapes, periods, len(chosen), shaking.signs)) as progress:
+        found = study.spectra(shapes, periods, scaled, polarities=shaking.signs, threads=jobs, progress=progress)
+    results = Results(found, chosen, tuple(sorted({*fractiles, 0.5})), shaking.polarity)
+    if unfollowed := lost(results):
         terminal.error(unfollowed)
-    if out is not None:
-        write_table(out, [table(results)])
-        terminal.note(f"wrote {out}")
-    if plot is not None:
-        from rocking_cli.plotting.spectrum import draw_spectra
-
-        write_picture(plot, draw_spectra(found, results.fractiles, title(results)))
-    terminal.show(view(results), as_json=as_json)
+    _give(results, output)
     if missing or refused or unfollowed or bad:
         ctx.exit(INCOMPLETE)
 
 
-def _check(
-    files: tuple[str, ...],
-    records: tuple[str, ...],
-    pulses: tuple[str, ...],
-    reading: tuple[object, ...],
-) -> None:
-    """Refuse options that do not go together, before anything is read."""
-    if not records and not pulses:
-        raise click.UsageError(
-            "Nothing to respond to: give --record PLACE or --pulse PULSE, each as often as you like."
-        )
-    if not records and any(value is not None for value in reading):
-        raise click.UsageError("--units, --dt and --channel describe records: give --record PLACE.")
-    motions.check_strays(files, records)
+def _give(results: Results, output: Output) -> None:
+    """Write the files asked for, and show the result."""
+    from rocking_cli.io.tables import write_table
+    from rocking_cli.views.spectrum import table, title, view
+
+    if output.out is not None:
+        write_table(output.out, [table(results)])
+        terminal.note(f"wrote {output.out}")
+    if output.plot is not None:
+        from rocking_cli.plotting.spectrum import draw_spectra
+
+        write_picture(output.plot, draw_spectra(results.spectra, results.fractiles, title(results)))
+    terminal.show(view(results), as_json=output.as_json)
 
 
 def _shapes(
