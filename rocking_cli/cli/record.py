@@ -5,41 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from time import perf_counter
+from typing import TYPE_CHECKING
 
 import click
 
 from rocking_cli.cli import motions, options, terminal
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
-from rocking_cli.views.view import ABSENT, number
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
-    from rocking_cli.excitation.doubts import Doubt
-    from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulse_fit import PulseFit
+    from rocking_cli.views.record import Shown
 
-HEADING = 14  # characters of a record's name in a line above its column
-LEFT = 26  # characters that labels and units take of a table
-BESIDE = 3  # blanks between columns
+PATIENCE = 1.0  # s without a word
 POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
-
-
-class Shown(NamedTuple):
-    """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses.
-
-    `label` is what to call it: of both polarities the reversed one says so.
-    """
-
-    file: str
-    label: str
-    motion: GroundMotion
-    factor: float
-    measures: Measures
-    doubts: list[Doubt]
-    p_dt: float | None
-    pulses: list[PulseFit]
 
 
 @click.command(short_help="What records are, how strong, and what is doubtful about them.")
@@ -97,6 +78,8 @@ def command(
         raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
     from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.io.files import keep_apart
+    from rocking_cli.views.record import data, parts
+    from rocking_cli.views.view import View
 
     signs = POLARITIES[polarity]
     clean = _clean_paths(files, channel, signs) if to else {}
@@ -127,10 +110,10 @@ def command(
         shown += found
         if as_json:
             for one in found:
-                terminal.print_json(_as_json(one))
+                terminal.print_json(data(one))
         motions.warn(motion, found[0].doubts)
     if shown and not as_json:
-        _print_tables(shown)
+        terminal.show(View({}, list(parts(shown, terminal.width()))), as_json=False)
     if len(shown) < len(files) * len(signs):
         ctx.exit(INCOMPLETE if shown else InputError.exit_code)
 
@@ -179,18 +162,29 @@ def _examine(
     """The record and its scaled motion; what is doubtful is looked for in the record as read."""
     from rocking_cli.excitation.doubts import coarse_for, doubts
     from rocking_cli.excitation.measures import measure
+    from rocking_cli.views.record import Shown
 
     own = measure(motion)
     found = doubts(motion, own) + (coarse_for(motion, p) if p is not None else [])
     factor = polarity * motions.factor(motion, own, *asked)
     scaled = motion.scaled(factor)
-    fits: list[PulseFit] = []
-    if pulse:
-        from rocking_cli.cli import pulse_fits
-
-        fits = pulse_fits.find(scaled)
+    fits = _fit(scaled) if pulse else []
     p_dt = p * motion.dt if p is not None else None
     return Shown(file, motion.name, motion, factor, measure(scaled), found, p_dt, fits), scaled
+
+
+def _fit(motion: GroundMotion) -> list[PulseFit]:
+    """The best pulse of each shape by each criterion; says how far it is if that takes its time."""
+    from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, fit_pulses
+
+    fits: list[PulseFit] = []
+    since = perf_counter()
+    for fit in fit_pulses(motion):
+        fits.append(fit)
+        if perf_counter() - since > PATIENCE:
+            terminal.note(f"{motion.name}: {len(fits)} of {len(CRITERIA) * len(FITTED)} pulses fitted")
+            since = perf_counter()
+    return fits
 
 
 def _write(path: Path, motion: GroundMotion) -> None:
@@ -216,92 +210,3 @@ def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:
     """Of the pulses fitted by each criterion the one that captures most, velocity first."""
     by_criterion = {fit.criterion: fit for fit in sorted(fits, key=lambda fit: fit.captured)}
     return [by_criterion["velocity"], by_criterion["acceleration"]]
-
-
-def _channel(record: Shown) -> str | None:
-    """The channel, of a file with several: readers put it into the name of the motion."""
-    return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
-
-
-def _as_json(record: Shown) -> dict[str, Any]:
-    motion, measures = record.motion, record.measures
-    found: dict[str, Any] = {
-        "file": record.file,
-        "name": motion.name,
-        "format": motion.format,
-        "channel": _channel(record),
-        "unit": motion.unit,
-        "npts": motion.npts,
-        "dt": motion.dt,
-        "duration": motion.duration,
-        "factor": record.factor,
-        "pga": measures.pga,
-        "pgv": measures.pgv,
-        "pgd": measures.pgd,
-        "arias_intensity": measures.arias,
-        "significant_duration": measures.significant_duration,
-        "t_5": measures.t_5,
-        "t_95": measures.t_95,
-        "mean_acceleration": measures.mean,
-        "final_velocity": measures.final_velocity,
-        "final_displacement": measures.final_displacement,
-        "p_dt": record.p_dt,
-        "warnings": [doubt._asdict() for doubt in record.doubts],
-    }
-    if record.pulses:
-        from rocking_cli.cli.pulse_fits import fits_json
-
-        found["pulses"] = fits_json(record.pulses)
-    return found
-
-
-def _rows(records: Sequence[Shown]) -> list[list[str]]:
-    """The rows of the table: a label, a cell for each record, a unit."""
-    rows = [
-        ("format", [_folded(r.motion.format) for r in records], ""),
-        ("channel", [_channel(r) or ABSENT for r in records], ""),
-        ("unit in the file", [r.motion.unit for r in records], ""),
-        ("points", [str(r.motion.npts) for r in records], ""),
-        ("dt", [number(r.motion.dt) for r in records], "s"),
-        ("duration", [number(r.motion.duration) for r in records], "s"),
-        ("scaled by", [number(r.factor) for r in records], ""),
-        ("PGA", [number(r.measures.pga, 4) for r in records], "g"),
-        ("PGV", [number(r.measures.pgv, 4) for r in records], "m/s"),
-        ("PGD", [number(r.measures.pgd, 4) for r in records], "m"),
-        ("Arias intensity", [number(r.measures.arias, 4) for r in records], "m/s"),
-        ("5-95 % duration", [number(r.measures.significant_duration, 4) for r in records], "s"),
-        ("from", [number(r.measures.t_5, 4) for r in records], "s"),
-        ("to", [number(r.measures.t_95, 4) for r in records], "s"),
-        ("mean acceleration", [number(r.measures.mean, 2) for r in records], "g"),
-        ("p dt", [number(r.p_dt, 2) for r in records], ""),
-    ]
-    silent = {"channel": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
-    return [
-        [label, *cells, unit]
-        for label, cells, unit in rows
-        if label not in silent or any(cell != silent[label] for cell in cells)
-    ]
-
-
-def _print_tables(records: Sequence[Shown]) -> None:
-    """A column for each record, in as many tables below one another as the terminal needs."""
-    names = [record.label if len(records) == 1 else _folded(record.label) for record in records]
-    rows = _rows(records)
-    fitting = max((terminal.width() - LEFT) // (HEADING + BESIDE), 1)
-    for start in range(0, len(records), fitting):
-        part = slice(start, start + fitting)
-        cells = [[row[0], *row[1:-1][part], row[-1]] for row in rows]
-        title, headings = (names[0], ["value"]) if len(records) == 1 else ("", names[part])
-        terminal.table(title, ["", *headings, "unit"], cells, numbers=range(1, len(headings) + 1))
-    for record in records:
-        if record.pulses:
-            from rocking_cli.cli import pulse_fits
-
-            pulse_fits.print_tables(record.label, record.pulses)
-
-
-def _folded(name: str) -> str:
-    """A name broken into lines of a column's width, at blanks where there are some."""
-    from textwrap import wrap
-
-    return "\n".join(wrap(name, HEADING))

@@ -62,6 +62,10 @@ class ClosedForm:
         failed = [CONDITIONS[name] for name, holds in self.conditions.items() if holds is False]
         return None if self.valid else f"it is not true that {' and '.join(failed)}"
 
+    def off(self, exact: float | None) -> float | None:
+        """Eq. 41 as printed less an exact peak; None where either is none."""
+        return None if self.printed_ratio is None or exact is None else self.printed_ratio - exact
+
 
 @dataclass(frozen=True)
 class ExactPulse:

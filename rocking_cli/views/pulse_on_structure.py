@@ -1,0 +1,164 @@
+"""A pulse on a structure, as people and programs read it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from math import degrees
+
+from rocking_cli import names
+from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
+from rocking_cli.dynamics.verdict import SENSE
+from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.names import percent
+from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, scaled
+from rocking_cli.views.pulse import YES_NO, closed_data, how_far_off, impacts
+from rocking_cli.views.response import pulse_data, restitution_data, restitution_used
+from rocking_cli.views.view import ABSENT, Table, View, heading, number
+
+
+def view(
+    structure: Prepared, pulse: Pulse, answers: Mapping[int, Mapping[str, Answer]], closed: Mapping[str, ClosedForm]
+) -> View:
+    """What the models of a structure say of a pulse.
+
+    Parameters
+    ----------
+    structure : Prepared
+        What the pulse shakes.
+    pulse : Pulse
+        As it is given.
+    answers : mapping of int to mapping of str to Answer
+        What the models say under each polarity asked for, 1 or -1.
+    closed : mapping of str to ClosedForm
+        Eqs. 41-42 with each kappa, beside the answers under the first polarity; empty where they do not apply.
+    """
+    mechanism, equivalence = structure.mechanism, structure.equivalence
+    blocks = {"positive": equivalence.positive, "negative": equivalence.negative}
+    seen = {label: scaled(mechanism, block, pulse) for label, block in blocks.items()}
+    polarity, first = next(iter(answers.items()))
+    each = {
+        str(sign): {"responses": {name: asdict(answer) for name, answer in found.items()}}
+        for sign, found in answers.items()
+    }
+    data = {
+        "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
+        "pulse": {**pulse_data(pulse), "polarity": polarity if len(answers) == 1 else "both"},
+        "restitution": restitution_data(mechanism, equivalence),
+        "directions": seen,
+        "closed_form": {
+            name: closed_data(form, first[name].first_rebound, first[name].peak_ratio) for name, form in closed.items()
+        }
+        or None,
+        **(each.popitem()[1] if len(each) == 1 else {"polarities": each}),
+    }
+    rows = [
+        [label, *(number(values[key], 5) for key in ("omega", "a1", "a2", "eta"))] for label, values in seen.items()
+    ]
+    if equivalence.symmetric:
+        rows = [["both", *rows[0][1:]]]
+    columns = ["direction", "omega", "a\nkappa1", "a\nkappa2", "eta"]
+    parts: list[Table | str] = [Table(f"{heading(mechanism)}, {pulse}", columns, rows, numbers=range(1, 5))]
+    for sign, found in answers.items():
+        title = f"Polarity {sign}: {'as it is' if sign > 0 else 'reversed'}"
+        parts += ["", _answer_table(title, found), _verdict(found)]
+    unfit = uplift_error(equivalence)
+    if grade(unfit) is Grade.DISREGARD:
+        parts.append(f"Disregard linear1: its uplift acceleration is {uplift_in_words(unfit)}.")
+    parts.append("")
+    if not closed:
+        parts.append(_why_no_closed_form(pulse))
+    elif any(form.conditions["uplift"] for form in closed.values()):
+        parts += _closed_parts(closed, first)
+    else:
+        parts.append(f"No closed form: by the equivalent blocks it {names.NO_UPLIFT} (a <= 1).")
+    return View(data, [*parts, restitution_used(mechanism, equivalence)])
+
+
+def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
+    found = list(answers.values())
+
+    def in_degrees(phi: float | None) -> str:
+        return ABSENT if phi is None else number(degrees(phi), 5)
+
+    rows = [
+        ["pulse", *("exact" if each.exact else "sampled" for each in found), ""],
+        ["outcome", *(_outcome(each) for each in found), ""],
+        ["peak / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
+        ["  over nonlinear", *(number(each.over_nonlinear, 5) for each in found), ""],
+        ["peak, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
+        ["peak, anticlockwise", *(in_degrees(each.peak_negative) for each in found), "deg"],
+        ["first excursion", *(number(each.first_excursion, 5) for each in found), ""],
+        ["first rebound", *(number(each.first_rebound, 5) for each in found), ""],
+        ["uplift", *(number(each.uplift_time, 5) for each in found), "s"],
+        ["first impact", *(number(each.first_impact, 5) for each in found), "s"],
+        ["overturning time", *(number(each.overturning_time, 5) for each in found), "s"],
+    ]
+    return Table(title, ["", *answers, "unit"], rows, numbers=range(1, len(found) + 1))
+
+
+def _outcome(answer: Answer) -> str:
+    said = names.outcome(uplifts=answer.uplift_time is not None, overturned=answer.overturned)
+    return f"{said}\n{impacts(answer.impacts_before_overturning)}" if answer.overturned else said
+
+
+def _verdict(answers: Mapping[str, Answer]) -> str:
+    """What the nonlinear history says, and how the linear ones compare."""
+    nonlinear = answers["nonlinear"]
+    if nonlinear.uplift_time is None:
+        return f"The structure {names.NO_UPLIFT}."
+    if nonlinear.overturned:
+        sense = next(sense for direction, sense in SENSE.items() if direction.label == nonlinear.overturning_direction)
+        said = f"The structure {names.OVERTURNS} {sense}, {impacts(nonlinear.impacts_before_overturning)}."
+    else:
+        said = f"The structure {names.ROCKS} to {nonlinear.peak_ratio:.4g} of its critical rotation."
+    for name in KAPPAS:
+        answer = answers[name]
+        if answer.over_nonlinear is not None:
+            off = answer.over_nonlinear - 1
+            said += f" {name} gives {percent(abs(off))} {'more' if off > 0 else 'less'}."
+        elif answer.overturned != nonlinear.overturned:
+            lifts = answer.uplift_time is not None
+            said += f" By {name} it {names.outcome(uplifts=lifts, overturned=answer.overturned)}."
+    return said
+
+
+def _closed_parts(closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer]) -> Iterator[Table | str]:
+    """The closed form, its conditions, and how far to trust it."""
+    forms = list(closed.values())
+    beside = [(form, answers[name]) for name, form in closed.items()]
+    rows = [
+        ["D0* (Eq. 42)", *(number(form.D0) for form in forms)],
+        ["max ratio (Eq. 41)", *(number(form.max_ratio) for form in forms)],
+        ["  minus exact first rebound", *(number(form.off(exact.first_rebound), 3) for form, exact in beside)],
+        ["  minus exact peak", *(number(form.off(exact.peak_ratio), 3) for form, exact in beside)],
+        ["overturns after one impact", *(YES_NO[form.overturns] for form in forms)],
+    ]
+    rows += [
+        [f"condition {place}", *(YES_NO[form.conditions[name]] for form in forms)]
+        for place, name in enumerate(CONDITIONS, start=1)
+    ]
+    yield Table("Closed form of a full sine", ["", *closed], rows, numbers=range(1, len(forms) + 1))
+    for place, condition in enumerate(CONDITIONS.values(), start=1):
+        yield f"{place}: {condition}"
+    for name, form in closed.items():
+        yield f"{name}: {_trust(form, answers[name])}"
+
+
+def _trust(closed: ClosedForm, exact: Answer) -> str:
+    if not closed.conditions["uplift"]:
+        return f"it {names.NO_UPLIFT} (a <= 1)."
+    use = "all conditions hold, the closed form can be used"
+    said = use if closed.valid else f"do not use the closed form, {closed.reason}"
+    return f"{said}{how_far_off(closed, exact.peak_ratio, overturns=exact.overturned)}."
+
+
+def _why_no_closed_form(pulse: Pulse) -> str:
+    if pulse.name != "sine":
+        said = "No closed form: Eqs. 41-42 are for a full sine."
+        if not pulse.segments():
+            said += " This pulse has no exact answer either: the linear models are followed on a sampled one."
+        return said
+    return "No closed form: Eqs. 41-42 are for a structure whose directions agree."

@@ -1,0 +1,124 @@
+"""What records are and how strong, as people and programs read it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rocking_cli.views.view import ABSENT, Table, number
+
+if TYPE_CHECKING:
+    from rocking_cli.excitation.base import GroundMotion
+    from rocking_cli.excitation.doubts import Doubt
+    from rocking_cli.excitation.measures import Measures
+    from rocking_cli.excitation.pulse_fit import PulseFit
+
+HEADING = 14  # characters of a record's name in a line above its column
+LEFT = 26  # characters that labels and units take of a table
+BESIDE = 3  # blanks between columns
+
+
+class Shown(NamedTuple):
+    """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses.
+
+    `label` is what to call it: of both polarities the reversed one says so.
+    """
+
+    file: str
+    label: str
+    motion: GroundMotion
+    factor: float
+    measures: Measures
+    doubts: list[Doubt]
+    p_dt: float | None
+    pulses: list[PulseFit]
+
+
+def data(record: Shown) -> dict[str, Any]:
+    """A record as plain data."""
+    motion, measures = record.motion, record.measures
+    found: dict[str, Any] = {
+        "file": record.file,
+        "name": motion.name,
+        "format": motion.format,
+        "channel": _channel(record),
+        "unit": motion.unit,
+        "npts": motion.npts,
+        "dt": motion.dt,
+        "duration": motion.duration,
+        "factor": record.factor,
+        "pga": measures.pga,
+        "pgv": measures.pgv,
+        "pgd": measures.pgd,
+        "arias_intensity": measures.arias,
+        "significant_duration": measures.significant_duration,
+        "t_5": measures.t_5,
+        "t_95": measures.t_95,
+        "mean_acceleration": measures.mean,
+        "final_velocity": measures.final_velocity,
+        "final_displacement": measures.final_displacement,
+        "p_dt": record.p_dt,
+        "warnings": [doubt._asdict() for doubt in record.doubts],
+    }
+    if record.pulses:
+        from rocking_cli.views.pulse_fits import fits_data
+
+        found["pulses"] = fits_data(record.pulses)
+    return found
+
+
+def parts(records: Sequence[Shown], width: int) -> Iterator[Table | str]:
+    """A column for each record, in as many tables below one another as so many characters need; then its pulses."""
+    names = [record.label if len(records) == 1 else _folded(record.label) for record in records]
+    rows = _rows(records)
+    fitting = max((width - LEFT) // (HEADING + BESIDE), 1)
+    for start in range(0, len(records), fitting):
+        part = slice(start, start + fitting)
+        cells = [[row[0], *row[1:-1][part], row[-1]] for row in rows]
+        title, headings = (names[0], ["value"]) if len(records) == 1 else ("", names[part])
+        yield Table(title, ["", *headings, "unit"], cells, numbers=range(1, len(headings) + 1))
+    for record in records:
+        if record.pulses:
+            from rocking_cli.views import pulse_fits
+
+            yield from pulse_fits.parts(record.label, record.pulses)
+
+
+def _rows(records: Sequence[Shown]) -> list[list[str]]:
+    """The rows of the table: a label, a cell for each record, a unit."""
+    rows = [
+        ("format", [_folded(r.motion.format) for r in records], ""),
+        ("channel", [_channel(r) or ABSENT for r in records], ""),
+        ("unit in the file", [r.motion.unit for r in records], ""),
+        ("points", [str(r.motion.npts) for r in records], ""),
+        ("dt", [number(r.motion.dt) for r in records], "s"),
+        ("duration", [number(r.motion.duration) for r in records], "s"),
+        ("scaled by", [number(r.factor) for r in records], ""),
+        ("PGA", [number(r.measures.pga, 4) for r in records], "g"),
+        ("PGV", [number(r.measures.pgv, 4) for r in records], "m/s"),
+        ("PGD", [number(r.measures.pgd, 4) for r in records], "m"),
+        ("Arias intensity", [number(r.measures.arias, 4) for r in records], "m/s"),
+        ("5-95 % duration", [number(r.measures.significant_duration, 4) for r in records], "s"),
+        ("from", [number(r.measures.t_5, 4) for r in records], "s"),
+        ("to", [number(r.measures.t_95, 4) for r in records], "s"),
+        ("mean acceleration", [number(r.measures.mean, 2) for r in records], "g"),
+        ("p dt", [number(r.p_dt, 2) for r in records], ""),
+    ]
+    silent = {"channel": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
+    return [
+        [label, *cells, unit]
+        for label, cells, unit in rows
+        if label not in silent or any(cell != silent[label] for cell in cells)
+    ]
+
+
+def _channel(record: Shown) -> str | None:
+    """The channel, of a file with several: readers put it into the name of the motion."""
+    return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
+
+
+def _folded(name: str) -> str:
+    """A name broken into lines of a column's width, at blanks where there are some."""
+    return "\n".join(wrap(name, HEADING))
