@@ -12,7 +12,7 @@ from rocking_cli.cli.pictures import write_picture
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from rocking_cli.core import Angle, Length, Mechanism
+    from rocking_cli.core import Mechanism
     from rocking_cli.studies.picture import Picture
 
 
@@ -47,6 +47,7 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
     from rocking_cli.cli import structures
     from rocking_cli.errors import InputError, Problem
     from rocking_cli.io.files import check_writable, keep_apart
+    from rocking_cli.views.draw import view
 
     if plot is None and not as_json:
         plot = Path(f"{Path(file).stem if file else 'rocking'}.png")
@@ -54,26 +55,16 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
     keep_apart([("--plot", plot)], [file])
     mechanism = structures.load([file] if file else [])[0]
     shown = _picture(mechanism)
-    furthest = min(shown.limit[each] / phi_cr for each, phi_cr in shown.phi_cr.items())
     if ratio is None:
-        ratio = min(1.0, furthest)  # a stocky body lies on its side before it is there
-    if ratio > furthest:
-        hint = f"at most {furthest:.4g} times phi_cr"
+        ratio = min(1.0, shown.furthest)  # a stocky body lies on its side before it is there
+    if ratio > shown.furthest:
+        hint = f"at most {shown.furthest:.4g} times phi_cr"
         raise InputError(Problem(f"{ratio:g} times phi_cr is beyond the end of the mechanism", field="--at", hint=hint))
     if plot is not None:
         from rocking_cli.plotting.structure import draw_structure
 
         write_picture(plot, draw_structure(shown, heading(mechanism), ratio))
-    if as_json:
-        terminal.print_json(shown.as_dict())
-        return
-    terminal.result(heading(mechanism))
-    measured: list[Length | Angle] = [*shown.sketch.lengths, *shown.sketch.angles]
-    for each in measured:
-        where = f" ({each.direction.label})" if each.direction is not None else ""
-        terminal.result(f"  {each.text}{where}")
-    for note in shown.sketch.notes:
-        terminal.result(f"  {note}")
+    terminal.show(view(shown), as_json=as_json)
 
 
 def _picture(mechanism: Mechanism) -> Picture:

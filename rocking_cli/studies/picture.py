@@ -136,6 +136,11 @@ class Picture:
         outlines = [[carried(k, each) for each in part.outlines] for k, part in enumerate(self.parts)]
         return outlines, np.array([complex(carried(pin.part, np.array(pin.point))) for pin in self.pins])
 
+    @property
+    def furthest(self) -> float:
+        """How far it can be displaced in either direction, as a multiple of phi_cr."""
+        return min(self.limit[direction] / phi_cr for direction, phi_cr in self.phi_cr.items())
+
     @cached_property
     def extent(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of the structure at rest [m]."""

@@ -1,0 +1,16 @@
+"""What a drawing of a structure shows, as people and programs read it."""
+
+from __future__ import annotations
+
+from rocking_cli.core import Angle, Length
+from rocking_cli.studies.picture import Picture
+from rocking_cli.views.view import View, heading
+
+
+def view(picture: Picture) -> View:
+    """The dimensions of a structure, and all of its picture in numbers."""
+    measured: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
+    said = [f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured]
+    return View(
+        picture.as_dict(), [heading(picture.mechanism), *(f"  {each}" for each in [*said, *picture.sketch.notes])]
+    )
