@@ -17,7 +17,7 @@ from make_runs import examples, of_mechanisms
 
 from rocking_cli import Registry
 from rocking_cli.cli.main import main
-from rocking_cli.cli.mechanisms import fields
+from rocking_cli.views.mechanisms import fields
 
 GENERATED = Path(__file__).resolve().parent / "_generated"
 OURS = "rocking-cli"  # the package; a plugin that happens to be installed is documented elsewhere

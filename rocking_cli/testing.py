@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import partial
 from inspect import cleandoc
 from itertools import pairwise
@@ -41,6 +41,7 @@ from rocking_cli.core import (
 from rocking_cli.core.coefficients import coefficients, jump
 from rocking_cli.core.registry import conformance
 from rocking_cli.core.restitution import kinematic_restitution
+from rocking_cli.core.verdict import Verdict
 from rocking_cli.errors import RockingError
 from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.studies.picture import picture
@@ -60,33 +61,6 @@ DRAWN = 2e-3  # how near, over the size of a body, its outlines with their strai
 A_LITTLE = 0.25  # of the critical rotation, in which nothing may go through the ground
 FLUSH = 1e-8  # of the size of the structure: how near to the ground counts as on it
 GIVEN = 0.625  # a coefficient of restitution that no structure has by itself
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """Whether a structure passes one check.
-
-    Parameters
-    ----------
-    check : str
-        Name of the check.
-    meaning : str
-        What it holds the structure to, one sentence.
-    why : str or None
-        Why it fails; None if it passes.
-    trace : str or None
-        The traceback of an error that the plugin made, if it is one.
-    """
-
-    check: str
-    meaning: str
-    why: str | None = None
-    trace: str | None = None
-
-    @property
-    def passed(self) -> bool:
-        """Whether it passes."""
-        return self.why is None
 
 
 def contract(structure: Mechanism) -> list[Verdict]:

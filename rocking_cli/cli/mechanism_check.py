@@ -12,7 +12,7 @@ from rocking_cli.errors import InputError, MechanismError
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
     from rocking_cli.core.registry import Registry
-    from rocking_cli.testing import Verdict
+    from rocking_cli.core.verdict import Verdict
 
 LOADS = "The plugin can be loaded, and is a mechanism."
 MADE = "The file that `rocking new` prints is a structure."
@@ -37,24 +37,14 @@ def check(name: str, file: str | None, registry: Registry, as_json: bool) -> Non
     InputError
         If there is no such mechanism, or the file is no structure of it.
     """
+    from rocking_cli.views.mechanisms import checked
+
     verdicts = _verdicts(name, file, registry)
+    package = registry.package_of(name)
     failed = [each for each in verdicts if not each.passed]
-    if as_json:
-        checks = [
-            {
-                "check": each.check,
-                "meaning": each.meaning,
-                "passed": each.passed,
-                "why": each.why,
-                "traceback": each.trace,
-            }
-            for each in verdicts
-        ]
-        found = {"mechanism": name, "package": registry.package_of(name), "file": file}
-        terminal.print_json({**found, "passed": not failed, "checks": checks})
-    else:
-        _print(verdicts)
-        terminal.note(f"{name} ({registry.package_of(name)}), {file or 'its examples'}: {_count(verdicts, failed)}")
+    terminal.show(checked(name, package, file, verdicts), as_json=as_json)
+    if not as_json:
+        terminal.note(f"{name} ({package}), {file or 'its examples'}: {_count(verdicts, failed)}")
     if failed:
         click.get_current_context().exit(MechanismError.exit_code)
 
@@ -87,26 +77,6 @@ def _first(name: str, registry: Registry) -> Mechanism:
     from rocking_cli.structure import parse_structure
 
     return parse_structure(template(registry[name]), f"rocking new {name}", name, registry)
-
-
-def _print(verdicts: list[Verdict]) -> None:
-    """A line for each check, and under it the traceback of an error of the plugin's own; an error is told once."""
-    told: set[str] = set()
-    for each in verdicts:
-        if each.why is None:
-            terminal.result(f"passes  {each.meaning}")
-        elif each.why in told:
-            terminal.result(f"FAILS   {each.meaning} The same error.")
-        else:
-            told.add(each.why)
-            terminal.result(f"FAILS   {each.meaning} {_in_a_line(each.why)}")
-            if each.trace is not None:
-                terminal.result(each.trace)
-
-
-def _in_a_line(why: str) -> str:
-    """An error without the lines that it quotes."""
-    return "; ".join(line.strip() for line in why.splitlines() if not line.startswith("    "))
 
 
 def _count(verdicts: list[Verdict], failed: list[Verdict]) -> str:

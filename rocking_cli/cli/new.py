@@ -55,7 +55,7 @@ def template(cls: Any) -> str:
     -------
     str
     """
-    from rocking_cli.cli.mechanisms import fields
+    from rocking_cli.views.mechanisms import fields
 
     lines = [f"# {cls.title}", f"# {cls.source}", f"# {UNITS}", f"mechanism: {cls.mechanism}"]
     missing = []

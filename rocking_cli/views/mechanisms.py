@@ -1,0 +1,146 @@
+"""Installed mechanisms, the fields of one, and what the contract says of it, as people and programs read them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+from pydantic_core import PydanticUndefined
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.verdict import Verdict
+from rocking_cli.units import units_of
+from rocking_cli.views.view import ABSENT, Table, View
+
+BOUNDS = (
+    ("gt", ">"),
+    ("ge", ">="),
+    ("lt", "<"),
+    ("le", "<="),
+    ("min_length", "entries >="),
+    ("max_length", "entries <="),
+)
+
+
+class Installed(NamedTuple):
+    """A mechanism, its title, which is None if it cannot be loaded, and the package it comes from."""
+
+    name: str
+    title: str | None
+    package: str
+
+
+def installed(found: Sequence[Installed]) -> View:
+    """The mechanisms that are installed."""
+    cells = [[each.name, each.title or "(cannot be loaded)", each.package] for each in found]
+    return View(
+        {"mechanisms": [each._asdict() for each in found]},
+        [
+            Table("Mechanisms", ["mechanism", "what it is", "package"], cells),
+            "`rocking mechanisms NAME` lists the fields of one, `rocking new NAME` prints a file to start from.",
+        ],
+    )
+
+
+def view(cls: type[Mechanism], package: str) -> View:
+    """A mechanism with the fields of its file."""
+    rows = fields(cls)
+    data = {
+        "mechanism": cls.mechanism,
+        "title": cls.title,
+        "package": package,
+        "source": cls.source,
+        "verified": cls.verified,
+        "caution": cls.caution or None,
+        "fields": rows,
+    }
+    cells = [
+        [
+            row["field"],
+            row["symbol"],
+            row["unit"],
+            row["bounds"],
+            "required" if row["required"] else ABSENT if row["default"] is None else str(row["default"]),
+            row["description"],
+        ]
+        for row in rows
+    ]
+    columns = ["field", "symbol", "unit", "bounds", "default", "meaning"]
+    kinds = dict.fromkeys(tuple(row["units"]) for row in rows if len(row["units"]) > 1)
+    taken = "; ".join(", ".join(units) for units in kinds)
+    parts: list[Table | str] = [
+        Table(f"{cls.mechanism}: {cls.title}", columns, cells, explained=True),
+        f"A bare number is in the unit of its field; taken with their unit, as in 800 mm: {taken}.",
+        f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'by nobody yet'}",
+    ]
+    parts += [f"caution:  {cls.caution}"] if cls.caution else []
+    return View(data, parts)
+
+
+def fields(cls: type[Mechanism]) -> list[dict[str, Any]]:
+    """The fields of a mechanism's file: name, unit, symbol, bounds, default, description; its own before the common."""
+    found = []
+    for key, info in cls.model_fields.items():
+        extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+        bounds = [
+            f"{sign} {getattr(rule, attribute):g}"
+            for attribute, sign in BOUNDS
+            for rule in info.metadata
+            if hasattr(rule, attribute)
+        ]
+        found.append(
+            {
+                "field": key,
+                "unit": extra.get("unit", ""),
+                "units": list(units_of(str(extra.get("unit", "")))),
+                "symbol": extra.get("symbol", ""),
+                "bounds": ", ".join(bounds),
+                "required": info.is_required(),
+                "default": None if info.default is PydanticUndefined else info.default,
+                "example": info.examples[0] if info.examples else None,
+                "description": info.description or "",
+                "common": key in Mechanism.model_fields,
+            }
+        )
+    return sorted(found, key=lambda row: row["common"])
+
+
+def checked(name: str, package: str, file: str | None, verdicts: Sequence[Verdict]) -> View:
+    """Which checks of the contract a mechanism passes: of a structure in a file, or of its examples."""
+    data = {
+        "mechanism": name,
+        "package": package,
+        "file": file,
+        "passed": all(each.passed for each in verdicts),
+        "checks": [
+            {
+                "check": each.check,
+                "meaning": each.meaning,
+                "passed": each.passed,
+                "why": each.why,
+                "traceback": each.trace,
+            }
+            for each in verdicts
+        ],
+    }
+    return View(data, list(_told(verdicts)))
+
+
+def _told(verdicts: Sequence[Verdict]) -> Iterator[str]:
+    """A line for each check, and under it the traceback of an error of the plugin's own; an error is told once."""
+    told: set[str] = set()
+    for each in verdicts:
+        if each.why is None:
+            yield f"passes  {each.meaning}"
+        elif each.why in told:
+            yield f"FAILS   {each.meaning} The same error."
+        else:
+            told.add(each.why)
+            yield f"FAILS   {each.meaning} {_in_a_line(each.why)}"
+            if each.trace is not None:
+                yield each.trace
+
+
+def _in_a_line(why: str) -> str:
+    """An error without the lines that it quotes."""
+    return "; ".join(line.strip() for line in why.splitlines() if not line.startswith("    "))
