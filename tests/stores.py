@@ -316,7 +316,7 @@ WAITS = """
 import sys, time
 from pathlib import Path
 import rocking_cli.cli.fragility, rocking_cli.cli.fragility_results, rocking_cli.studies.fragility.campaign
-import rocking_cli.dynamics.kernels
+import rocking_cli.dynamics.kernels, rocking_cli.views.fragility
 from rocking_cli.cli.main import main
 Path(sys.argv[1]).touch()
 while not Path(sys.argv[2]).exists():

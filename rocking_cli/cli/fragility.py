@@ -9,11 +9,15 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import endings, options, terminal
+from rocking_cli.errors import INCOMPLETE
 
 if TYPE_CHECKING:
     from rocking_cli.studies.fragility.campaign import Prepared
     from rocking_cli.studies.fragility.engines import Engine
+    from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.study import Study
+
+NAMED = 10  # bad records or samples named one by one
 
 
 @click.command(short_help="Run a study of many records and intensities, and fit fragility curves.")
@@ -54,9 +58,9 @@ def command(
     """
     if scheduler is not None and jobs is not None:
         raise click.UsageError("--jobs is for this machine: a cluster has as many workers as it has.")
-    from rocking_cli.cli import fragility_results as results
     from rocking_cli.cli import structures
     from rocking_cli.cli.fragility_pictures import ready
+    from rocking_cli.cli.fragility_results import give
     from rocking_cli.io.files import check_writable, keep_apart
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
@@ -70,18 +74,30 @@ def command(
         place = Path(store) if store is not None else Path(file).with_suffix(".db")
         keep_apart([("--store" if store is not None else "the store beside the study", place)], [file])
         if check:
-            complete = results.print_check(study, as_json=as_json)
+            complete = _check(study, as_json=as_json)
         else:
             check_writable(place)
             folder = ready(pictures)
             _bring_up_to_date(study, place, jobs, scheduler, restart=restart)
             with Store.reading(place) as kept:
-                complete = results.give(kept, None, folder, as_json=as_json)
+                complete = give(kept, None, folder, as_json=as_json)
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(endings.exit_code(stopped))
     if not complete:
-        ctx.exit(results.INCOMPLETE)
+        ctx.exit(INCOMPLETE)
+
+
+def _check(study: Study, *, as_json: bool) -> bool:
+    """Examine the records and structures of a study, and say what it would run; whether all of them can be used."""
+    from rocking_cli.studies.fragility.campaign import survey
+    from rocking_cli.views.fragility import left_out, planned
+
+    with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
+        plan, _ = survey(study, examined)
+    _report_left_out(plan)
+    terminal.show(planned(study, plan), as_json=as_json)
+    return not left_out(plan)
 
 
 def _bring_up_to_date(study: Study, place: Path, jobs: int | None, scheduler: str | None, *, restart: bool) -> None:
@@ -116,10 +132,8 @@ def _engine(jobs: int | None, scheduler: str | None) -> AbstractContextManager[E
 
 def _report(prepared: Prepared) -> None:
     """Say what cannot be used, what is doubtful, and where the work goes on."""
-    from rocking_cli.cli import fragility_results as results
-
     plan = prepared.plan
-    results.report_useless(plan)
+    _report_left_out(plan)
     doubtful = [each.name for each in plan.records if each.doubts]
     if doubtful:
         named = ", ".join(doubtful[:3]) + (" ..." if len(doubtful) > 3 else "")
@@ -129,3 +143,14 @@ def _report(prepared: Prepared) -> None:
         terminal.note(f"{name}: could not be used when the study was begun, and is run now")
     if prepared.finished:
         terminal.note(f"{prepared.finished} of {plan.total} runs are in the store already")
+
+
+def _report_left_out(plan: Plan) -> None:
+    """Name the records and the samples that cannot be run."""
+    from rocking_cli.views.fragility import left_out
+
+    bad = left_out(plan)
+    for each in bad[:NAMED]:
+        terminal.error(each)
+    if len(bad) > NAMED:
+        terminal.error(f"and {len(bad) - NAMED} more: `rocking results STORE --json` names all")

@@ -39,10 +39,10 @@ def draw_all(
     surfaces: Sequence[Bivariate],
 ) -> None:
     """Draw the curves of each structure, the structures beside each other, analyses by increments, and surfaces."""
-    from rocking_cli.cli.fragility_results import limit_name
     from rocking_cli.cli.pictures import save
     from rocking_cli.plotting import fragility as plotting
     from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.views.fragility import limit_name
 
     drawn: dict[str, Figure] = {}
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.errors import INCOMPLETE
 
 
 @click.command(short_help="Summarise and export the store of a study.")
@@ -30,8 +31,8 @@ def command(ctx: click.Context, file: str, out: Path | None, pictures: str | Non
       rocking results study.db
       rocking results study.db --out runs.parquet --pictures pictures
     """
-    from rocking_cli.cli import fragility_results as results
     from rocking_cli.cli.fragility_pictures import ready
+    from rocking_cli.cli.fragility_results import give
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.fragility.store import Store
@@ -45,6 +46,6 @@ def command(ctx: click.Context, file: str, out: Path | None, pictures: str | Non
         harmed = bool(store.damaged) or store.unreadable
         if harmed:
             terminal.note("`rocking fragility STUDY.yaml` takes over what is sound, and runs the rest again")
-        complete = results.give(store, out, folder, as_json=as_json) and not harmed
+        complete = give(store, out, folder, as_json=as_json) and not harmed
     if not complete:
-        ctx.exit(results.INCOMPLETE)
+        ctx.exit(INCOMPLETE)

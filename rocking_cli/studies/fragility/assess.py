@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +19,8 @@ from rocking_cli.studies.fragility.definition import Definition, Limit
 from rocking_cli.studies.fragility.hazard import HazardCurve, Rate, annual_rate
 from rocking_cli.studies.fragility.likelihood import Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
-from rocking_cli.studies.fragility.tally import Cells, Tally, intensities
+from rocking_cli.studies.fragility.store import Store
+from rocking_cli.studies.fragility.tally import Cells, Counted, Tally, count, intensities
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +69,57 @@ class Bivariate:
 def structures(plan: Plan) -> list[str]:
     """Names of the structures, in the order of the study."""
     return list(dict.fromkeys(trial.structure for trial in plan.trials))
+
+
+def counted(store: Store, plan: Plan, definition: Definition, progress: Counted) -> dict[str, Tally]:
+    """The finished runs of each structure of a store, counted for what its study asks for.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        Its runs.
+    definition : Definition
+        What its study asks for.
+    progress : callable
+        Told how many numbers of runs have been gone through since the last call.
+    """
+    measures = [*definition.fitted_measures, *(one for pair in definition.bivariate for one in pair)]
+    limits, ladders = definition.limit_states, definition.method == "ida"
+    return {
+        name: count(store, plan, name, limits, measures, ladders=ladders, counted=progress) for name in structures(plan)
+    }
+
+
+def fitted(
+    found: Mapping[str, Tally], definition: Definition, hazard: HazardCurve | None, progress: Callable[[int], None]
+) -> tuple[list[Fragility], list[Bivariate]]:
+    """All curves and surfaces that a study asks for, of the structures that have runs.
+
+    Parameters
+    ----------
+    found : mapping of str to Tally
+        The runs of each structure.
+    definition : Definition
+        What the study asks for.
+    hazard : HazardCurve or None
+        How often intensities are exceeded.
+    progress : callable
+        Told how many fits were made since the last call.
+    """
+    lines: list[Fragility] = []
+    planes: list[Bivariate] = []
+    for structure, runs in found.items():
+        if not runs.runs.any():
+            continue
+        for curve in curves(runs, structure, definition, hazard):
+            lines.append(curve)
+            progress(1)
+        for surface in surfaces(runs, structure, definition):
+            planes.append(surface)
+            progress(1)
+    return lines, planes
 
 
 def curves(

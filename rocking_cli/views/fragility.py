@@ -1,0 +1,213 @@
+"""A fragility study, as people and programs read it: what would be run, and what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from rocking_cli.studies.fragility.intensity import label
+from rocking_cli.views.view import ABSENT, Table, View, number
+
+if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
+    from rocking_cli.studies.fragility.assess import Bivariate, Fragility
+    from rocking_cli.studies.fragility.curves import Curve, Estimate, Surface
+    from rocking_cli.studies.fragility.definition import Definition, Limit
+    from rocking_cli.studies.fragility.hazard import Rate
+    from rocking_cli.studies.fragility.plan import Plan
+    from rocking_cli.studies.fragility.store import Store
+    from rocking_cli.studies.fragility.study import Study
+
+
+def planned(study: Study, plan: Plan) -> View:
+    """What a study would run."""
+    samples, records, etas, levels, polarities = plan.shape
+    counts = {
+        "structures": len(study.structures),
+        "samples": samples,
+        "records": records,
+        "eta": etas,
+        "levels": levels,
+        "polarities": polarities,
+    }
+    rows = [[name, f"{count}"] for name, count in counts.items()]
+    table = Table(study.name, ["", "number"], [*rows, ["runs", f"{plan.total:,}"]], numbers=(1,))
+    return View({"study": study.name, **counts, "runs": plan.total, "left_out": left_out(plan)}, [table])
+
+
+def left_out(plan: Plan) -> list[str]:
+    """The records and the samples that cannot be run, and why, a sentence each."""
+    records = [f"the record {each.name} is left out: {each.reason}" for each in plan.records if each.reason is not None]
+    return records + [
+        f"sample {each.number} of {each.structure} is left out: {each.reason}"
+        for each in plan.trials
+        if each.reason is not None
+    ]
+
+
+def view(
+    store: Store,
+    plan: Plan,
+    definition: Definition,
+    finished: int,
+    failed: int,
+    curves: Sequence[Fragility],
+    surfaces: Sequence[Bivariate],
+) -> View:
+    """What was found: the curves and surfaces that were fitted to the runs of a store.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        Its runs.
+    definition : Definition
+        What its study asks for.
+    finished, failed : int
+        Runs that are in it, and those of them that could not be followed.
+    curves, surfaces : sequence
+        What was fitted to them.
+    """
+    name, confidence = store.fact("name"), definition.confidence
+    bad = sum(each.reason is not None for each in plan.records)
+    good = len(plan.records) - bad
+    records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
+    so_far = "" if finished == plan.total else f" of {plan.total:,}, so far"
+    parts: list[Table | str] = [
+        f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}, seed {definition.seed}"
+    ]
+    for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):
+        these = [each for each in curves if (each.structure, each.measure) == (structure, measure)]
+        parts += _curves(structure, measure, these, confidence)
+    for structure, measures in dict.fromkeys((each.structure, each.measures) for each in surfaces):
+        those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
+        parts += _surfaces(structure, measures, those, confidence)
+    data = {
+        "study": name,
+        "store": str(store.path),
+        "hash": store.fact("hash"),
+        "versions": store.fact("versions"),
+        "libraries": store.fact("libraries"),
+        "seed": store.fact("description")["seed"],
+        "runs": plan.total,
+        "finished": finished,
+        "failed": failed,
+        "left_out": left_out(plan),
+        "records": [asdict(each) for each in plan.records],
+        "curves": [_curve_data(each) for each in curves],
+        "surfaces": [_surface_data(each) for each in surfaces],
+    }
+    return View(data, parts)
+
+
+def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidence: float) -> Iterator[Table | str]:
+    """The curves of a structure over one measure."""
+    interval = f"{100 * confidence:g} %"
+    columns = ["limit state", "curve", f"median\n{interval}", f"spread\n{interval}", "fit p"]
+    rated = any(each.rate is not None for each in curves)
+    rows = [
+        [
+            limit_name(each.limit),
+            each.curve.kind,
+            _estimate(each.curve.median),
+            _estimate(each.curve.dispersion or each.curve.scale),
+            number(None if each.curve.goodness is None else each.curve.goodness.p_value, 2),
+            *([number(None if each.rate is None else each.rate.rate, 3)] if rated else []),
+        ]
+        for each in curves
+    ]
+    columns += ["a year"] if rated else []
+    yield ""
+    yield Table(f"{structure}, over {label(measure)}", columns, rows, numbers=range(2, len(columns)))
+    for each in curves:
+        yield f"{limit_name(each.limit)}: {each.curve.why}.{_in_years(each.rate)}"
+    yield from _warnings([each.curve for each in curves])
+
+
+def _surfaces(
+    structure: str, measures: tuple[str, str], surfaces: Sequence[Bivariate], confidence: float
+) -> Iterator[Table | str]:
+    """The surfaces of a structure over two measures."""
+    one, other = measures
+    interval = f"{100 * confidence:g} %"
+    rows = [
+        [limit_name(each.limit), *(_estimate(c) for c in each.surface.coefficients or (None, None, None))]
+        for each in surfaces
+    ]
+    yield ""
+    yield Table(
+        f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))",
+        ["limit state", *(f"{name}\n{interval}" for name in ("c0", "c1", "c2"))],
+        rows,
+        numbers=(1, 2, 3),
+    )
+    for each in surfaces:
+        yield f"{limit_name(each.limit)}: {each.surface.why}."
+    yield from _warnings([each.surface for each in surfaces])
+
+
+def _warnings(fitted: Sequence[Curve | Surface]) -> Iterator[str]:
+    """What to be careful about in some fits, each thing once; with the result, as it belongs to the numbers."""
+    for warning in dict.fromkeys(each.warning for each in fitted if each.warning):
+        yield f"Warning: {warning}."
+
+
+def _in_years(rate: Rate | None) -> str:
+    if rate is None or rate.rate == 0:
+        return ""
+    return (
+        f" Once in {rate.return_period:,.0f} years ({rate.low:.3g} to {rate.high:.3g} a year), "
+        f"{100 * rate.in_50_years:.2g} % in 50 years."
+    )
+
+
+def limit_name(limit: Limit) -> str:
+    """A limit state as people read it."""
+    return limit if isinstance(limit, str) else f"> {limit:g} phi_cr"
+
+
+def _estimate(estimate: Estimate | None) -> str:
+    """A number above its interval."""
+    return ABSENT if estimate is None else f"{estimate.value:.4g}\n{estimate.low:.3g} - {estimate.high:.3g}"
+
+
+def _curve_data(found: Fragility) -> dict[str, Any]:
+    curve = found.curve
+    return {
+        "structure": found.structure,
+        "limit_state": found.limit,
+        "measure": found.measure,
+        "kind": curve.kind,
+        "why": curve.why,
+        **{
+            name: None if each is None else asdict(each)
+            for name, each in (("median", curve.median), ("dispersion", curve.dispersion), ("scale", curve.scale))
+        },
+        "confidence": curve.confidence,
+        "goodness": None if curve.goodness is None else asdict(curve.goodness),
+        "aic": curve.aic,
+        "runs": curve.runs,
+        "exceedances": curve.exceedances,
+        "distinct_records": curve.records,
+        "warning": curve.warning or None,
+        "annual_rate": None if found.rate is None else asdict(found.rate),
+    }
+
+
+def _surface_data(found: Bivariate) -> dict[str, Any]:
+    surface = found.surface
+    return {
+        "structure": found.structure,
+        "limit_state": found.limit,
+        "measures": list(found.measures),
+        "kind": surface.kind,
+        "why": surface.why,
+        "coefficients": [asdict(each) for each in surface.coefficients or []],
+        "aic": surface.aic,
+        "p_values": surface.p_values,
+        "runs": surface.runs,
+        "exceedances": surface.exceedances,
+        "distinct_records": surface.records,
+        "warning": surface.warning or None,
+    }
