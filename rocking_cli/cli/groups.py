@@ -16,14 +16,23 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Shaking:
-    """Which ground motions, how records are read, and how both are scaled."""
+class Reading:
+    """How records are read."""
 
-    records: tuple[str, ...]
-    pulses: tuple[str, ...]
     units: str | None
     dt: float | None
     channel: str | None
+
+    @property
+    def reading(self) -> tuple[float | None, str | None, str | None]:
+        """`dt`, `units` and `channel` of a record."""
+        return self.dt, self.units, self.channel
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """How ground motions are scaled, and which way round they are."""
+
     scale: float | None
     target_pga: float | None
     target_pgv: float | None
@@ -34,15 +43,6 @@ class Shaking:
             raise click.UsageError("--scale, --target-pga and --target-pgv exclude each other.")
         if self.scale is not None and self.scale < 0:
             terminal.note(f"--scale {self.scale:g} is negative: it reverses the motion, as --polarity -1 does")
-
-    def __bool__(self) -> bool:
-        """Whether there is any."""
-        return bool(self.records or self.pulses)
-
-    @property
-    def reading(self) -> tuple[float | None, str | None, str | None]:
-        """`dt`, `units` and `channel` of a record."""
-        return self.dt, self.units, self.channel
 
     @property
     def scaling(self) -> tuple[float | None, float | None, float | None]:
@@ -58,6 +58,18 @@ class Shaking:
     def signs(self) -> tuple[int, ...]:
         """The polarities, of 1 and -1."""
         return (1, -1) if self.polarity == "both" else (int(self.polarity),)
+
+
+@dataclass(frozen=True)
+class Shaking(Scaling, Reading):
+    """Which ground motions, how records are read, and how both are scaled."""
+
+    records: tuple[str, ...]
+    pulses: tuple[str, ...]
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self.records or self.pulses)
 
 
 @dataclass(frozen=True)

@@ -26,14 +26,6 @@ if TYPE_CHECKING:
 MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and past following in a reasonable time
 
 
-def check_scaling(scale: float | None, target_pga: float | None, target_pgv: float | None) -> None:
-    """Refuse more than one way of scaling, before anything is read."""
-    if sum(value is not None for value in (scale, target_pga, target_pgv)) > 1:
-        raise click.UsageError("--scale, --target-pga and --target-pgv exclude each other.")
-    if scale is not None and scale < 0:
-        terminal.note(f"--scale {scale:g} is negative: it reverses the motion, as --polarity -1 does")
-
-
 def factor(
     motion: GroundMotion, measured: Measures, scale: float | None, target_pga: float | None, target_pgv: float | None
 ) -> float:

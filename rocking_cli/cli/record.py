@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli.groups import Reading, Scaling
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from rocking_cli.views.record import Shown
 
 PATIENCE = 1.0  # s without a word
-POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 
 
 @click.command(short_help="What records are, how strong, and what is doubtful about them.")
@@ -39,16 +39,12 @@ POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 @options.plot("Draw one record")
 @options.as_json
 @click.pass_context
+@options.grouped(reading=Reading, scaling=Scaling)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    units: str | None,
-    dt: float | None,
-    channel: str | None,
-    scale: float | None,
-    target_pga: float | None,
-    target_pgv: float | None,
-    polarity: str,
+    reading: Reading,
+    scaling: Scaling,
     structure: str | None,
     pulse: bool,
     to: str | None,
@@ -73,16 +69,15 @@ def command(
       rocking record table.csv --channel "acc x" --units g
       rocking record accel.csv --pulse --plot pulse.png
     """
-    motions.check_scaling(scale, target_pga, target_pgv)
-    if plot is not None and (len(files) > 1 or polarity == "both"):
+    if plot is not None and (len(files) > 1 or scaling.polarity == "both"):
         raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
     from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.io.files import keep_apart
     from rocking_cli.views.record import data, parts
     from rocking_cli.views.view import View
 
-    signs = POLARITIES[polarity]
-    clean = _clean_paths(files, channel, signs) if to else {}
+    signs = scaling.signs
+    clean = _clean_paths(files, reading.channel, signs) if to else {}
     keep_apart([("--plot", plot), *((f"--to {to}", path) for path in clean.values())], [*files, structure])
     _spare_others(clean.values())
     p = _frequency(structure) if structure is not None else None
@@ -93,9 +88,9 @@ def command(
         try:
             from rocking_cli.excitation.records import read_record
 
-            motion = read_record(file, dt=dt, units=units, channel=channel)
+            motion = read_record(file, dt=reading.dt, units=reading.units, channel=reading.channel)
             for sign in signs:
-                one, scaled = _examine(name_of(file), motion, (scale, target_pga, target_pgv), sign, p, pulse)
+                one, scaled = _examine(name_of(file), motion, scaling.scaling, sign, p, pulse)
                 if len(signs) > 1 and sign < 0:
                     one = one._replace(label=f"{one.label}, reversed")
                 if to:
