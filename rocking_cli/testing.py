@@ -41,7 +41,7 @@ from rocking_cli.core import (
 from rocking_cli.core.coefficients import coefficients, jump
 from rocking_cli.core.registry import conformance
 from rocking_cli.core.restitution import kinematic_restitution
-from rocking_cli.core.verdict import Verdict
+from rocking_cli.core.verdict import Verdict as Verdict
 from rocking_cli.errors import RockingError
 from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.studies.picture import picture

@@ -220,7 +220,7 @@ def table(
 def show(view: View, *, as_json: bool) -> None:
     """Print a result: as one line of JSON, or as its tables and sentences."""
     if as_json:
-        print_json(view.data)
+        print_json(view.data() if callable(view.data) else view.data)
         return
     for part in view.parts:
         if isinstance(part, str):

@@ -12,5 +12,5 @@ def view(picture: Picture) -> View:
     measured: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
     said = [f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured]
     return View(
-        picture.as_dict(), [heading(picture.mechanism), *(f"  {each}" for each in [*said, *picture.sketch.notes])]
+        picture.as_dict, [heading(picture.mechanism), *(f"  {each}" for each in [*said, *picture.sketch.notes])]
     )

@@ -46,7 +46,11 @@ class Results:
 def view(results: Results) -> View:
     """The peaks over the size of each shape, and what becomes of each."""
     parts = [part for each in results.spectra for part in _curve(results, each)]
-    data = {
+    return View(lambda: _all(results), [*parts, *(_verdict(results, each) for each in results.spectra)])
+
+
+def _all(results: Results) -> dict[str, Any]:
+    return {
         "model": results.spectra[0].shape.structure.model.name,
         "polarity": results.polarity,
         "fractiles": list(results.fractiles),
@@ -57,7 +61,6 @@ def view(results: Results) -> View:
         ],
         "spectra": [_data(results, each) for each in results.spectra],
     }
-    return View(data, [*parts, *(_verdict(results, each) for each in results.spectra)])
 
 
 def title(results: Results) -> str:

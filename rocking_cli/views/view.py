@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -44,13 +44,13 @@ class View:
 
     Parameters
     ----------
-    data : mapping
-        As plain data, for JSON.
+    data : mapping, or a function that makes it
+        As plain data, for JSON; it is made only where it is shown.
     parts : sequence of Table or str
         As people read it, from top to bottom: tables and sentences.
     """
 
-    data: Mapping[str, Any]
+    data: Mapping[str, Any] | Callable[[], Mapping[str, Any]]
     parts: Sequence[Table | str]
 
 
