@@ -22,7 +22,11 @@ myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 3
 smartquotes = False  # -- begins an option, and '' is a second derivative
 nitpicky = True
-nitpick_ignore = [("py:exc", "pydantic.ValidationError"), ("py:exc", "PluginError")]  # not documented here
+nitpick_ignore = [
+    ("py:class", "rocking_cli.core.registry.UnknownMechanismError"),
+    ("py:exc", "pydantic.ValidationError"),
+    ("py:exc", "PluginError"),
+]  # not documented here
 
 html_theme = "furo"
 html_title = "rocking-cli"

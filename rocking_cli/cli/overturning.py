@@ -2,27 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.cli.groups import Output
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Range
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
+    from rocking_cli.core import Mechanism
     from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.studies.shaken import Reals, Shaken
 
 MODELS = ("linear2", "linear1", "nonlinear")
-POLARITIES = {"1": (1,), "-1": (-1,), "both": (1, -1)}
 PLANE, CURVE = 256, 60  # points, of each side of a map and of a curve
 ETA = 0.9
 OMEGAS, AMPLITUDES = (0.5, 10.0), (0.5, 10.0)  # shown unless asked otherwise
 SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
+
+
+@dataclass(frozen=True)
+class Pulses:
+    """The pulses, and the equation of motion that they act on."""
+
+    pulse: str
+    model: str | None
+    eta: float | None
+    polarity: str
+
+    @property
+    def signs(self) -> tuple[int, ...]:
+        """The polarities, of 1 and -1."""
+        return (1, -1) if self.polarity == "both" else (int(self.polarity),)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Over what a map or a curve is drawn, and how finely."""
+
+    dimensionless: bool
+    periods: tuple[float, float] | None
+    accelerations: tuple[float, float] | None
+    omega: tuple[float, float] | None
+    a: tuple[float, float] | None
+    points: int | None
 
 
 @click.command(short_help="Which pulses overturn a structure; which of several goes first.")
@@ -38,7 +66,7 @@ SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
 )
 @click.option(
     "--polarity",
-    type=click.Choice(list(POLARITIES)),
+    type=click.Choice(["1", "-1", "both"]),
     default="1",
     show_default=True,
     help="-1 reverses the pulse. both: the worse of the two.",
@@ -62,23 +90,9 @@ SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
 @options.plot("Draw it")
 @options.as_json
 @click.pass_context
+@options.grouped(pulses=Pulses, plane=Plane, output=Output)
 def command(
-    ctx: click.Context,
-    files: tuple[str, ...],
-    compare: bool,
-    pulse: str,
-    model: str | None,
-    eta: float | None,
-    polarity: str,
-    dimensionless: bool,
-    periods: tuple[float, float] | None,
-    accelerations: tuple[float, float] | None,
-    omega: tuple[float, float] | None,
-    a: tuple[float, float] | None,
-    points: int | None,
-    out: Path | None,
-    plot: Path | None,
-    as_json: bool,
+    ctx: click.Context, files: tuple[str, ...], compare: bool, pulses: Pulses, plane: Plane, output: Output
 ) -> None:
     """Which pulses overturn a structure: a map over their periods and amplitudes.
 
@@ -96,62 +110,93 @@ def command(
 
     Source: DeJong and Dimitrakopoulos (2014), Section 6; Zhang and Makris (2001).
     """
-    given = {"periods": periods, "accelerations": accelerations, "omega": omega, "a": a}
-    _check(files, compare, model, dimensionless, given)
-    from rocking_cli.cli import structures, work
+    _check(files, compare, pulses.model, plane)
+    from rocking_cli.cli import structures
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.io.tables import write_table
-    from rocking_cli.studies import overturning as study
     from rocking_cli.studies.shaken import linear_block, parse_shape, shaken
-    from rocking_cli.views import overturning as views
 
-    keep_apart([("--out", out), ("--plot", plot)], files)
-    shape, polarities = parse_shape(pulse), POLARITIES[polarity]
-    chosen = model or ("nonlinear" if compare else "linear2")
+    keep_apart([("--out", output.out), ("--plot", output.plot)], files)
+    shape = parse_shape(pulses.pulse)
+    model = pulses.model or ("nonlinear" if compare else "linear2")
     loaded, good, bad = structures.load_each(files) if files else ([], [], 0)
     if compare and len(loaded) < 2:
         raise InputError("only one of the FILEs can be used: --compare needs two or more")
     mechanisms = structures.told_apart(loaded, good)
-    subjects = []
-    for each, file in zip(mechanisms, good, strict=True):
-        subjects.append(shaken(Prepared(each, file), cast("ModelName", chosen), shape, polarities, eta))
-    exact = chosen != "nonlinear" and bool(shape.segments())
+    subjects = [
+        shaken(Prepared(each, file), cast("ModelName", model), shape, pulses.signs, pulses.eta)
+        for each, file in zip(mechanisms, good, strict=True)
+    ]
+    exact = model != "nonlinear" and bool(shape.segments())
     if compare:
-        spread, top = _curves(subjects, points or CURVE, periods, accelerations)
-        pulses = spread.size * study.SCAN * study.PASSES
-        with work.histories(study.work(subjects, pulses, polarities), exact=exact) as progress:
-            compared = study.compare(subjects, shape, spread, top, polarities=polarities, progress=progress)
-        if out is not None:
-            write_table(out, [views.comparison_table(compared)])
-            terminal.note(f"wrote {out}")
-        if plot is not None:
-            from rocking_cli.plotting.overturning import draw_comparison
+        _compare(subjects, mechanisms, shape, pulses.signs, plane, output, exact=exact)
+    else:
+        subject = subjects[0] if subjects else linear_block(ETA if pulses.eta is None else pulses.eta)
+        _map(subject, mechanisms[0] if mechanisms else None, shape, pulses.signs, plane, output, exact=exact)
+    if bad:
+        ctx.exit(INCOMPLETE)
 
-            write_picture(plot, draw_comparison(compared, views.comparison_title(compared)))
-        terminal.show(views.comparison_view(compared, mechanisms), as_json=as_json)
-        if bad:
-            ctx.exit(INCOMPLETE)
-        return
-    subject = subjects[0] if subjects else linear_block(ETA if eta is None else eta)
-    dimensionless = dimensionless or not files
-    omegas, amplitudes = _plane(subject, points or PLANE, omega, a, periods, accelerations, dimensionless=dimensionless)
-    with work.histories(study.work([subject], omegas.size * amplitudes.size, polarities), exact=exact) as progress:
-        found = study.overturning_map(subject, shape, omegas, amplitudes, polarities=polarities, progress=progress)
-    mechanism = mechanisms[0] if mechanisms else None
-    if out is not None:
-        write_table(out, [views.map_table(found, mechanism)])
-        terminal.note(f"wrote {out}")
-    if plot is not None:
+
+def _compare(
+    subjects: list[Shaken],
+    mechanisms: list[Mechanism],
+    shape: Pulse,
+    signs: tuple[int, ...],
+    plane: Plane,
+    output: Output,
+    *,
+    exact: bool,
+) -> None:
+    """Find the least amplitudes that overturn several structures, and show them."""
+    from rocking_cli.cli import work
+    from rocking_cli.io.tables import write_table
+    from rocking_cli.studies import overturning as study
+    from rocking_cli.views import overturning as views
+
+    spread, top = _curves(subjects, plane)
+    with work.histories(study.work(subjects, spread.size * study.SCAN * study.PASSES, signs), exact=exact) as progress:
+        found = study.compare(subjects, shape, spread, top, polarities=signs, progress=progress)
+    if output.out is not None:
+        write_table(output.out, [views.comparison_table(found)])
+        terminal.note(f"wrote {output.out}")
+    if output.plot is not None:
+        from rocking_cli.plotting.overturning import draw_comparison
+
+        write_picture(output.plot, draw_comparison(found, views.comparison_title(found)))
+    terminal.show(views.comparison_view(found, mechanisms), as_json=output.as_json)
+
+
+def _map(
+    subject: Shaken,
+    mechanism: Mechanism | None,
+    shape: Pulse,
+    signs: tuple[int, ...],
+    plane: Plane,
+    output: Output,
+    *,
+    exact: bool,
+) -> None:
+    """Follow a plane of pulses on one structure, or on the linear block, and show the map."""
+    from rocking_cli.cli import work
+    from rocking_cli.io.tables import write_table
+    from rocking_cli.studies import overturning as study
+    from rocking_cli.views import overturning as views
+
+    dimensionless = plane.dimensionless or mechanism is None
+    omegas, amplitudes = _plane(subject, plane, dimensionless=dimensionless)
+    with work.histories(study.work([subject], omegas.size * amplitudes.size, signs), exact=exact) as progress:
+        found = study.overturning_map(subject, shape, omegas, amplitudes, polarities=signs, progress=progress)
+    if output.out is not None:
+        write_table(output.out, [views.map_table(found, mechanism)])
+        terminal.note(f"wrote {output.out}")
+    if output.plot is not None:
         from rocking_cli.plotting.overturning import draw_map
 
-        write_picture(plot, draw_map(found, views.map_title(found), dimensionless=dimensionless))
-    terminal.show(views.map_view(found, mechanism, dimensionless=dimensionless), as_json=as_json)
+        write_picture(output.plot, draw_map(found, views.map_title(found), dimensionless=dimensionless))
+    terminal.show(views.map_view(found, mechanism, dimensionless=dimensionless), as_json=output.as_json)
 
 
-def _check(
-    files: tuple[str, ...], compare: bool, model: str | None, dimensionless: bool, given: Mapping[str, object]
-) -> None:
+def _check(files: tuple[str, ...], compare: bool, model: str | None, plane: Plane) -> None:
     """Refuse options that do not go together, before anything is read."""
     if compare and len(files) < 2:
         raise click.UsageError("--compare needs two structures or more: give their FILEs.")
@@ -161,56 +206,43 @@ def _check(
         raise click.UsageError(
             f"--model {model} is of a structure: give FILE. Without it the map is of a linear block."
         )
-    if compare and dimensionless:
+    if compare and plane.dimensionless:
         raise click.UsageError("--compare is over the period in s: leave --dimensionless out.")
-    scaled = dimensionless or not files
+    scaled = plane.dimensionless or not files
     wrong, right = (("periods", "accelerations"), ("omega", "a"))[:: 1 if scaled else -1]
     for option in wrong:
-        if given[option] is not None:
+        if getattr(plane, option) is not None:
             instead = f"--{right[wrong.index(option)]}"
             why = "without FILE" if not files else "with --dimensionless" if scaled else "with FILE"
             more = "" if scaled or compare else ", or add --dimensionless"
             raise click.UsageError(f"--{option} has no meaning {why}: give {instead}{more}.")
 
 
-def _plane(
-    subject: Shaken,
-    points: int,
-    omega: tuple[float, float] | None,
-    a: tuple[float, float] | None,
-    periods: tuple[float, float] | None,
-    accelerations: tuple[float, float] | None,
-    *,
-    dimensionless: bool,
-) -> tuple[Reals, Reals]:
+def _plane(subject: Shaken, plane: Plane, *, dimensionless: bool) -> tuple[Reals, Reals]:
     """omega and a of the columns and rows, even over what the map is drawn over."""
     import numpy as np
 
     from rocking_cli.excitation.base import STANDARD_GRAVITY
 
+    points = plane.points or PLANE
     if dimensionless:
-        return np.linspace(*(omega or OMEGAS), points), np.linspace(*(a or AMPLITUDES), points)
-    spread = np.linspace(*(periods or _usual_periods([subject])), points)
+        return np.linspace(*(plane.omega or OMEGAS), points), np.linspace(*(plane.a or AMPLITUDES), points)
+    spread = np.linspace(*(plane.periods or _usual_periods([subject])), points)
     unit = subject.unit / STANDARD_GRAVITY
-    low, high = accelerations or (_round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit))
+    low, high = plane.accelerations or (_round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit))
     amplitudes = np.linspace(low, high, points)
     return subject.period(spread), amplitudes / unit
 
 
-def _curves(
-    subjects: list[Shaken],
-    points: int,
-    periods: tuple[float, float] | None,
-    accelerations: tuple[float, float] | None,
-) -> tuple[Reals, float]:
+def _curves(subjects: list[Shaken], plane: Plane) -> tuple[Reals, float]:
     """Periods [s], and the largest amplitude to try [g]."""
     import numpy as np
 
     from rocking_cli.excitation.base import STANDARD_GRAVITY
 
     strongest = max(each.unit for each in subjects) / STANDARD_GRAVITY
-    top = accelerations[1] if accelerations else _round(AMPLITUDES[1] * strongest)
-    return np.geomspace(*(periods or _usual_periods(subjects)), points), top
+    top = plane.accelerations[1] if plane.accelerations else _round(AMPLITUDES[1] * strongest)
+    return np.geomspace(*(plane.periods or _usual_periods(subjects)), plane.points or CURVE), top
 
 
 def _usual_periods(subjects: list[Shaken]) -> tuple[float, float]:
