@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Literal, cast
+from typing import TYPE_CHECKING, Literal, cast
 
 import click
 
 from rocking_cli.cli import options, terminal
-from rocking_cli.cli.pictures import write_picture
+from rocking_cli.cli.groups import Output
 from rocking_cli.cli.quantities import Quantity
 from rocking_cli.errors import INCOMPLETE, InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
@@ -44,6 +46,7 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
 @options.plot("Draw them")
 @options.as_json
 @click.pass_context
+@options.grouped(output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
@@ -53,9 +56,7 @@ def command(
     polarity: str,
     kappa: str,
     eta: float | Literal["first", "own"],
-    out: Path | None,
-    plot: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> None:
     """Pulses to which different structures are equivalently vulnerable.
 
@@ -79,12 +80,11 @@ def command(
     from rocking_cli.cli import structures, work
     from rocking_cli.excitation.base import STANDARD_GRAVITY
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.io.tables import write_table
     from rocking_cli.studies.equivalent import equivalent, judge
     from rocking_cli.studies.shaken import parse_shape
     from rocking_cli.views.equivalent import table, title, view
 
-    keep_apart([("--out", out), ("--plot", plot)], files)
+    keep_apart([("--out", output.out), ("--plot", output.plot)], files)
     given = replace(parse_shape(pulse), amplitude=ag * STANDARD_GRAVITY, period=period)
     loaded, good, bad = structures.load_each(files)
     if files[0] not in good or len(good) < 2:
@@ -92,14 +92,14 @@ def command(
     mechanisms = structures.told_apart(loaded, good)
     work.say_if_compiling()
     found = equivalent(mechanisms, given, polarity=int(polarity), kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
-    if out is not None:
-        write_table(out, [table(found)])
-        terminal.note(f"wrote {out}")
-    if plot is not None:
+
+    def draw() -> Figure:
         from rocking_cli.plotting.equivalent import draw_equivalent
 
-        write_picture(plot, draw_equivalent(found, title(found)))
+        return draw_equivalent(found, title(found))
+
+    output.write(lambda: [table(found)], draw)
     verdict = terminal.as_typed(" ".join(judge(found)))
-    terminal.show(view(found, verdict), as_json=as_json)
+    terminal.show(view(found, verdict), as_json=output.as_json)
     if bad:
         ctx.exit(INCOMPLETE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -9,9 +10,13 @@ from typing import TYPE_CHECKING, cast
 import click
 
 from rocking_cli.cli import terminal
+from rocking_cli.cli.pictures import write_picture
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.io.tables import Columns
     from rocking_cli.studies.neighbours import Around
 
 
@@ -124,3 +129,13 @@ class Output:
     out: Path | None
     plot: Path | None
     as_json: bool
+
+    def write(self, table: Callable[[], Iterable[Columns]], draw: Callable[[], Figure]) -> None:
+        """Write the table and the picture that are asked for, each made only then, and say so."""
+        if self.out is not None:
+            from rocking_cli.io.tables import write_table
+
+            write_table(self.out, table())
+            terminal.note(f"wrote {self.out}")
+        if self.plot is not None:
+            write_picture(self.plot, draw())

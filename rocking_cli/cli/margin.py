@@ -20,14 +20,7 @@ if TYPE_CHECKING:
 
 @click.command(short_help="How close motions are to overturning, as shares over the factor.")
 @click.argument("file", required=False, type=click.Path())
-@click.option(
-    "--record",
-    "records",
-    multiple=True,
-    metavar="PLACE",
-    help="A ground motion, or a pattern in quotes for several: 'records/*.AT2'. May be repeated.",
-)
-@click.option("--pulse", "pulses", multiple=True, metavar="PULSE", help="Such as sine:0.6g:0.8s. May be repeated.")
+@options.motions
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse of the two", default="both")
 @options.around

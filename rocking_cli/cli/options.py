@@ -136,6 +136,15 @@ shaking: Decorator = _in_order(
 )  # fmt: skip
 """Ground motions, one or several: `records` or `pulses`."""
 
+motions: Decorator = _in_order(
+    click.option(
+        "--record", "records", multiple=True, metavar="PLACE",
+        help="A ground motion, - for standard input, or a pattern in quotes: 'records/*.AT2'. May be repeated.",
+    ),
+    click.option("--pulse", "pulses", multiple=True, metavar="PULSE", help="Such as sine:0.6g:0.8s. May be repeated."),
+)  # fmt: skip
+"""Any number of ground motions: `records` and `pulses`."""
+
 reading: Decorator = _in_order(
     click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),
     click.option(

@@ -9,11 +9,12 @@ import click
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output
-from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Range
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rocking_cli.core import Mechanism
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.pulses import Pulse
@@ -149,20 +150,19 @@ def _compare(
 ) -> None:
     """Find the least amplitudes that overturn several structures, and show them."""
     from rocking_cli.cli import work
-    from rocking_cli.io.tables import write_table
     from rocking_cli.studies import overturning as study
     from rocking_cli.views import overturning as views
 
     spread, top = _curves(subjects, plane)
     with work.histories(study.work(subjects, spread.size * study.SCAN * study.PASSES, signs), exact=exact) as progress:
         found = study.compare(subjects, shape, spread, top, polarities=signs, progress=progress)
-    if output.out is not None:
-        write_table(output.out, [views.comparison_table(found)])
-        terminal.note(f"wrote {output.out}")
-    if output.plot is not None:
+
+    def draw() -> Figure:
         from rocking_cli.plotting.overturning import draw_comparison
 
-        write_picture(output.plot, draw_comparison(found, views.comparison_title(found)))
+        return draw_comparison(found, views.comparison_title(found))
+
+    output.write(lambda: [views.comparison_table(found)], draw)
     terminal.show(views.comparison_view(found, mechanisms), as_json=output.as_json)
 
 
@@ -178,7 +178,6 @@ def _map(
 ) -> None:
     """Follow a plane of pulses on one structure, or on the linear block, and show the map."""
     from rocking_cli.cli import work
-    from rocking_cli.io.tables import write_table
     from rocking_cli.studies import overturning as study
     from rocking_cli.views import overturning as views
 
@@ -186,13 +185,13 @@ def _map(
     omegas, amplitudes = _plane(subject, plane, dimensionless=dimensionless)
     with work.histories(study.work([subject], omegas.size * amplitudes.size, signs), exact=exact) as progress:
         found = study.overturning_map(subject, shape, omegas, amplitudes, polarities=signs, progress=progress)
-    if output.out is not None:
-        write_table(output.out, [views.map_table(found, mechanism)])
-        terminal.note(f"wrote {output.out}")
-    if output.plot is not None:
+
+    def draw() -> Figure:
         from rocking_cli.plotting.overturning import draw_map
 
-        write_picture(output.plot, draw_map(found, views.map_title(found), dimensionless=dimensionless))
+        return draw_map(found, views.map_title(found), dimensionless=dimensionless)
+
+    output.write(lambda: [views.map_table(found, mechanism)], draw)
     terminal.show(views.map_view(found, mechanism, dimensionless=dimensionless), as_json=output.as_json)
 
 

@@ -21,13 +21,7 @@ if TYPE_CHECKING:
 
 @click.command(short_help="A document to hand over: one page with all that there is to say.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
-@click.option(
-    "--record", "records", multiple=True, metavar="PLACE",
-    help="A ground motion, or a pattern in quotes for several: 'records/*.AT2'. May be repeated.",
-)  # fmt: skip
-@click.option(
-    "--pulse", "pulses", multiple=True, metavar="PULSE", help="A pulse, such as sine:0.6g:0.8s; may be repeated."
-)
+@options.motions
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse is shown", default="both")
 @click.option(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,16 +10,18 @@ import click
 
 from rocking_cli.cli import motions, options, terminal
 from rocking_cli.cli.groups import History, Near, Output, Shaking, Vertical
-from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rocking_cli.dynamics import history as dynamics
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.pulse_fit import PulseFit
+    from rocking_cli.io.tables import Columns
     from rocking_cli.studies.response import Answer, Question
     from rocking_cli.views.view import Table
 
@@ -299,17 +301,19 @@ def _write(found: Answer, out: Path | None, plot: Path | None, title: str) -> No
     In a table those of the second polarity, or to the pulse alone, stand last, under names that say so.
     """
     first, *others = found.runs.values()
-    if out is not None:
-        from rocking_cli.io.tables import write_table
+
+    def table() -> Iterable[Columns]:
         from rocking_cli.views import history_table
 
         columns: dict[str, dynamics.History] = dict(first.items())
         columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
         columns |= {f"pulse {name}": run for name, run in (found.to_pulse or {}).items()}
-        write_table(out, history_table.blocks(columns, found.first))
-        terminal.note(f"wrote {out}")
-    if plot is not None:
+        return history_table.blocks(columns, found.first)
+
+    def draw() -> Figure:
         from rocking_cli.plotting.history import draw_history
 
         pulse = (found.fit, found.to_pulse) if found.fit is not None and found.to_pulse is not None else None
-        write_picture(plot, draw_history(first, found.first, title, others[0] if others else None, pulse))
+        return draw_history(first, found.first, title, others[0] if others else None, pulse)
+
+    Output(out, plot, as_json=False).write(table, draw)

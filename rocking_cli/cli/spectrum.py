@@ -11,11 +11,12 @@ import click
 
 from rocking_cli.cli import motions, options, terminal
 from rocking_cli.cli.groups import Output, Shaking
-from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Sizes
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.studies.shaken import Reals
     from rocking_cli.studies.spectrum import Shape
@@ -72,14 +73,7 @@ class Sizing:
 
 @click.command(short_help="Peak rotation and overturning over the size of structures.")
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
-@click.option(
-    "--record",
-    "records",
-    multiple=True,
-    metavar="PLACE",
-    help="A ground motion, or a pattern in quotes for several: 'records/*.AT2'. May be repeated.",
-)
-@click.option("--pulse", "pulses", multiple=True, metavar="PULSE", help="Such as sine:0.6g:0.8s. May be repeated.")
+@options.motions
 @click.option(
     "--slenderness",
     metavar="A,B,...",
@@ -177,16 +171,14 @@ def command(
 
 def _give(results: Results, output: Output) -> None:
     """Write the files asked for, and show the result."""
-    from rocking_cli.io.tables import write_table
     from rocking_cli.views.spectrum import table, title, view
 
-    if output.out is not None:
-        write_table(output.out, [table(results)])
-        terminal.note(f"wrote {output.out}")
-    if output.plot is not None:
+    def draw() -> Figure:
         from rocking_cli.plotting.spectrum import draw_spectra
 
-        write_picture(output.plot, draw_spectra(results.spectra, results.fractiles, title(results)))
+        return draw_spectra(results.spectra, results.fractiles, title(results))
+
+    output.write(lambda: [table(results)], draw)
     terminal.show(view(results), as_json=output.as_json)
 
 

@@ -224,7 +224,7 @@ def show(view: View, *, as_json: bool) -> None:
         return
     for part in view.parts:
         if isinstance(part, str):
-            result(as_typed(part))
+            result(part)
         else:
             table(part.title, part.columns, part.rows, numbers=part.numbers, explained=part.explained)
 

@@ -110,16 +110,11 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
 
 def _remarks(drawn: Sequence[Drawn]) -> list[str]:
     """What to be careful about in a picture, each thing once."""
-    unbounded = [each.name for each in drawn if _is_open(each.curve)]
+    unbounded = [each.name for each in drawn if each.curve.unbounded]
     steps = [each.name for each in drawn if each.curve.step is not None]
     step = f"the shade of a step lies between two levels, without a confidence: {', '.join(steps)}" if steps else ""
     open_ = f"no band: the data leave that of {', '.join(unbounded)} open" if unbounded else ""
     return list(dict.fromkeys(each for each in (step, *(each.curve.warning for each in drawn), open_) if each))
-
-
-def _is_open(curve: Curve) -> bool:
-    """Whether the data bound a curve neither above nor below: its band would be the whole picture."""
-    return curve.median is not None and curve.step is None and not np.isfinite(curve.median.high)
 
 
 def _lines(text: str) -> str:
@@ -160,9 +155,9 @@ def _draw_curve(axes: Axes, each: Drawn, look: dict[str, Any], fine: Reals, *, f
         axes.axvspan(curve.step.low, curve.step.high, color=look["color"], alpha=SHADED, linewidth=0.0)
         at = curve.step.value
         fine = np.sort(np.concatenate([fine, [np.nextafter(at, 0), np.nextafter(at, np.inf)]]))
-    elif filled and not _is_open(curve):
+    elif filled and not curve.unbounded:
         axes.fill_between(fine, *curve.band(fine), color=look["color"], alpha=SHADED, linewidth=0.0)
-    elif not _is_open(curve):
+    elif not curve.unbounded:
         for edge in curve.band(fine):
             axes.plot(fine, edge, color=look["color"], linestyle=look["linestyle"], linewidth=style.THIN, zorder=2)
     axes.plot(

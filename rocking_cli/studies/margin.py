@@ -22,6 +22,7 @@ from rocking_cli.studies.neighbours import Around, follow, least_uplift
 Reals = NDArray[np.float64]
 
 LEVELS = (0.1, 0.5, 0.9)
+SAME = 1e-9  # relative difference of factors that are one
 FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
 
 
@@ -110,7 +111,7 @@ def margin(
         raise InputError(Problem("a share needs neighbours: at least 1", field="neighbours"))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
         raise InputError("the factors on a motion must be positive and ascending")
-    factors = np.union1d(factors, 1.0)
+    factors = np.union1d(factors[np.abs(factors - 1) > SAME], 1.0)
     # The same neighbours at every factor: what differs between two factors is the factor.
     scales, etas = np.multiply.outer(factors, around.factors()), around.etas(model)
     shares = np.zeros(len(scales))

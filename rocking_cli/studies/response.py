@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
+from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 
@@ -16,8 +16,7 @@ Histories = Mapping[ModelName, History]
 Runs = Mapping[int, Histories]
 """Histories under each polarity asked for, 1 or -1."""
 
-# The pulses that are fitted, and the word for the one that fits best.
-FITTED = ("sine", "ricker", "mavroeidis")
+# The word for the pulse that fits best.
 BEST = "best"
 
 
@@ -104,5 +103,5 @@ def answer(models: Sequence[Model], given: Scaled | None, asked: Question) -> An
 
 def _find(motion: GroundMotion, shape: str) -> PulseFit:
     """The pulse of a shape, or of the best, that captures most energy of the velocity of a motion."""
-    fits = fit_pulses(motion, FITTED if shape == BEST else (shape,), ("velocity",))
+    fits = fit_pulses(motion, tuple(FITTED) if shape == BEST else (shape,), ("velocity",))
     return max(fits, key=lambda each: each.captured)

@@ -246,7 +246,7 @@ def _impact_table(title: str, history: History, etas: Equivalence) -> list[Table
     ]
     table = Table(title, ["time [s]", "ends motion", "before [rad/s]", "after [rad/s]"], rows, numbers=(0, 2, 3))
     more = history.impact_count - FIRST
-    return [table, f"{more} more follow: `as_json` lists them"] if more > 0 else [table]
+    return [table, f"{more} more follow: JSON lists them"] if more > 0 else [table]
 
 
 def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:

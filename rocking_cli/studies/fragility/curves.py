@@ -89,6 +89,11 @@ class Curve:
         """Of logistic only, in the unit of x."""
         return self._inverse_slope() if self.kind == "logistic" else None
 
+    @property
+    def unbounded(self) -> bool:
+        """Whether the data bound a fit neither above nor below: its band would be nearly all probabilities."""
+        return self.fit is not None and self.median is not None and not np.isfinite(self.median.high)
+
     def _inverse_slope(self) -> Estimate:
         assert self.fit is not None
         slope = self.fit.intervals[1]
