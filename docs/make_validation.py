@@ -209,16 +209,21 @@ def pulses() -> Iterator[Check]:
     for _ in range(60):
         middle = (low + high) / 2
         low, high = (middle, high) if without_impact(middle, 3.0) < 0 else (low, middle)
+
+    def without_impact_falls(a: float) -> bool:
+        exact = exact_pulse(a, 3.0, eta)
+        return exact.overturned and exact.impact_count == 0
+
     expected, low, up = high, 3.0, 5.0
     for _ in range(60):
         middle = (low + up) / 2
-        low, up = (low, middle) if exact_pulse(middle, 3.0, eta).impacts_before_overturning == 0 else (middle, up)
+        low, up = (low, middle) if without_impact_falls(middle) else (middle, up)
     yield Check("full sine omega = 3: least a that overturns without impact", "(s - omega) exp(te) = a", expected, up,
                 "test_exact_pulse.py")  # fmt: skip
     low, high = 1e-3, 20.0
     for _ in range(60):  # the length of a rectangle that just overturns a block, as omega = 2 pi/(p T)
         middle = sqrt(low * high)
-        low, high = (middle, high) if exact_pulse(2.0, middle, eta, shape="rectangular").overturns else (low, middle)
+        low, high = (middle, high) if exact_pulse(2.0, middle, eta, shape="rectangular").overturned else (low, middle)
     yield Check("rectangular pulse a = 2: p T that just overturns", "ln(a/(a - 1)), without impact", log(2.0),
                 2 * pi / high, "test_exact_pulse.py")  # fmt: skip
 

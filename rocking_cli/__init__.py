@@ -24,18 +24,16 @@ if TYPE_CHECKING:
     from rocking_cli.core import RigidMotion as RigidMotion
     from rocking_cli.core import equivalent_block as equivalent_block
     from rocking_cli.core.registry import Registry as Registry
-    from rocking_cli.dynamics.batch import Responses as Responses
     from rocking_cli.dynamics.batch import Runs as Runs
     from rocking_cli.dynamics.batch import respond_many as respond_many
     from rocking_cli.dynamics.exact import ExactResponse as ExactResponse
     from rocking_cli.dynamics.exact import exact_response as exact_response
-    from rocking_cli.dynamics.exact_batch import ExactResponses as ExactResponses
     from rocking_cli.dynamics.exact_batch import exact_many as exact_many
     from rocking_cli.dynamics.history import History as History
-    from rocking_cli.dynamics.history import Outcome as Outcome
     from rocking_cli.dynamics.history import respond as respond
     from rocking_cli.dynamics.model import Model as Model
     from rocking_cli.dynamics.model import build_models as build_models
+    from rocking_cli.dynamics.outcome import Outcome as Outcome
     from rocking_cli.dynamics.pulse_response import closed_form as closed_form
     from rocking_cli.dynamics.pulse_response import exact_pulse as exact_pulse
     from rocking_cli.errors import InputError as InputError
@@ -57,11 +55,12 @@ __version__ = "0.1.0"
 
 _HOME = {
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
-    "dynamics.batch": ["Responses", "Runs", "respond_many"],
+    "dynamics.batch": ["Runs", "respond_many"],
     "dynamics.exact": ["ExactResponse", "exact_response"],
-    "dynamics.exact_batch": ["ExactResponses", "exact_many"],
-    "dynamics.history": ["History", "Outcome", "respond"],
+    "dynamics.exact_batch": ["exact_many"],
+    "dynamics.history": ["History", "respond"],
     "dynamics.model": ["Model", "build_models"],
+    "dynamics.outcome": ["Outcome"],
     "dynamics.pulse_response": ["closed_form", "exact_pulse"],
     "errors": ["InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
     "excitation.base": ["GroundMotion"],

@@ -136,7 +136,7 @@ class TestReported:
 
         def some_fail(*arguments, **options):
             found = whole(*arguments, **options)
-            failed = np.zeros(len(found), dtype=bool)
+            failed = np.zeros(found.overturned.size, dtype=bool)
             failed[[0, 7]] = True  # of r0.csv and r1.csv
             return replace(found, failed=failed, overturned=found.overturned & ~failed)
 

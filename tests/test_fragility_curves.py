@@ -843,7 +843,7 @@ def test_the_step_of_a_linear_block_under_half_sines_is_recovered(omega):
     block = linear_block(0.9)
     a = np.geomspace(1.01, 10.0, 400)
     found = outcomes(block, parse_shape("half_sine"), block.period(np.full(a.size, omega)), a)
-    curve = fit_curve(one_each(a, found.impacts >= 0))
+    curve = fit_curve(one_each(a, found.overturned))
     assert curve.kind == "step" and curve.step.low < known < curve.step.high
     assert curve.step.high / curve.step.low == pytest.approx((10 / 1.01) ** (1 / 399))
     assert curve.median.value == pytest.approx(known, rel=0.006)

@@ -9,7 +9,7 @@ from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.rigid_body import RigidBody
 from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.history import Outcome, respond
+from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
 from tests.reference_history import Linear
 
@@ -55,10 +55,10 @@ def agree(name, history, reference, tolerance=1e-12):
         assert abs(float(rate - got[2])) < tolerance * p_phi_cr
     for s, peak in ((1, history.peak_positive), (-1, history.peak_negative)):
         phi_cr = (equivalence(name).positive if s > 0 else equivalence(name).negative).phi_cr
-        if peak is not None:
+        if not np.isnan(peak):
             assert abs(float(reference.peaks[s] - peak)) < tolerance * phi_cr
     if reference.uplift is None:
-        assert history.uplift_time is None
+        assert np.isnan(history.uplift_time)
     else:
         assert abs(float(reference.uplift - history.uplift_time)) < tolerance
     assert history.overturned == (reference.ended == "fallen")
@@ -91,7 +91,7 @@ def test_a_whole_free_motion_down_to_rest_is_the_fifty_digit_solution(model):
     history, reference = both("leaning", model, 0.05, np.zeros(2), 0.7, impacts_after=10**6)
     agree("leaning", history, reference)
     assert history.impact_count == len(reference.impacts) > 50
-    assert history.outcome is Outcome.AT_REST
+    assert history.at_rest
 
 
 @pytest.mark.parametrize("name", ["block", "frame", "leaning"])
@@ -103,7 +103,7 @@ def test_uplift_is_at_lambda_lin_with_kappa_1_and_at_lambda_with_kappa_2(name, s
         for factor, lifts in ((1 - 1e-11, False), (1 + 1e-11, True)):
             samples = -s * factor * uplift * np.array([0.0, 1.0, 0.0])
             history = respond(structure(name), GroundMotion("test", 0.5, samples), models=(model,))[model]
-            assert (history.uplift_time is not None) == lifts, (model, factor)
+            assert (not np.isnan(history.uplift_time)) == lifts, (model, factor)
 
 
 def test_the_two_models_lift_at_different_moments():

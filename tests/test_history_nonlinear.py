@@ -76,12 +76,12 @@ def agree(history, reference, phi_cr, time=TIME, peak=PEAK):
     fastest = expected[:, 2].max() if len(expected) else 1.0
     np.testing.assert_allclose(got[:, 2], expected[:, 2], rtol=0, atol=peak * fastest)
     for s, value in ((1, history.peak_positive), (-1, history.peak_negative)):
-        if value is not None:
+        if not np.isnan(value):
             assert value == pytest.approx(reference.peaks[s], rel=peak, abs=1e-13 * phi_cr)
     if history.overturned:
         assert history.overturning_time == pytest.approx(reference.crossings[-1], abs=time)
     if reference.uplift is None:
-        assert history.uplift_time is None
+        assert np.isnan(history.uplift_time)
     else:
         assert history.uplift_time == pytest.approx(reference.uplift, abs=1e-14)
 
@@ -243,7 +243,7 @@ def test_a_mirrored_structure_answers_a_reversed_record_with_the_mirror_image(mo
     np.testing.assert_allclose(other.impacts[:6, 0], one.impacts[:6, 0], rtol=0, atol=1e-9)
     # Both peaks mean something: the body leans, and its two directions differ.
     unmirrored = respond(structure("leaning"), GroundMotion("test", dt, -samples), models=(model,), release=-0.2)[model]
-    assert unmirrored.peak_positive is None or unmirrored.peak_positive != pytest.approx(one.peak_negative, rel=1e-3)
+    assert np.isnan(unmirrored.peak_positive) or unmirrored.peak_positive != pytest.approx(one.peak_negative, rel=1e-3)
 
 
 @pytest.mark.parametrize("model", ["nonlinear", "linear1", "linear2"])

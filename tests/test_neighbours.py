@@ -142,8 +142,8 @@ class TestWithoutShaking:
     def test_the_least_factor_that_lifts(self, off):
         model = build_model(FRAME, "nonlinear")
         least = least_uplift(model, ACCEL)
-        lifted = respond(FRAME, ACCEL.scaled(least * (1 + off)), models=("nonlinear",))["nonlinear"].uplift_time
-        assert can_lift(model, ACCEL, least * (1 + off)) == (off > 0) == (lifted is not None)
+        lifted = respond(FRAME, ACCEL.scaled(least * (1 + off)), models=("nonlinear",))["nonlinear"].lifted
+        assert can_lift(model, ACCEL, least * (1 + off)) == (off > 0) == lifted
 
     def test_a_motion_that_pushes_to_one_side_only_lifts_to_that_side(self):
         push = GroundMotion("push", 0.1, np.array([0.0, 5.0, 0.0]))

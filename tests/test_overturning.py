@@ -21,7 +21,7 @@ from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.model import build_models
 from rocking_cli.dynamics.prepared import Prepared
-from rocking_cli.dynamics.pulse_response import closed_form, exact_pulse
+from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE
@@ -31,6 +31,7 @@ from rocking_cli.studies.boundaries import boundaries
 from rocking_cli.studies.overturning import SCAN, Region, compare, overturning_map
 from rocking_cli.studies.shaken import linear_block, outcomes, parse_shape, shaken, weakest
 from tests.conftest import EXAMPLES
+from tests.pulses import exact_pulse
 
 SINE = parse_shape("sine")
 BLOCK = Block(width=0.7, height=2.8)
@@ -62,19 +63,19 @@ class TestMap:
         rng = np.random.default_rng(5)
         for row, column in zip(rng.integers(61, size=300), rng.integers(60, size=300), strict=True):
             alone = exact_pulse(float(plane.a[row]), float(plane.omega[column]), 0.9)
-            impacts = plane.impacts[row, column]
+            impacts = impacts_before(plane.outcome)[row, column]
             assert (impacts if impacts >= 0 else None) == alone.impacts_before_overturning
-            ratio = plane.peak_ratio[row, column]
+            ratio = plane.outcome.peak_ratio[row, column]
             assert np.isnan(ratio) if alone.max_ratio is None else ratio == pytest.approx(alone.max_ratio, abs=1e-9)
 
     def test_every_region_is_there_and_the_shares_are_those_of_the_points(self, plane):
         assert sum(plane.shares.values()) == pytest.approx(1.0, abs=1e-12)
         assert all(share > 0 for share in plane.shares.values())
         assert plane.shares[Region.NO_UPLIFT] == pytest.approx(np.mean(plane.a <= 1))
-        assert plane.shares[Region.WITHOUT_IMPACT] == np.mean(plane.impacts == 0)
+        assert plane.shares[Region.WITHOUT_IMPACT] == np.mean(impacts_before(plane.outcome) == 0)
 
     def test_the_curves_are_those_of_the_columns(self, plane):
-        falls = plane.impacts >= 0
+        falls = plane.outcome.overturned
         for k, (least, safe) in enumerate(
             zip(plane.least(Region.AFTER_IMPACT, Region.WITHOUT_IMPACT), plane.safe_again, strict=True)
         ):
@@ -92,11 +93,11 @@ class TestMap:
             for column, period in enumerate(found.periods):
                 motion = replace(SINE, amplitude=float(ag), period=float(period)).sampled(COARSE)
                 alone = respond(BLOCK, motion, models=("nonlinear",))["nonlinear"]
-                assert (found.impacts[row, column] >= 0) == alone.overturned
+                assert found.outcome.overturned[row, column] == alone.overturned
                 if alone.overturned:
-                    assert found.impacts[row, column] == alone.impact_count
+                    assert found.outcome.impact_count[row, column] == alone.impact_count
                 else:
-                    assert found.peak_ratio[row, column] == pytest.approx(alone.peak_ratio, rel=1e-9)
+                    assert found.outcome.peak_ratio[row, column] == pytest.approx(alone.peak_ratio, rel=1e-9)
         assert {int(each) for each in found.regions.ravel()} == set(Region)
 
     def test_histories_on_samples_agree_with_the_exact_answer(self, plane):
@@ -104,32 +105,32 @@ class TestMap:
         ricker_like = replace(SINE)
         object.__setattr__(ricker_like, "segments", lambda: ())
         found = overturning_map(structure, ricker_like, plane.omega[::6], plane.a[::6])
-        exact = plane.impacts[::6, ::6]
-        assert np.mean(found.impacts != exact) < 0.02
-        both = (found.impacts < 0) & (exact < 0)
-        np.testing.assert_allclose(found.peak_ratio[both], plane.peak_ratio[::6, ::6][both], atol=2e-3)
+        exact, impacts = impacts_before(plane.outcome)[::6, ::6], impacts_before(found.outcome)
+        assert np.mean(impacts != exact) < 0.02
+        both = (impacts < 0) & (exact < 0)
+        np.testing.assert_allclose(found.outcome.peak_ratio[both], plane.outcome.peak_ratio[::6, ::6][both], atol=2e-3)
 
     def test_both_polarities_give_the_worse(self):
         ricker = parse_shape("ricker")
         structure = shaken(Prepared(load_structure(FRAME)), "linear2", ricker, (1, -1))
         omega, a = np.linspace(1, 6, 20), np.linspace(0.9, 6, 20)
         one, other, both = (
-            overturning_map(structure, ricker, omega, a, polarities=each) for each in ((1,), (-1,), (1, -1))
+            overturning_map(structure, ricker, omega, a, polarities=each).outcome for each in ((1,), (-1,), (1, -1))
         )
         assert (one.peak_ratio != other.peak_ratio).any()
-        falls = (one.impacts >= 0) | (other.impacts >= 0)
-        np.testing.assert_array_equal(both.impacts >= 0, falls)
+        falls = one.overturned | other.overturned
+        np.testing.assert_array_equal(both.overturned, falls)
         np.testing.assert_array_equal(both.peak_ratio[~falls], np.fmax(one.peak_ratio, other.peak_ratio)[~falls])
-        fewer, more = np.sort([np.where(each.impacts >= 0, each.impacts, 99) for each in (one, other)], axis=0)
+        fewer, more = np.sort([np.where(each.overturned, each.impact_count, 99) for each in (one, other)], axis=0)
         assert ((fewer < more) & (more < 99)).any()
-        np.testing.assert_array_equal(both.impacts[falls], fewer[falls])
+        np.testing.assert_array_equal(both.impact_count[falls], fewer[falls])
 
     def test_uplift_is_at_a_of_one_in_the_weaker_direction(self):
         frame = load_structure(FRAME)
         structure = shaken(Prepared(frame), "nonlinear", SINE)
         assert structure.lambda_ == min(frame.uplift(direction) for direction in Direction)
         found = overturning_map(structure, SINE, np.array([4.0]), np.array([0.999, 1.001]))
-        assert found.peak_ratio[0, 0] == 0 and found.peak_ratio[1, 0] > 0
+        assert found.outcome.peak_ratio[0, 0] == 0 and found.outcome.peak_ratio[1, 0] > 0
 
     def test_kappa1_measures_by_the_lambda_of_the_linearised_mechanism(self):
         block = equivalent_block(BLOCK).positive
@@ -247,11 +248,16 @@ class TestBoundaries:
         assert [each.name for each in found.boundaries] == ["uplift"]
 
 
+def impacts_before(outcome):
+    """Impacts before it overturns; -1 where it does not."""
+    return np.where(outcome.overturned, outcome.impact_count, -1)
+
+
 def _happens(name, found):
     return {
         "uplift": found.peak_ratio != 0,
-        "without_impact": found.impacts == 0,
-        "after_one_impact": found.impacts == 1,
+        "without_impact": impacts_before(found) == 0,
+        "after_one_impact": impacts_before(found) == 1,
     }[name]
 
 
@@ -263,10 +269,10 @@ class TestCompare:
                 top = curves.top if np.isnan(ag) else ag * (1 - 1e-6)
                 scan = 1 + (top * STANDARD_GRAVITY / structure.unit - 1) * np.geomspace(0.01, 1, SCAN)
                 found = outcomes(structure, SINE, np.full(SCAN, period), scan * structure.unit)
-                assert (found.impacts < 0).all()
+                assert not found.overturned.any()
                 if np.isfinite(ag):
                     above = np.array([ag * (1 + 1e-6) * STANDARD_GRAVITY])
-                    assert outcomes(structure, SINE, np.array([period]), above).impacts[0] >= 0
+                    assert outcomes(structure, SINE, np.array([period]), above).overturned[0]
 
     def test_the_first_is_the_one_with_the_least(self, curves):
         for goes, column in zip(curves.firsts.T, curves.least.T, strict=True):

@@ -10,7 +10,7 @@ import re
 import subprocess
 import sys
 from collections import Counter
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cache
 from itertools import chain, product
 from math import asin, exp, inf, isfinite, nan, pi, sqrt
@@ -26,9 +26,10 @@ from mechanisms.block import Block
 from rocking_cli.cli.main import main
 from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.history import respond
-from rocking_cli.dynamics.pulse_response import closed_form, exact_pulse
+from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from tests.pulses import exact_pulse
 
 MP = mpmath.mp.clone()  # a precision of its own, whatever other tests set
 MP.dps = 30
@@ -452,9 +453,8 @@ def test_a_pulse_too_weak_to_lift_moves_nothing(a, omega):
 )
 def test_extreme_pulses_have_finite_answers_or_none(point):
     for answer in (closed_form(*point), exact_pulse(*point)):
-        for each in fields(answer):
-            value = getattr(answer, each.name)
-            assert value is None or isinstance(value, dict) or isfinite(value), (each.name, value)
+        for name, value in vars(answer).items():
+            assert value is None or isinstance(value, dict) or isfinite(value), (name, value)
 
 
 def test_a_block_that_bounces_without_loss_is_answered_or_refused_at_once():
@@ -506,7 +506,7 @@ def test_the_history_of_a_sampled_pulse_agrees(a, omega, side):
         assert history.peak_ratio == approx(exact.max_ratio, abs=1e-6)
         first = history.peak_positive if side > 0 else history.peak_negative
         assert first / equivalence.phi_cr >= exact.first_excursion - 1e-6
-    if exact.first_impact is None:
+    if np.isnan(exact.first_impact):
         assert len(history.impacts) == 0
     else:
         time, ended, _ = history.impacts[0]

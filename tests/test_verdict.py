@@ -14,7 +14,7 @@ from mechanisms.block import Block
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
-from rocking_cli.dynamics.history import Outcome, respond
+from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.verdict import agreements, verdict
 from tests.conftest import EXAMPLES, record
 from tests.test_cli import run
@@ -26,14 +26,14 @@ ORDER = ("agrees", "first_estimate", "disregard")
 def peak(ratio, **more):
     """A motion of this peak, RESTED enlarged or reduced."""
     if not ratio:
-        return replace(RESTED, peak_ratio=0.0, ratio=0 * RESTED.ratio, uplift_time=None, **more)
+        return replace(RESTED, peak_ratio=0.0, ratio=0 * RESTED.ratio, uplift_time=np.nan, **more)
     return replace(RESTED, peak_ratio=ratio, ratio=RESTED.ratio * ratio / RESTED.peak_ratio, **more)
 
 
 def fell(direction, at=2.0, **more):
     gone = np.where(RESTED.time < at, RESTED.ratio, np.nan)
     return replace(
-        RESTED, outcome=Outcome.OVERTURNED, peak_ratio=None, fell_to=direction, overturning_time=at, ratio=gone, **more
+        RESTED, overturned=True, peak_ratio=np.nan, fell_to=int(direction), overturning_time=at, ratio=gone, **more
     )
 
 
@@ -101,7 +101,7 @@ LOW = {"uplift_error": -0.33}
             "Disregard linear1: its uplift acceleration is 33 % too low; here it overturns clockwise. linear2 agrees",
             "Trust",
         ),
-        ({"nonlinear": replace(peak(0.4), outcome=Outcome.STILL_ROCKING)}, "nonlinear: still rocking", "overturns"),
+        ({"nonlinear": replace(peak(0.4), still_rocking=True)}, "nonlinear: still rocking", "overturns"),
     ],
 )
 def test_the_verdict_says_what_happened(histories, words, not_said):

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out, run_deck
+from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.history import RTOL, check_rtol
 from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
@@ -125,44 +126,6 @@ def _whole(name: str, values: Reals) -> Integers:
     return values.astype(np.int64)
 
 
-@dataclass(frozen=True, eq=False)
-class Responses:
-    """What became of many histories, one a place, each an ndarray of shape (n,).
-
-    Parameters
-    ----------
-    overturned, still_rocking, failed : ndarray of bool
-        How each ended, if not at rest; a failed one could not be followed, and its other values mean nothing.
-    fell_to : ndarray of int
-        Sign of the direction in which it overturned, 0 if it did not.
-    peak_positive, peak_negative : ndarray
-        Largest rotation in either direction [rad]; NaN in a direction in which it overturned.
-    peak_ratio : ndarray
-        Largest rotation over the critical rotation; NaN if overturned.
-    overturning_time, uplift_time : ndarray
-        When the rotation passed the critical one for good, and the first uplift [s]; NaN if there is none.
-    impact_count : ndarray of int
-        Number of impacts, those of the chatter to rest included.
-    end_time : ndarray
-        When it came to rest for good, or was certain to overturn [s].
-    """
-
-    overturned: NDArray[np.bool_]
-    still_rocking: NDArray[np.bool_]
-    failed: NDArray[np.bool_]
-    fell_to: NDArray[np.int8]
-    peak_positive: Reals
-    peak_negative: Reals
-    peak_ratio: Reals
-    overturning_time: Reals
-    uplift_time: Reals
-    impact_count: Integers
-    end_time: Reals
-
-    def __len__(self) -> int:
-        return len(self.overturned)
-
-
 def respond_many(
     models: Sequence[Model],
     motions: Sequence[GroundMotion | None],
@@ -173,7 +136,7 @@ def respond_many(
     rtol: float = RTOL,
     only_peaks: bool = False,
     progress: Callable[[int], None] | None = None,
-) -> Responses:
+) -> Outcomes:
     """Run many histories, each the same to the last bit as `respond` would run it alone.
 
     Parameters
@@ -192,13 +155,13 @@ def respond_many(
         Relative local error of a step of the nonlinear motions.
     only_peaks : bool
         Whether to leave a motion, as still rocking, some impacts after its record: by then its peaks are final and it
-        is clear that it does not overturn; `impact_count` and `end_time` are those of that moment.
+        is clear that it does not overturn; `impact_count` is that of that moment.
     progress : callable, optional
         Called with the number of histories finished since the last call.
 
     Returns
     -------
-    Responses
+    Outcome
         In the order of `runs`, whatever the number of threads. Samples are not kept: memory grows by some 100 bytes
         a history.
 
@@ -246,24 +209,7 @@ def respond_many(
             run_deck(deck, rows, marks, first=first, stop=stop, rtol=rtol, most_impacts=most)
 
         in_parts(follow, len(runs), UNIT, threads, progress)
-    phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
-    status = marks[:, kernels.STATUS]
-    overturned = status == kernels.OVERTURNED
-    fell_to = np.where(overturned, 1 - 2 * marks[:, kernels.SIDE], 0)
-    peaks = marks[:, kernels.PEAK : kernels.PEAK + 2]
-    return Responses(
-        overturned=overturned,
-        still_rocking=status == kernels.STILL_ROCKING,
-        failed=status == kernels.STALLED,
-        fell_to=fell_to.astype(np.int8),
-        peak_positive=np.where(fell_to == 1, np.nan, peaks[:, 0]),
-        peak_negative=np.where(fell_to == -1, np.nan, peaks[:, 1]),
-        peak_ratio=np.where(overturned, np.nan, (peaks / phi_cr).max(axis=1)),
-        overturning_time=np.where(overturned, marks[:, kernels.CROSSED], np.nan),
-        uplift_time=marks[:, kernels.FIRST_UPLIFT].copy(),
-        impact_count=marks[:, kernels.IMPACTS].astype(np.int64),
-        end_time=marks[:, kernels.ENDED].copy(),
-    )
+    return read_marks(marks, np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model])
 
 
 def _etas(models: Sequence[Model], runs: Runs) -> Reals:

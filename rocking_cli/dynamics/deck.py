@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from rocking_cli.dynamics.compiled import HISTORIES, has_run
 from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.outcome import Outcome
 from rocking_cli.excitation.base import GroundMotion
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.kernels import Deck
+    from rocking_cli.dynamics.outcome import Outcomes
 
 Reals = NDArray[np.float64]
 
@@ -43,6 +45,37 @@ def run_deck(
     samples = kernels.Samples(every, phi, rate, impacts)
     kernels.run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, samples, marks)
     has_run(HISTORIES)
+
+
+def read_marks(marks: Reals, phi_cr: Reals) -> Outcomes:
+    """What the kernel says of finished runs.
+
+    Parameters
+    ----------
+    marks : ndarray, shape (n, MARKS)
+        As the kernel filled them.
+    phi_cr : ndarray, shape (n, 2)
+        Critical rotations of the positive and the negative direction [rad].
+    """
+    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+
+    status = marks[:, kernels.STATUS]
+    overturned = status == kernels.OVERTURNED
+    fell_to = np.where(overturned, 1 - 2 * marks[:, kernels.SIDE], 0).astype(np.int64)
+    peaks = marks[:, kernels.PEAK : kernels.PEAK + 2]
+    return Outcome(
+        overturned=overturned,
+        still_rocking=status == kernels.STILL_ROCKING,
+        failed=status == kernels.STALLED,
+        fell_to=fell_to,
+        peak_positive=np.where(fell_to == 1, np.nan, peaks[:, 0]),
+        peak_negative=np.where(fell_to == -1, np.nan, peaks[:, 1]),
+        peak_ratio=np.where(overturned, np.nan, (peaks / phi_cr).max(axis=1)),
+        overturning_time=np.where(overturned, marks[:, kernels.CROSSED], np.nan),
+        uplift_time=marks[:, kernels.FIRST_UPLIFT].copy(),
+        impact_count=marks[:, kernels.IMPACTS].astype(np.int64),
+        end_time=marks[:, kernels.ENDED].copy(),
+    )
 
 
 def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> Deck:

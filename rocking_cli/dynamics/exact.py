@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import inf, isfinite
+from dataclasses import dataclass, replace
+from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.dynamics import pulse_motion
+from rocking_cli.dynamics.outcome import Outcome
 from rocking_cli.dynamics.pulse_motion import COLUMNS, Side
 from rocking_cli.errors import InputError, SolverError
 
@@ -17,30 +18,14 @@ if TYPE_CHECKING:  # numpy: only who has a structure and a pulse has paid for it
 KEPT = 5_000  # impacts; eta = 0.995 rests after 2800
 
 
-@dataclass(frozen=True)
-class ExactResponse:
-    """What the linear equation of motion says of a structure under a pulse, to rounding error.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ExactResponse(Outcome[bool, int, float]):
+    """What the linear equation of motion says of a structure under a pulse, to rounding error; see `Outcome`.
 
     Parameters
     ----------
-    overturned : bool
-        Whether it overturns.
-    fell_to : int or None
-        Sign of the direction in which it does.
-    peak_positive, peak_negative : float or None
-        Largest rotation in either direction [rad]; None in the direction in which it overturns.
-    peak_ratio : float or None
-        Largest rotation over the critical rotation; None if it overturns.
-    first_excursion, first_rebound : float or None
-        Largest phi/phi_cr before and after the first impact; None for one that overturns or never comes.
-    impacts_before_overturning : int or None
-        Number of impacts before; None if it does not overturn.
-    overturning_time : float or None
-        When the rotation passes the critical one for good [s].
-    uplift_time : float or None
-        The first uplift [s] from the start of the pulse; None if there is none.
-    first_impact : float or None
-        [s]; None if there is none.
+    first_excursion, first_rebound : float
+        Largest phi/phi_cr before and after the first impact; NaN for one that overturns or never comes.
     impacts : tuple of (float, int, float)
         Time [s], sign of the direction that ends, and rotation rate before [rad/s], of each impact until it rests or
         overturns, of the first 5000 at most.
@@ -48,19 +33,15 @@ class ExactResponse:
         How long the pulse lasts [s].
     """
 
-    overturned: bool
-    fell_to: int | None
-    peak_positive: float | None
-    peak_negative: float | None
-    peak_ratio: float | None
-    first_excursion: float | None
-    first_rebound: float | None
-    impacts_before_overturning: int | None
-    overturning_time: float | None
-    uplift_time: float | None
-    first_impact: float | None
+    first_excursion: float
+    first_rebound: float
     impacts: tuple[tuple[float, int, float], ...]
     pulse_end: float
+
+    @property
+    def first_impact(self) -> float:
+        """When the first impact comes [s]; NaN if there is none."""
+        return self.impacts[0][0] if self.impacts else nan
 
 
 def exact_response(
@@ -109,8 +90,8 @@ def exact_response(
     blocks = (equivalence.positive, equivalence.negative)
     answer = solve(sides, segments_of(pulse), polarity_of(polarity))
     ratios = (answer.peak_positive, answer.peak_negative)
-    positive, negative = (None if x is None else x * block.phi_cr for x, block in zip(ratios, blocks, strict=True))
-    return ExactResponse(**{**vars(answer), "peak_positive": positive, "peak_negative": negative})
+    positive, negative = (x * block.phi_cr for x, block in zip(ratios, blocks, strict=True))
+    return replace(answer, peak_positive=positive, peak_negative=negative)
 
 
 def sides_of(equivalence: Equivalence, *, kappa: int, gravity: float) -> tuple[Side, Side]:
@@ -158,20 +139,22 @@ def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int =
             f"more than {pulse_motion.EXCURSIONS} impacts within the pulse: so slow a pulse needs a smaller restitution"
         )
     overturned = motion.status == pulse_motion.OVERTURNED
-    fell_to = (1, -1)[motion.side] if overturned else None
+    fell_to = (1, -1)[motion.side] if overturned else 0
     kept = [log[k : k + COLUMNS] for k in range(0, COLUMNS * min(motion.impacts, KEPT), COLUMNS)]
     return ExactResponse(
         overturned=overturned,
+        still_rocking=False,
+        failed=False,
         fell_to=fell_to,
-        peak_positive=None if fell_to == 1 else motion.peaks[0],
-        peak_negative=None if fell_to == -1 else motion.peaks[1],
-        peak_ratio=None if overturned else max(motion.peaks),
-        first_excursion=kept[0][3] if kept else None,
-        first_rebound=kept[1][3] if len(kept) > 1 else None,
-        impacts_before_overturning=motion.impacts if overturned else None,
-        overturning_time=motion.crossed if overturned and isfinite(motion.crossed) else None,
-        uplift_time=motion.uplift if isfinite(motion.uplift) else None,
-        first_impact=kept[0][0] if kept else None,
+        peak_positive=nan if fell_to == 1 else motion.peaks[0],
+        peak_negative=nan if fell_to == -1 else motion.peaks[1],
+        peak_ratio=nan if overturned else max(motion.peaks),
+        overturning_time=motion.crossed if overturned and isfinite(motion.crossed) else nan,
+        uplift_time=motion.uplift,
+        impact_count=motion.impacts,
+        end_time=nan,
+        first_excursion=kept[0][3] if kept else nan,
+        first_rebound=kept[1][3] if len(kept) > 1 else nan,
         impacts=tuple((time, int(sign), rate) for time, sign, rate, _ in kept),
         pulse_end=segments[-1][1],
     )

@@ -3,53 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking_cli.core import Equivalence
+from rocking_cli.core import Direction, Equivalence
 from rocking_cli.dynamics import pulse_motion
 from rocking_cli.dynamics.compiled import PULSES, compile_source, has_run
 from rocking_cli.dynamics.exact import polarity_of, segments_of, sides_of
+from rocking_cli.dynamics.outcome import Outcome, Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import Pulse
 
 UNIT = 1024  # pulses a thread takes at a time: some milliseconds
-
-
-@dataclass(frozen=True, eq=False)
-class ExactResponses:
-    """What becomes of a structure under many pulses, one a place, each an ndarray of shape (n,).
-
-    Parameters
-    ----------
-    overturned, failed : ndarray of bool
-        Whether it overturns; failed ones bounce all through the pulse, and their other values mean nothing.
-    peak_ratio : ndarray
-        Largest rotation over the critical rotation; NaN if it overturns, 0 if it does not lift.
-    impacts_before_overturning : ndarray of int
-        -1 if it does not overturn.
-    uplift_time : ndarray
-        The first uplift [s]; NaN if there is none.
-    """
-
-    overturned: NDArray[np.bool_]
-    failed: NDArray[np.bool_]
-    peak_ratio: NDArray[np.float64]
-    impacts_before_overturning: NDArray[np.int64]
-    uplift_time: NDArray[np.float64]
-
-    def __len__(self) -> int:
-        return len(self.overturned)
-
-    @property
-    def uplifted(self) -> NDArray[np.bool_]:
-        """Whether it lifts at all."""
-        return np.isfinite(self.uplift_time)
 
 
 def exact_many(
@@ -63,7 +32,7 @@ def exact_many(
     polarity: int = 1,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
-) -> ExactResponses:
+) -> Outcomes:
     """Exact response of a structure's equivalent blocks to many pulses of one shape.
 
     Parameters
@@ -83,8 +52,9 @@ def exact_many(
 
     Returns
     -------
-    ExactResponses
-        In the order given, the same for any number of threads.
+    Outcome
+        In the order given, the same for any number of threads; a failed one bounces all through its pulse. No time of
+        overturning, nor of coming to rest, is looked for.
 
     Raises
     ------
@@ -98,7 +68,7 @@ def exact_many(
     segments = np.array(segments_of(pulse), dtype=np.float64)
     factors, stretches = polarity_of(polarity) * sizes[0] / pulse.amplitude, sizes[1] / pulse.period
     n = factors.size
-    results = np.empty((n, 4))
+    results = np.empty((n, pulse_motion.RESULTS))
     if n:
         many = _compiled()
 
@@ -107,14 +77,25 @@ def exact_many(
 
         in_parts(follow, n, UNIT, threads, progress)
         has_run(PULSES)
-    status, peaks, impacts, uplift_time = results.T
+    status, side, impacts, uplift_time, *ratios = results.T
     overturned = status == pulse_motion.OVERTURNED
-    return ExactResponses(
+    fell_to = np.where(overturned, 1 - 2 * side, 0).astype(np.int64)
+    positive, negative = (
+        np.where(fell_to == int(direction), np.nan, ratio * equivalence[direction].phi_cr)
+        for direction, ratio in zip(Direction, ratios, strict=True)
+    )
+    return Outcome(
         overturned=overturned,
+        still_rocking=np.zeros(n, dtype=bool),
         failed=status == pulse_motion.SPENT,
-        peak_ratio=np.where(overturned, np.nan, peaks),
-        impacts_before_overturning=np.where(overturned, impacts, -1).astype(np.int64),
+        fell_to=fell_to,
+        peak_positive=positive,
+        peak_negative=negative,
+        peak_ratio=np.where(overturned, np.nan, np.maximum(*ratios)),
+        overturning_time=np.full(n, np.nan),
         uplift_time=uplift_time.copy(),
+        impact_count=impacts.astype(np.int64),
+        end_time=np.full(n, np.nan),
     )
 
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli import names
-from rocking_cli.core import Direction, Mechanism
-from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, run_deck
+from rocking_cli.core import Mechanism
+from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build_models
+from rocking_cli.dynamics.outcome import OUTCOME, Outcome
 from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
@@ -24,46 +23,22 @@ TAIL = 10.0  # s of motion kept after the record
 MOST_SAMPLES = 20_000_000
 
 
-class Outcome(Enum):
-    """How a motion ended; the value says it in words."""
-
-    AT_REST = "came to rest"
-    OVERTURNED = "overturned"
-    STILL_ROCKING = "still rocking long after the record, and not going to overturn"
-
-
-@dataclass(frozen=True, eq=False)
-class History:
-    """The motion of one model of a structure.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class History(Outcome[bool, int, float]):
+    """The motion of one model of a structure: what became of it, see `Outcome`, and its samples.
 
     Parameters
     ----------
     model : str
         `"nonlinear"`, `"linear1"` or `"linear2"`.
-    outcome : Outcome
-        How the motion ended.
     time : ndarray, shape (n,)
         Times of the samples [s]: those of the ground motion, or every so many-th of them, see its `every`.
     phi, rate : ndarray, shape (n,)
         Signed rotation [rad] and its rate [rad/s]; NaN after overturning.
     ratio : ndarray, shape (n,)
         Signed rotation over the critical rotation of its direction.
-    peak_positive, peak_negative : float or None
-        Largest rotation in either direction [rad], >= 0; None in a direction in which it overturned.
-    peak_ratio : float or None
-        Largest rotation over the critical rotation; None if overturned.
-    overturning_time : float or None
-        When the rotation passed the critical one for good [s].
-    uplift_time : float or None
-        First uplift from rest [s].
-    fell_to : Direction or None
-        The direction in which it overturned.
-    impact_count : int
-        Number of impacts, those of the chatter to rest included.
     impacts : ndarray, shape (k, 3)
-        Time [s], sign of the direction that ends, and rate before [rad/s] of each impact.
-    end_time : float
-        When it came to rest for good, or was certain to overturn [s].
+        Time [s], sign of the direction that ends, and rate before [rad/s] of each impact, of the first 20,000 at most.
     contact_lost : float or None
         When v_g'' first came down to -g [s]: the structure may leave the ground then, which no model here follows.
     uplift_error : float
@@ -73,36 +48,19 @@ class History:
     """
 
     model: ModelName
-    outcome: Outcome
     time: Reals
     phi: Reals
     rate: Reals
     ratio: Reals
-    peak_positive: float | None
-    peak_negative: float | None
-    peak_ratio: float | None
-    overturning_time: float | None
-    uplift_time: float | None
-    fell_to: Direction | None
-    impact_count: int
     impacts: Reals
-    end_time: float
     contact_lost: float | None = None
     uplift_error: float = 0.0
     p: float = float("nan")
 
     @property
-    def words(self) -> str:
-        """How it ended, in the words of `rocking_cli.names`."""
-        lifted = self.uplift_time is not None or self.overturned or bool(self.peak_ratio)
-        return names.outcome(
-            uplifts=lifted, overturned=self.overturned, still_rocking=self.outcome is Outcome.STILL_ROCKING
-        )
-
-    @property
-    def overturned(self) -> bool:
-        """Whether the structure overturned."""
-        return self.outcome is Outcome.OVERTURNED
+    def first_impact(self) -> float:
+        """When the first impact comes [s]; NaN if there is none."""
+        return float(self.impacts[0, 0]) if len(self.impacts) else float("nan")
 
 
 def respond(
@@ -199,34 +157,20 @@ def follow(
     runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = np.nan
     runs[0, kernels.START] = model.q(release)
     run_deck(lay_out([model], [motion]), runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
-    (mark,) = marks
-    status, ended = int(mark[kernels.STATUS]), float(mark[kernels.ENDED])
-    if status == kernels.STALLED:
-        raise SolverError(f"the {model.name} history cannot be followed past t = {ended:.6g} s: too small steps")
-    outcome = (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.STILL_ROCKING)[status]
-    fallen = outcome is Outcome.OVERTURNED
-    fell_to = None if not fallen else Direction.POSITIVE if mark[kernels.SIDE] == 0 else Direction.NEGATIVE
-    positive, negative = (float(peak) for peak in mark[kernels.PEAK : kernels.PEAK + 2])
-    count = int(mark[kernels.IMPACTS])
-    first = float(mark[kernels.FIRST_UPLIFT])
+    found = read_marks(marks, np.array([model.phi_cr]))
+    end = float(found.end_time[0])
+    if found.failed[0]:
+        raise SolverError(f"the {model.name} history cannot be followed past t = {end:.6g} s: too small steps")
     # The samples end with the record or with the motion, whichever is later; after overturning they are NaN.
-    kept = min(samples, max(npts, int(ended / dt) + (1 if outcome is Outcome.STILL_ROCKING else 3)))
+    kept = min(samples, max(npts, int(end / dt) + (1 if found.still_rocking[0] else 3)))
     return History(
+        **{name: getattr(found, name)[0].item() for name in OUTCOME},
         model=model.name,
-        outcome=outcome,
         time=np.arange(kept, dtype=np.float64) * dt,
         phi=phi[:kept],
         rate=rate[:kept],
         ratio=phi[:kept] / np.where(phi[:kept] < 0, model.phi_cr[1], model.phi_cr[0]),
-        peak_positive=None if fell_to is Direction.POSITIVE else positive,
-        peak_negative=None if fell_to is Direction.NEGATIVE else negative,
-        peak_ratio=None if fallen else max(positive / model.phi_cr[0], negative / model.phi_cr[1]),
-        overturning_time=float(mark[kernels.CROSSED]) if fallen else None,
-        uplift_time=first if np.isfinite(first) else None,
-        fell_to=fell_to,
-        impact_count=count,
-        impacts=impacts[: min(count, len(impacts))],
-        end_time=ended,
+        impacts=impacts[: min(int(found.impact_count[0]), len(impacts))],
         contact_lost=contact_lost(motion, model.gravity),
         uplift_error=model.uplift_error,
         p=model.p,

@@ -30,6 +30,7 @@ FAINT = 1e-10  # x' after an impact within the pulse below which it is at rest: 
 STILL = 1e-6  # the same after the pulse, when nothing follows
 EXCURSIONS = 20_000  # within the pulse; to come to rest a restitution of 0.99 needs 2300
 SLIVER = 1e-12  # of a segment, or of a radian: too little of it left to lift anything
+RESULTS = 6  # of one of many pulses, see `many`
 COLUMNS = 4  # of the log, an impact: time [s], sign of the direction that ends, phi. before [rad/s], peak of x before
 
 Rows = Sequence[Sequence[float]]
@@ -55,8 +56,8 @@ class Flight(NamedTuple):
     W: float
 
 
-class Motion(NamedTuple):
-    """What became of a structure."""
+class Fate(NamedTuple):
+    """What became of a structure, in the terms of the equation; `Outcome` has it for everybody else."""
 
     status: int
     side: int  # index of the direction it ended in
@@ -250,7 +251,7 @@ def follow(
     period: float,
     timed: bool,
     impacts: MutableSequence[float],
-) -> Motion:
+) -> Fate:
     """Follow a structure from rest through a pulse until all is decided.
 
     Parameters
@@ -269,7 +270,7 @@ def follow(
 
     Returns
     -------
-    Motion
+    Fate
     """
     end = segments[len(segments) - 1][1] * period
     k, t, d, v = 0, 0.0, 0, 0.0
@@ -280,13 +281,13 @@ def follow(
         if resting:
             k, t, lifted = next_lift(sides, segments, amplitude, period, k, t)
             if lifted < 0:
-                return Motion(DECIDED, d, count, uplift, highest, nan)
+                return Fate(DECIDED, d, count, uplift, highest, nan)
             d, v, resting = lifted, 0.0, False
             uplift = uplift if uplift >= 0 else t
         event, k, t, v, peak, crossed = fly(sides[d], 1.0 - 2.0 * d, segments, amplitude, period, k, t, v, timed)
         highest = (max(highest[0], peak), highest[1]) if d == 0 else (highest[0], max(highest[1], peak))
         if event == FALLEN:
-            return Motion(OVERTURNED, d, count, uplift, highest, crossed)
+            return Fate(OVERTURNED, d, count, uplift, highest, crossed)
         place = COLUMNS * count
         full = place + COLUMNS > len(impacts)
         if not full:
@@ -304,8 +305,8 @@ def follow(
             # the one that the pulse has left in the air may have had no time to show how high it could go.
             free += 1
             if free > 2 and (full or v <= STILL):
-                return Motion(DECIDED, d, count, uplift, highest, nan)
-    return Motion(SPENT, d, count, uplift, highest, nan)
+                return Fate(DECIDED, d, count, uplift, highest, nan)
+    return Fate(SPENT, d, count, uplift, highest, nan)
 
 
 def many(
@@ -317,14 +318,19 @@ def many(
     stop: int,
     results: Sequence[MutableSequence[float]],
 ) -> None:
-    """Follow the pulses first to stop of many; each row of results takes status, larger peak, impacts and uplift."""
+    """Follow the pulses first to stop of many.
+
+    Each row of results takes the status, the side, the impacts, the uplift, and the peak of either direction.
+    """
     nothing = results[0][:0]
     for i in range(first, stop):
         motion = follow(sides, segments, amplitudes[i], periods[i], False, nothing)
         results[i][0] = motion.status
-        results[i][1] = max(motion.peaks[0], motion.peaks[1])
+        results[i][1] = motion.side
         results[i][2] = motion.impacts
         results[i][3] = motion.uplift
+        results[i][4] = motion.peaks[0]
+        results[i][5] = motion.peaks[1]
 
 
 SOURCE = (at, root, cross, fly, next_lift, follow, many)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import asin, exp, log, pi, sqrt
 
-from rocking_cli.dynamics.exact import solve
+from rocking_cli.dynamics.exact import ExactResponse, solve
 from rocking_cli.dynamics.pulse_motion import Side
 from rocking_cli.errors import InputError
 
@@ -62,44 +62,9 @@ class ClosedForm:
         failed = [CONDITIONS[name] for name, holds in self.conditions.items() if holds is False]
         return None if self.valid else f"it is not true that {' and '.join(failed)}"
 
-    def off(self, exact: float | None) -> float | None:
-        """Eq. 41 as printed less an exact peak; None where either is none."""
-        return None if self.printed_ratio is None or exact is None else self.printed_ratio - exact
-
-
-@dataclass(frozen=True)
-class ExactPulse:
-    """The exact answer of the linear equation.
-
-    Parameters
-    ----------
-    max_ratio : float or None
-        Largest phi/phi_cr of the whole motion; None if it overturns.
-    first_excursion, first_rebound : float or None
-        Peaks before and after the first impact; None for one that overturns or never comes.
-    overturns : bool
-        Whether the block overturns.
-    impacts_before_overturning : int or None
-        Number of impacts before; None if it does not overturn.
-    first_impact : float or None
-        tau of the first impact, from uplift; None if there is none.
-    impact_during_pulse : bool
-        Whether the first impact comes before the end of the pulse.
-    uplift : float or None
-        tau from the start of the pulse to uplift; None if the block does not lift.
-    pulse_end : float or None
-        tau from uplift to the end of the pulse.
-    """
-
-    max_ratio: float | None
-    first_excursion: float | None
-    first_rebound: float | None
-    overturns: bool
-    impacts_before_overturning: int | None
-    first_impact: float | None
-    impact_during_pulse: bool
-    uplift: float | None
-    pulse_end: float | None
+    def off(self, exact: float) -> float | None:
+        """Eq. 41 as printed less an exact peak; None where it gives none."""
+        return None if self.printed_ratio is None else self.printed_ratio - exact
 
 
 def check_pulse(a: float, omega: float, eta: float) -> None:
@@ -165,7 +130,7 @@ def _conditions(uplift: bool, impact_after: bool | None, stays: bool | None) -> 
     return {"uplift": uplift, "first_impact_after_pulse": impact_after, "no_overturning_without_impact": stays}
 
 
-def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> ExactPulse:
+def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> ExactResponse:
     """Exact response of the linear block to a pulse, any number of impacts.
 
     Parameters
@@ -177,7 +142,8 @@ def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> Exac
 
     Returns
     -------
-    ExactPulse
+    ExactResponse
+        Rotations over phi_cr, and times tau = p t from the start of the pulse.
 
     Raises
     ------
@@ -197,18 +163,4 @@ def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> Exac
     side = Side(1.0, 1.0, 1.0, eta)
     duration = 2 * pi / omega * cycles
     # To the left, so that the positive direction is the first.
-    found = solve((side, side), [(0.0, duration, -a, 0.0 if shape == "rectangular" else omega, phase)])
-    uplift = found.uplift_time
-    if uplift is None:
-        return ExactPulse(0.0, None, None, False, None, None, False, None, None)
-    return ExactPulse(
-        max_ratio=found.peak_ratio,
-        first_excursion=found.first_excursion,
-        first_rebound=found.first_rebound,
-        overturns=found.overturned,
-        impacts_before_overturning=found.impacts_before_overturning,
-        first_impact=None if found.first_impact is None else found.first_impact - uplift,
-        impact_during_pulse=found.first_impact is not None and found.first_impact < duration,
-        uplift=uplift,
-        pulse_end=duration - uplift,
-    )
+    return solve((side, side), [(0.0, duration, -a, 0.0 if shape == "rectangular" else omega, phase)])

@@ -64,6 +64,4 @@ def sampled_history(model: Model, pulse: Pulse, polarity: int = 1) -> SampledHis
 def _alike(one: History, other: History) -> bool:
     if one.overturned or other.overturned:
         return (one.fell_to, one.impact_count) == (other.fell_to, other.impact_count)
-    assert one.peak_ratio is not None
-    assert other.peak_ratio is not None
     return abs(one.peak_ratio - other.peak_ratio) <= WITHIN * other.peak_ratio

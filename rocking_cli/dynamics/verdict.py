@@ -11,7 +11,7 @@ import numpy as np
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade, grade, uplift_in_words
-from rocking_cli.dynamics.history import History, Outcome
+from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.names import percent
 
@@ -80,14 +80,12 @@ def _compare(run: History, best: History) -> Agreement:
     if not same:
         found = Grade.DISREGARD
     elif best.overturned:
-        assert run.overturning_time is not None and best.overturning_time is not None
         delay = run.overturning_time - best.overturning_time
-        alike = run.fell_to is best.fell_to and abs(delay) * best.p <= ANOTHER
+        alike = run.fell_to == best.fell_to and abs(delay) * best.p <= ANOTHER
         found = Grade.AGREES if alike else Grade.ESTIMATE
     elif not best.peak_ratio:
         found = Grade.AGREES
     else:
-        assert run.peak_ratio is not None
         peak = run.peak_ratio / best.peak_ratio - 1
         found = grade(peak)
         if run.ratio.any() and best.ratio.any():  # else one has come and gone between two samples
@@ -141,18 +139,18 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
     said += bearing(histories, {name: name for name in histories})
     if disagree(histories):
         said.append("Trust none of them alone: vary the motion.")
-    elif not run.overturned and (run.peak_ratio or 0.0) > CLOSE:
+    elif not run.overturned and run.peak_ratio > CLOSE:
         said.append("That is close to overturning: vary the motion before relying on it.")
-    still = [name for name, each in histories.items() if each.outcome is Outcome.STILL_ROCKING]
+    still = [name for name, each in histories.items() if each.still_rocking]
     if still:
-        said.append(f"{', '.join(still)}: {Outcome.STILL_ROCKING.value}.")
+        said.append(f"{', '.join(still)}: {names.STILL_ROCKING} long after the record, and not going to overturn.")
     return " ".join(said)
 
 
 def _ends(run: History) -> str:
     """What becomes of the structure, after "it" or its name."""
     if run.overturned:
-        return f"{names.OVERTURNS} {SENSE[run.fell_to]}" if run.fell_to is not None else names.OVERTURNS
+        return f"{names.OVERTURNS} {SENSE[Direction(run.fell_to)]}"
     if not run.peak_ratio:
         return names.NO_UPLIFT
     if run.peak_ratio > 1:
@@ -196,7 +194,7 @@ def _beside(found: Agreement, run: History, best: History) -> str:
     if not found.same_fate:
         return f"it {_ends(run)}"
     if best.overturned:
-        way = " too" if run.fell_to is best.fell_to else " the other way"
+        way = " too" if run.fell_to == best.fell_to else " the other way"
         return f"it {names.OVERTURNS}{way}, {_later(found.peak_delay or 0.0)}"
     if found.peak_error is None:
         return f"it {names.NO_UPLIFT} either"
@@ -252,4 +250,4 @@ def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None
 
 def _size(history: History) -> float:
     """What two polarities are compared by: the overturning time [s], else the peak ratio."""
-    return (history.overturning_time if history.overturned else history.peak_ratio) or 0.0
+    return history.overturning_time if history.overturned else history.peak_ratio

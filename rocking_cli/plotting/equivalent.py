@@ -73,7 +73,7 @@ def _draw_linear(axes: Any, found: EquivalentResponses) -> None:
     ratio = ratio[np.isfinite(ratio)]
     beyond = np.flatnonzero(np.abs(ratio) > FALLING)
     ratio = ratio[: beyond[0]] if beyond.size else ratio
-    fate = ", overturns" if found.linear_peak is None else ""
+    fate = ", overturns" if found.alone.overturned else ""
     axes.plot(
         found.tau[: ratio.size], ratio, color=style.FAINT, linewidth=3.5, alpha=0.6, zorder=1,
         label=f"linear block of all{fate}",

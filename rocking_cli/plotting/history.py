@@ -114,7 +114,7 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
     axes.annotate(
         "impacts, in the order of the legend", place, xycoords="axes fraction", fontsize=style.SMALL, color=style.FAINT
     )
-    falls_up = any(run.fell_to is Direction.POSITIVE for run in histories.values())  # into the right corner
+    falls_up = any(run.fell_to == Direction.POSITIVE for run in histories.values())  # into the right corner
     axes.legend(
         loc="upper left" if falls_up else "upper right",
         title=what,

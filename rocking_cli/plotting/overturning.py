@@ -48,7 +48,7 @@ def draw_map(
         across, up, kinds, cmap=ListedColormap(list(style.REGIONS.values())), vmin=-0.5, vmax=len(style.REGIONS) - 0.5,
         shading="nearest", rasterized=True,
     )  # fmt: skip
-    contours = _draw_peaks(axes, across, up, found.peak_ratio)
+    contours = _draw_peaks(axes, across, up, found.outcome.peak_ratio)
     handles: list[Line2D | Patch] = [
         Patch(facecolor=fill, edgecolor=style.FAINT, label=label)
         for k, (label, fill) in enumerate(style.REGIONS.items())
@@ -100,7 +100,7 @@ def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line
 def _kinds(found: OverturningMap) -> NDArray[np.int64]:
     """For each point the place of its fill."""
     kinds = found.regions + (found.regions == Region.WITHOUT_IMPACT)
-    return np.where((found.regions == Region.AFTER_IMPACT) & (found.impacts > 1), 3, kinds)
+    return np.where((found.regions == Region.AFTER_IMPACT) & (found.outcome.impact_count > 1), 3, kinds)
 
 
 def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) -> list[Line2D]:

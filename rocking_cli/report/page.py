@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from math import degrees
+from math import degrees, isnan
 from typing import Any
 
 import numpy as np
@@ -107,7 +107,7 @@ def _dimensions(content: Content) -> list[str]:
 
 
 def _number(value: float | None, digits: int = 4) -> str:
-    if value is None:
+    if value is None or isnan(value):
         return ABSENT
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
     return f"{mantissa} \N{MULTIPLICATION SIGN} 10{str(int(power)).translate(RAISED)}" if power else mantissa
@@ -181,14 +181,14 @@ def _response(content: Content, shaking: Shaking, k: int, bins: int) -> dict[str
 
 def _peak_time(run: History, film: Film) -> float:
     """When the rotation is largest; of a motion that overturns, when it passes the critical one."""
-    if run.overturning_time is not None:
+    if run.overturned:
         return min(float(run.time[int(np.searchsorted(run.time, run.overturning_time))]), film.end)
     return float(run.time[int(np.nanargmax(np.abs(run.ratio)))]) if run.peak_ratio else film.start
 
 
 def _outcomes(runs: Sequence[History]) -> Rows:
-    def angle(phi: float | None) -> str:
-        return ABSENT if phi is None else f"{degrees(phi):.4g}"
+    def angle(phi: float) -> str:
+        return ABSENT if isnan(phi) else f"{degrees(phi):.4g}"
 
     return [
         ["outcome", *(run.words for run in runs), ""],

@@ -11,7 +11,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.core.restitution import restitution_in_words, why_none
 from rocking_cli.core.size import doubtful_size
-from rocking_cli.dynamics.history import History, Outcome
+from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -100,7 +100,7 @@ def overview(content: Content) -> list[list[str]]:
     rows = []
     for each in content.shakings:
         near, run = each.neighbours[each.polarity], each.histories["nonlinear"]
-        peaks = [inf if run.overturned else run.peak_ratio or 0.0, near.peak_ratio[1]]
+        peaks = [inf if run.overturned else run.peak_ratio, near.peak_ratio[1]]
         itself, median = (names.OVERTURNS if isinf(peak) else f"{peak:.3g}" for peak in peaks)
         rows.append(
             [each.given.motion.name, f"{each.measured.pga:.3g}", itself, names.percent(near.overturned), median]
@@ -168,7 +168,7 @@ def _uplift(content: Content, shaking: Shaking) -> str:
     least = min(content.equivalence[direction].lambda_ for direction in Direction)
     needed = f"A ground acceleration of {_ground(content, least)} is enough to lift it"
     both = "" if content.equivalence.symmetric else " in its weaker direction"
-    if best.uplift_time is not None:
+    if best.uplift_time >= 0:
         return f"Yes, first at {best.uplift_time:.2f} s. {needed}{both}; this motion reaches {pga:.3g} g."
     factor = shaking.margin.uplift
     weak = pga < least * content.mechanism.gravity / STANDARD_GRAVITY
@@ -188,10 +188,8 @@ def _overturning(shaking: Shaking) -> str:
 
 def _fate(run: History, *, capital: bool = False) -> str:
     if run.overturned:
-        sense = f", {SENSE[run.fell_to]}" if run.fell_to is not None else ""
-        time = f" at {run.overturning_time:.2f} s" if run.overturning_time is not None else ""
-        said = f"yes, it overturns{sense}{time}"
-    elif run.peak_ratio:
+        said = f"yes, it overturns, {SENSE[Direction(run.fell_to)]} at {run.overturning_time:.2f} s"
+    elif run.lifted:
         said = f"no, it rocks to {_share(run.peak_ratio)} of the critical rotation"
     else:
         said = f"no, it {names.NO_UPLIFT}"
@@ -205,8 +203,8 @@ def _way(polarity: int) -> str:
 def _closeness(content: Content, shaking: Shaking) -> str:
     best, found = shaking.histories["nonlinear"], shaking.margin
     said = []
-    if best.peak_ratio:
-        turned = {Direction.POSITIVE: best.peak_positive or 0.0, Direction.NEGATIVE: best.peak_negative or 0.0}
+    if best.peak_ratio > 0:
+        turned = {Direction.POSITIVE: best.peak_positive, Direction.NEGATIVE: best.peak_negative}
         side = max(turned, key=lambda each: turned[each] / content.equivalence[each].phi_cr)
         said.append(
             f"It turns by at most {degrees(turned[side]):.3g}° {SENSE[side]}. That is {_share(best.peak_ratio)} of the "
@@ -245,7 +243,7 @@ def _doubts(shaking: Shaking) -> list[str]:
     said = [f"{each.text[0].upper()}{each.text[1:]}." for each in shaking.doubts]
     if _close(shaking):
         said.append("The result is close to the other outcome. Do not rest a decision on this one computation.")
-    if any(run.outcome is Outcome.STILL_ROCKING for run in shaking.histories.values()):
+    if any(run.still_rocking for run in shaking.histories.values()):
         said.append("A model is still rocking long after the motion has ended; it is certain not to overturn.")
     factor = abs(shaking.given.factor)
     if factor == 0:
@@ -272,7 +270,8 @@ def _close(shaking: Shaking) -> bool:
 
 
 def _worst_ratio(shaking: Shaking) -> float:
-    return shaking.histories["nonlinear"].peak_ratio or 0.0
+    best = shaking.histories["nonlinear"]
+    return 0.0 if best.overturned else best.peak_ratio
 
 
 def alone(shaking: Shaking) -> str:

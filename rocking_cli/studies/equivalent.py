@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from math import isnan, nan, pi
 from typing import Literal
 
 import numpy as np
@@ -15,6 +15,7 @@ from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism,
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import ModelName, build_model, linear_model
+from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import CLOSE
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -77,8 +78,8 @@ class EquivalentResponses:
         1, or -1 for reversed pulses.
     direction : Direction
         The direction that the pulse lifts first.
-    linear_peak : float or None
-        Largest phi/phi_cr of the linear block that all share; 0 if it does not uplift, None if it overturns.
+    alone : Outcome
+        What becomes of the linear block that all share: exactly, where the pulse has an exact answer.
     linear : History
         The motion of that block, under the first structure's pulse.
     tau : ndarray
@@ -91,21 +92,20 @@ class EquivalentResponses:
     kappa: Literal[1, 2]
     polarity: int
     direction: Direction
-    linear_peak: float | None
+    alone: OneOutcome
     linear: History
     tau: Reals
 
     @property
-    def spread(self) -> float | None:
-        """Largest minus smallest phi/phi_cr; None if any structure overturns."""
+    def spread(self) -> float:
+        """Largest minus smallest phi/phi_cr; NaN if any structure overturns."""
         peaks = [each.history.peak_ratio for each in self.members]
-        known = [peak for peak in peaks if peak is not None]
-        return max(known) - min(known) if len(known) == len(peaks) else None
+        return float(np.ptp(peaks))
 
     @property
-    def relative_spread(self) -> float | None:
-        """The spread over the linear peak; None if anything overturns, or the linear block does not uplift."""
-        return self.spread / self.linear_peak if self.spread is not None and self.linear_peak else None
+    def relative_spread(self) -> float:
+        """The spread over the linear peak; NaN if anything overturns, or the linear block does not uplift."""
+        return self.spread / self.alone.peak_ratio if self.alone.peak_ratio > 0 else nan
 
     @property
     def one_eta(self) -> bool:
@@ -163,15 +163,14 @@ def equivalent(
     both = replace(block, eta=members[0].eta)
     linear = linear_model("linear block", scaling, (both, both), mechanisms[0].gravity)
     history = follow(linear, ground, tail=_tail(pulse, block.p))
-    peak = history.peak_ratio
+    alone: OneOutcome = history
     if pulse.segments():  # exact, where the history is that of the sampled pulse
-        answer = exact_response(
+        alone = exact_response(
             Equivalence(both, both), pulse, kappa=kappa, gravity=mechanisms[0].gravity, polarity=polarity
         )
-        peak = answer.peak_ratio
     longest = max(len(run.time) for run in [history, *(each.history for each in members)])
     tau = ground.kept.dt * block.p * np.arange(longest, dtype=np.float64)
-    return EquivalentResponses(tuple(members), a, omega, kappa, polarity, direction, peak, history, tau)
+    return EquivalentResponses(tuple(members), a, omega, kappa, polarity, direction, alone, history, tau)
 
 
 def _name(mechanism: Mechanism) -> str:
@@ -246,15 +245,15 @@ def judge(found: EquivalentResponses) -> list[str]:
     """
     said = []
     fallen = [each for each in found.members if each.history.overturned]
-    peaks = {each.name: each.history.peak_ratio or 0.0 for each in found.members if not each.history.overturned}
+    peaks = {each.name: each.history.peak_ratio for each in found.members if not each.history.overturned}
     linear = (
         names.OVERTURNS
-        if found.linear_peak is None
-        else f"{names.ROCKS} to {found.linear_peak:.4g}"
-        if found.linear_peak
+        if found.alone.overturned
+        else f"{names.ROCKS} to {found.alone.peak_ratio:.4g}"
+        if found.alone.peak_ratio
         else names.NO_UPLIFT
     )
-    if not fallen and not any(peaks.values()) and found.linear_peak == 0:
+    if not fallen and not any(peaks.values()) and found.alone.peak_ratio == 0:
         return [f"The linear block {names.NO_UPLIFT} (a = {found.a:.4g}, uplift needs a > 1), nor does any structure."]
     if not peaks:
         said.append(f"All overturn; the linear block {linear}.")
@@ -264,17 +263,16 @@ def judge(found: EquivalentResponses) -> list[str]:
             f"Here the equivalence breaks: {who} overturn{'s' if len(fallen) == 1 else ''}, the rest not; "
             f"the linear block {linear}."
         )
-    elif found.spread is not None:
-        part = "" if found.relative_spread is None else f", {100 * found.relative_spread:.2g} % of it"
+    else:
+        part = "" if isnan(found.relative_spread) else f", {100 * found.relative_spread:.2g} % of it"
         said.append(f"The linear block {linear}; the structures differ by {found.spread:.3g}{part}.")
-        if found.relative_spread is None:
-            what = f"{names.OVERTURNS} and none of the structures does" if found.linear_peak is None else (
+        if isnan(found.relative_spread):
+            what = f"{names.OVERTURNS} and none of the structures does" if found.alone.overturned else (
                 f"{names.NO_UPLIFT} and a structure does"
             )  # fmt: skip
             said.append(f"The linear block {what}: here the equivalence breaks.")
         elif found.relative_spread > FAR:
-            middle = found.linear_peak or 0.0
-            far = max(peaks, key=lambda name: abs(peaks[name] - middle))
+            far = max(peaks, key=lambda name: abs(peaks[name] - found.alone.peak_ratio))
             said.append(f"Here the equivalence breaks: {far} is the farthest from the linear block.")
         else:
             how = "" if found.relative_spread <= NEAR else "approximately "

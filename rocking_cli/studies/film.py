@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import isnan
 from typing import Any
 
 import numpy as np
@@ -48,7 +49,7 @@ class Film:
     def end(self) -> float:
         """When there is nothing more to see [s]."""
         last = float(self.history.time[self._moving - 1])
-        if self.history.overturned or self.history.uplift_time is None:
+        if self.history.overturned or isnan(self.history.uplift_time):
             return last
         return min(last, self.history.end_time + AFTER)
 
@@ -56,7 +57,7 @@ class Film:
     def start(self) -> float:
         """When there begins to be something to see [s]."""
         first = self.history.uplift_time
-        return 0.0 if first is None else max(0.0, first - BEFORE)
+        return 0.0 if isnan(first) else max(0.0, first - BEFORE)
 
     @property
     def verdict(self) -> str:

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.batch import Responses, Runs, respond_many
+from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL, History
 from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import percent
@@ -183,7 +184,7 @@ def severity(history: History, near: Neighbours | None = None) -> Severity:
 
     Without neighbours the first two are 0; a peak is that over the critical rotation, infinite if it overturns.
     """
-    itself = np.inf if history.overturned else history.peak_ratio or 0.0
+    itself = np.inf if history.overturned else history.peak_ratio
     return (near.overturned, near.peak_ratio[1], itself) if near is not None else (0.0, 0.0, itself)
 
 
@@ -213,7 +214,7 @@ def governing(severities: Mapping[str, Severity]) -> str:
 
 def follow(
     models: list[Model], motions: list[GroundMotion | None], runs: Runs, *, release: Reals | None = None, **how: object
-) -> Responses:
+) -> Outcomes:
     """`respond_many`, to the final peaks; a motion that cannot be followed is an error."""
     found = respond_many(models, motions, runs, release=release, only_peaks=True, **how)  # type: ignore[arg-type]
     if found.failed.any():

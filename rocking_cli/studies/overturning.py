@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.dynamics.outcome import OUTCOME, Outcome, Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
@@ -61,10 +62,8 @@ class OverturningMap:
         omega_g/p of the columns.
     a : ndarray, shape (m,)
         a_g/(g lambda) of the rows.
-    peak_ratio : ndarray, shape (m, n)
-        Largest rotation over the critical one; 0 without uplift, NaN if it overturns.
-    impacts : ndarray of int, shape (m, n)
-        Number of impacts before it overturns; -1 if it does not.
+    outcome : Outcome
+        What becomes of it at each point, of shape (m, n).
     """
 
     structure: Shaken
@@ -72,8 +71,7 @@ class OverturningMap:
     polarities: tuple[int, ...]
     omega: Reals
     a: Reals
-    peak_ratio: Reals
-    impacts: Integers
+    outcome: Outcomes
 
     @property
     def periods(self) -> Reals:
@@ -88,9 +86,9 @@ class OverturningMap:
     @property
     def regions(self) -> Integers:
         """The `Region` of each point, shape (m, n)."""
-        stays = np.where(self.peak_ratio > 0, Region.ROCKS, Region.NO_UPLIFT)
-        falls = np.where(self.impacts == 0, Region.WITHOUT_IMPACT, Region.AFTER_IMPACT)
-        return np.where(self.impacts < 0, stays, falls)
+        stays = np.where(self.outcome.peak_ratio > 0, Region.ROCKS, Region.NO_UPLIFT)
+        falls = np.where(self.outcome.impact_count == 0, Region.WITHOUT_IMPACT, Region.AFTER_IMPACT)
+        return np.where(self.outcome.overturned, falls, stays)
 
     @property
     def shares(self) -> dict[Region, float]:
@@ -106,7 +104,7 @@ class OverturningMap:
     @property
     def safe_again(self) -> Reals:
         """The largest a that does not overturn above one that does, for each column; NaN if there is none."""
-        falls = self.impacts >= 0
+        falls = self.outcome.overturned
         above = np.maximum.accumulate(falls, axis=0) & ~falls
         last = len(self.a) - 1 - above[::-1].argmax(axis=0)
         return np.where(above.any(axis=0), self.a[last], np.nan)
@@ -160,8 +158,7 @@ def overturning_map(
         tuple(polarities),
         omega,
         a,
-        found.peak_ratio.reshape(plane),
-        found.impacts.reshape(plane),
+        Outcome(**{name: getattr(found, name).reshape(plane) for name in OUTCOME}),
     )
 
 
@@ -272,7 +269,7 @@ def _least(
             polarities=polarities,
             progress=progress if turn < PASSES else None,
         )
-        falls = (found.impacts >= 0).reshape(scan.shape)
+        falls = found.overturned.reshape(scan.shape)
         falls[:, -1] |= np.isfinite(high[left])  # the least so far
         some = falls.any(axis=1)
         left, scan, first = left[some], scan[some], falls[some].argmax(axis=1)
@@ -285,7 +282,7 @@ def _least(
         middle = (low + high) / 2
         fell = np.zeros(periods.size, dtype=np.bool_)
         amplitudes = (1 + middle[some]) * structure.unit
-        fell[some] = outcomes(structure, shape, periods[some], amplitudes, polarities=polarities).impacts >= 0
+        fell[some] = outcomes(structure, shape, periods[some], amplitudes, polarities=polarities).overturned
         high, low = np.where(fell, middle, high), np.where(fell, low, middle)
     return (1 + high) * structure.unit
 

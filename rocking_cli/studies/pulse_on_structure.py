@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from math import pi
 from typing import Literal
 
@@ -19,51 +18,8 @@ from rocking_cli.excitation.pulses import Pulse
 KAPPAS: dict[ModelName, Literal[1, 2]] = {"linear1": 1, "linear2": 2}
 
 
-@dataclass(frozen=True)
-class Answer:
-    """What one model says."""
-
-    exact: bool
-    overturned: bool
-    overturning_direction: str | None
-    overturning_time: float | None
-    impacts_before_overturning: int | None
-    peak_positive: float | None
-    peak_negative: float | None
-    peak_ratio: float | None
-    uplift_time: float | None
-    first_impact: float | None
-    first_excursion: float | None
-    first_rebound: float | None
-    samples_per_period: int | None
-    over_nonlinear: float | None = None
-
-    @classmethod
-    def of_exact(cls, found: ExactResponse) -> Answer:
-        """From the exact response of an equivalent block."""
-        known = {name: value for name, value in vars(found).items() if name in cls.__dataclass_fields__}
-        direction = {None: None, 1: "positive", -1: "negative"}[found.fell_to]
-        return cls(exact=True, overturning_direction=direction, samples_per_period=None, **known)
-
-    @classmethod
-    def of_sampled(cls, found: SampledHistory) -> Answer:
-        """From a history under the sampled pulse."""
-        history: History = found.history
-        return cls(
-            exact=False,
-            overturned=history.overturned,
-            overturning_direction=history.fell_to.label if history.fell_to else None,
-            overturning_time=history.overturning_time,
-            impacts_before_overturning=history.impact_count if history.overturned else None,
-            peak_positive=history.peak_positive,
-            peak_negative=history.peak_negative,
-            peak_ratio=history.peak_ratio,
-            uplift_time=history.uplift_time,
-            first_impact=float(history.impacts[0, 0]) if len(history.impacts) else None,
-            first_excursion=None,
-            first_rebound=None,
-            samples_per_period=found.per_period,
-        )
+Answer = ExactResponse | SampledHistory
+"""Of a linear model, exactly; or by the history under the sampled pulse."""
 
 
 def sampled_histories(structure: Prepared, pulse: Pulse, polarity: int) -> dict[ModelName, SampledHistory]:
@@ -88,21 +44,17 @@ def answers(
     sampled : mapping of str to SampledHistory
         What `sampled_histories` gives for them.
     """
-    nonlinear = Answer.of_sampled(sampled["nonlinear"])
-    found: dict[str, Answer] = {}
+    gravity = structure.mechanism.gravity
+    found: dict[str, Answer] = {str(name): each for name, each in sampled.items()}
     for name, kappa in KAPPAS.items():
-        if name in sampled:
-            linear = Answer.of_sampled(sampled[name])
-        else:
-            gravity = structure.mechanism.gravity
-            exact = exact_response(structure.equivalence, pulse, kappa=kappa, gravity=gravity, polarity=polarity)
-            linear = Answer.of_exact(exact)
-        found[name] = replace(linear, over_nonlinear=_over(linear, nonlinear))
-    return {**found, "nonlinear": nonlinear}
+        if name not in sampled:
+            found[name] = exact_response(structure.equivalence, pulse, kappa=kappa, gravity=gravity, polarity=polarity)
+    return {name: found[name] for name in (*KAPPAS, "nonlinear")}
 
 
-def _over(answer: Answer, nonlinear: Answer) -> float | None:
-    return answer.peak_ratio / nonlinear.peak_ratio if answer.peak_ratio is not None and nonlinear.peak_ratio else None
+def outcome(answer: Answer) -> ExactResponse | History:
+    """What a model says became of the structure."""
+    return answer.history if isinstance(answer, SampledHistory) else answer
 
 
 def closed_forms(structure: Prepared, pulse: Pulse) -> dict[str, ClosedForm]:

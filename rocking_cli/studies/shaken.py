@@ -13,6 +13,7 @@ from rocking_cli.core import Direction, Equivalence, EquivalentBlock
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.model import Model, ModelName, linear_model
+from rocking_cli.dynamics.outcome import OUTCOME, Outcome, Outcomes
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
@@ -161,22 +162,6 @@ def weakest(equivalence: Equivalence, shape: Pulse, polarities: Sequence[int] = 
     return min(Direction, key=needed.__getitem__)
 
 
-@dataclass(frozen=True, eq=False)
-class Outcomes:
-    """What pulses do, one a place.
-
-    Parameters
-    ----------
-    peak_ratio : ndarray
-        Largest rotation over the critical one; 0 without uplift, NaN if it overturns.
-    impacts : ndarray of int
-        Number of impacts before it overturns; -1 if it does not.
-    """
-
-    peak_ratio: Reals
-    impacts: Integers
-
-
 def outcomes(
     structure: Shaken,
     shape: Pulse,
@@ -203,7 +188,7 @@ def outcomes(
 
     Returns
     -------
-    Outcomes
+    Outcome
         Of shape (n,).
 
     Notes
@@ -219,9 +204,7 @@ def outcomes(
     for polarity in others:
         other = follow(structure, shape, periods, amplitudes, polarity, progress)
         worse = _badness(other) > _badness(found)
-        found = Outcomes(
-            np.where(worse, other.peak_ratio, found.peak_ratio), np.where(worse, other.impacts, found.impacts)
-        )
+        found = Outcome(**{name: np.where(worse, getattr(other, name), getattr(found, name)) for name in OUTCOME})
     return found
 
 
@@ -239,7 +222,7 @@ def _exactly(
         progress=progress,
     )
     _check(structure, found.failed, periods, amplitudes)
-    return Outcomes(found.peak_ratio, found.impacts_before_overturning)
+    return found
 
 
 def _by_histories(
@@ -250,7 +233,7 @@ def _by_histories(
     runs = Runs.of(0, which, scale=amplitudes / shape.amplitude, polarity=polarity)
     found = respond_many([structure.model], motions, runs, only_peaks=True, progress=progress)
     _check(structure, found.failed, periods, amplitudes)
-    return Outcomes(found.peak_ratio, np.where(found.overturned, found.impact_count, -1))
+    return found
 
 
 def _check(structure: Shaken, failed: NDArray[np.bool_], periods: Reals, amplitudes: Reals) -> None:
@@ -264,4 +247,4 @@ def _check(structure: Shaken, failed: NDArray[np.bool_], periods: Reals, amplitu
 
 def _badness(each: Outcomes) -> Reals:
     """A number that grows from small peaks to overturning without impact."""
-    return np.where(each.impacts < 0, np.nan_to_num(each.peak_ratio), 1e9 - each.impacts)
+    return np.where(each.overturned, 1e9 - each.impact_count, np.nan_to_num(each.peak_ratio))

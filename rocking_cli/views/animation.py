@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from rocking_cli.core import Equivalence, Mechanism
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbours
-from rocking_cli.views.response import neighbours_data, restitution_data, restitution_used
+from rocking_cli.views.response import ending, neighbours_data, restitution_data, restitution_used
 from rocking_cli.views.view import View
 
 
@@ -25,7 +25,7 @@ def view(
         "name": mechanism.name,
         "record": film.motion.name,
         "model": history.model,
-        "outcome": history.outcome.name.lower(),
+        "outcome": ending(history),
         "peak_ratio": history.peak_ratio,
         "restitution": restitution_data(mechanism, blocks),
         "neighbours": neighbours_data(near) if near is not None else None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rocking_cli.names import NO_UPLIFT, OVERTURNS
+from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.studies.equivalent import EquivalentResponses
 from rocking_cli.views.view import Table, View
 
@@ -34,7 +34,7 @@ def view(found: EquivalentResponses, verdict: str) -> View:
             }
             for each in found.members
         ],
-        "linear_peak_ratio": found.linear_peak,
+        "linear_peak_ratio": found.alone.peak_ratio,
         "spread": found.spread,
         "relative_spread": found.relative_spread,
         "verdict": verdict,
@@ -45,11 +45,11 @@ def view(found: EquivalentResponses, verdict: str) -> View:
             f"{each.amplitude:.4g}",
             f"{each.pulse.period:.4g}",
             f"{each.eta:.4g}",
-            _peak(each.history.peak_ratio),
+            _peak(each.history),
         ]
         for each in found.members
     ]
-    rows.append(["linear block", "", "", f"{found.members[0].eta:.4g}", _peak(found.linear_peak)])
+    rows.append(["linear block", "", "", f"{found.members[0].eta:.4g}", _peak(found.alone)])
     heads = ["", "a_g [g]", "T [s]", "eta", "peak / phi_cr"]
     return View(data, [Table(title(found), heads, rows, numbers=(1, 2, 3, 4)), verdict])
 
@@ -59,10 +59,8 @@ def title(found: EquivalentResponses) -> str:
     return f"{found.members[0].pulse.title}, a = {found.a:.4g}, omega = {found.omega:.4g}"
 
 
-def _peak(ratio: float | None) -> str:
-    if ratio is None:
-        return OVERTURNS
-    return f"{ratio:.4g}" if ratio else NO_UPLIFT
+def _peak(outcome: OneOutcome) -> str:
+    return f"{outcome.peak_ratio:.4g}" if outcome.peak_ratio > 0 else outcome.words
 
 
 def table(found: EquivalentResponses) -> dict[str, Sequence[object]]:

@@ -45,7 +45,7 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
         Table("", heads, rows, numbers=range(1, 4)),
         f"Of the map: {shares}.",
     ]
-    if not (found.peak_ratio != 0).any():
+    if not (found.outcome.peak_ratio != 0).any():
         parts.append(f"No pulse of the map lifts it: the largest has a = {found.a.max():.4g}, uplift needs a > 1.")
     step = unit * (found.a[1] - found.a[0])
     parts.append(f"Amplitudes to a step of the map, {step:.2g}{'' if dimensionless else ' g'}.")
@@ -80,11 +80,12 @@ def map_table(found: OverturningMap, mechanism: Mechanism | None) -> dict[str, S
             "period [s]": found.periods[column].tolist(),
             "acceleration [g]": found.accelerations[row].tolist(),
         }
-    impacts = found.impacts.ravel().tolist()
+    outcome = found.outcome
+    before = zip(outcome.overturned.ravel().tolist(), outcome.impact_count.ravel().tolist(), strict=True)
     return result | {
         "outcome": [Region(region).label for region in found.regions.ravel().tolist()],
-        "peak phi/phi_cr": found.peak_ratio.ravel().tolist(),
-        "impacts before overturning": [count if count >= 0 else "" for count in impacts],
+        "peak phi/phi_cr": outcome.peak_ratio.ravel().tolist(),
+        "impacts before overturning": [count if falls else "" for falls, count in before],
     }
 
 

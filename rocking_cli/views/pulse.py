@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from math import isnan
 from typing import Any
 
 from rocking_cli import names
-from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm, ExactPulse
+from rocking_cli.dynamics.exact import ExactResponse
+from rocking_cli.dynamics.outcome import OneOutcome
+from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
 from rocking_cli.names import percent
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 YES_NO = {True: "yes", False: "no", None: ABSENT}
 
 
-def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | None, exact: ExactPulse) -> View:
+def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | None, exact: ExactResponse) -> View:
     """The closed form, of a shape that has one, beside the exact answer."""
     data = {
         "shape": shape,
         "a": a,
         "omega": omega,
         "eta": eta,
-        "closed_form": None if closed is None else closed_data(closed, exact.first_rebound, exact.max_ratio),
-        "exact": asdict(exact),
+        "closed_form": None if closed is None else closed_data(closed, exact),
+        "exact": exact_data(exact),
     }
     title = "Full sine" if shape == "sine" else shape.replace("_", " ").capitalize()
     table = Table(
@@ -33,23 +36,23 @@ def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | No
     return View(data, [table, _verdict(a, closed, exact)])
 
 
-def closed_data(closed: ClosedForm, first_rebound: float | None, peak: float | None) -> dict[str, Any]:
+def closed_data(closed: ClosedForm, exact: ExactResponse) -> dict[str, Any]:
     """The closed form, why it cannot be used where it cannot, and by how much it misses two exact peaks."""
     return {
         **asdict(closed),
         "valid": closed.valid,
         "reason": closed.reason,
-        "off_first_rebound": closed.off(first_rebound),
-        "off_peak_ratio": closed.off(peak),
+        "off_first_rebound": closed.off(exact.first_rebound),
+        "off_peak_ratio": closed.off(exact.peak_ratio),
     }
 
 
-def how_far_off(closed: ClosedForm, peak: float | None, *, overturns: bool) -> str:
+def how_far_off(closed: ClosedForm, exact: ExactResponse) -> str:
     """What Eq. 41 says beside the exact answer, after what it may be used for; nothing where they agree."""
-    printed = closed.printed_ratio
+    printed, overturns, peak = closed.printed_ratio, exact.overturned, exact.peak_ratio
     if closed.valid and closed.overturns != overturns:
         return f": by Eq. 41 it {_fate(closed.overturns)}, exactly it {_fate(overturns)}"
-    if overturns or peak is None:
+    if overturns:
         return "" if printed is None else f": Eq. 41 would give {printed:.4g}, and exactly it {_fate(overturns)}"
     if printed is None:
         return "" if closed.valid else f": Eq. 41 gives no rotation here, the exact one is {peak:.4g}"
@@ -74,40 +77,61 @@ def _closed_rows(closed: ClosedForm) -> list[list[str]]:
     ]
 
 
-def _exact_rows(exact: ExactPulse) -> list[list[str]]:
+def exact_data(exact: ExactResponse) -> dict[str, Any]:
+    """The exact answer; what comes after uplift is counted from there."""
+    return {
+        "max_ratio": exact.peak_ratio,
+        "first_excursion": exact.first_excursion,
+        "first_rebound": exact.first_rebound,
+        "overturns": exact.overturned,
+        "impacts_before_overturning": impacts_before(exact),
+        "first_impact": exact.first_impact - exact.uplift_time,
+        "impact_during_pulse": exact.first_impact < exact.pulse_end,
+        "uplift": exact.uplift_time,
+        "pulse_end": exact.pulse_end - exact.uplift_time,
+    }
+
+
+def _exact_rows(exact: ExactResponse) -> list[list[str]]:
     return [
-        ["exact max ratio", number(exact.max_ratio), "largest rotation over phi_cr"],
+        ["exact max ratio", number(exact.peak_ratio), "largest rotation over phi_cr"],
         ["  first excursion", number(exact.first_excursion), "peak before the first impact"],
         ["  first rebound", number(exact.first_rebound), "peak after it"],
-        ["  overturns", YES_NO[exact.overturns], impacts(exact.impacts_before_overturning)],
-        ["  uplift", number(exact.uplift), "tau from the start of the pulse"],
-        ["  end of pulse", number(exact.pulse_end), "tau from uplift"],
-        ["  first impact", number(exact.first_impact), "tau from uplift"],
+        ["  overturns", YES_NO[exact.overturned], after_impacts(exact)],
+        ["  uplift", number(exact.uplift_time), "tau from the start of the pulse"],
+        ["  end of pulse", number(exact.pulse_end - exact.uplift_time), "tau from uplift"],
+        ["  first impact", number(exact.first_impact - exact.uplift_time), "tau from uplift"],
     ]
 
 
-def impacts(count: int | None) -> str:
-    """After how many it overturns, in words."""
-    return (
-        "" if count is None else "without impact" if count == 0 else f"after {count} impact{'s' if count > 1 else ''}"
-    )
+def impacts_before(outcome: OneOutcome) -> int | None:
+    """Number of impacts before it overturns; None if it does not."""
+    return outcome.impact_count if outcome.overturned else None
 
 
-def _verdict(a: float, closed: ClosedForm | None, exact: ExactPulse) -> str:
+def after_impacts(outcome: OneOutcome) -> str:
+    """After how many it overturns, in words; nothing if it does not."""
+    count = impacts_before(outcome)
+    if count is None:
+        return ""
+    return "without impact" if count == 0 else f"after {count} impact{'s' if count > 1 else ''}"
+
+
+def _verdict(a: float, closed: ClosedForm | None, exact: ExactResponse) -> str:
     if a <= 1:
         return f"The linear block {names.NO_UPLIFT}: a <= 1."
     fate = (
-        f"{names.OVERTURNS} {impacts(exact.impacts_before_overturning)}"
-        if exact.overturns
-        else f"{names.ROCKS} to {exact.max_ratio:.4g} of its critical rotation"
+        f"{names.OVERTURNS} {after_impacts(exact)}"
+        if exact.overturned
+        else f"{names.ROCKS} to {exact.peak_ratio:.4g} of its critical rotation"
     )
     if closed is None:
         trust = "There is no closed form for this shape: Eqs. 41-42 are for a full sine"
     else:
         use = "All conditions hold, the closed form can be used"
         trust = use if closed.valid else f"Do not use the closed form, {closed.reason}"
-        if closed.valid and (exact.first_excursion or 0) > 1 and exact.first_rebound is None:
+        if closed.valid and exact.first_excursion > 1 and isnan(exact.first_rebound):
             trust += "; the block passes its critical rotation before its first impact"
         else:
-            trust += how_far_off(closed, exact.max_ratio, overturns=exact.overturns)
+            trust += how_far_off(closed, exact)
     return f"The linear block {fate}. {trust}."

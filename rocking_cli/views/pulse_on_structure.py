@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
-from math import degrees
+from math import nan
+from typing import Any
 
 from rocking_cli import names
+from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
+from rocking_cli.dynamics.exact import ExactResponse
+from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
+from rocking_cli.dynamics.sampled_pulse import SampledHistory
 from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
-from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, scaled
-from rocking_cli.views.pulse import YES_NO, closed_data, how_far_off, impacts
+from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
+from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
 from rocking_cli.views.response import pulse_data, restitution_data, restitution_used
-from rocking_cli.views.view import ABSENT, Table, View, heading, number
+from rocking_cli.views.view import Table, View, heading, in_degrees, number
 
 
 def view(
@@ -40,7 +44,7 @@ def view(
     seen = {label: scaled(mechanism, block, pulse) for label, block in blocks.items()}
     polarity, first = next(iter(answers.items()))
     each = {
-        str(sign): {"responses": {name: asdict(answer) for name, answer in found.items()}}
+        str(sign): {"responses": {name: _data(answer, found) for name, answer in found.items()}}
         for sign, found in answers.items()
     }
     data = {
@@ -48,9 +52,7 @@ def view(
         "pulse": {**pulse_data(pulse), "polarity": polarity if len(answers) == 1 else "both"},
         "restitution": restitution_data(mechanism, equivalence),
         "directions": seen,
-        "closed_form": {
-            name: closed_data(form, first[name].first_rebound, first[name].peak_ratio) for name, form in closed.items()
-        }
+        "closed_form": {name: closed_data(form, exact) for name, (form, exact) in _beside(closed, first).items()}
         or None,
         **(each.popitem()[1] if len(each) == 1 else {"polarities": each}),
     }
@@ -77,21 +79,45 @@ def view(
     return View(data, [*parts, restitution_used(mechanism, equivalence)])
 
 
+def _data(answer: Answer, answers: Mapping[str, Answer]) -> dict[str, Any]:
+    found = outcome(answer)
+    return {
+        "exact": isinstance(answer, ExactResponse),
+        "overturned": found.overturned,
+        "overturning_direction": Direction(found.fell_to).label if found.overturned else None,
+        "overturning_time": found.overturning_time,
+        "impacts_before_overturning": impacts_before(found),
+        "peak_positive": found.peak_positive,
+        "peak_negative": found.peak_negative,
+        "peak_ratio": found.peak_ratio,
+        "uplift_time": found.uplift_time,
+        "first_impact": found.first_impact,
+        "first_excursion": found.first_excursion if isinstance(found, ExactResponse) else None,
+        "first_rebound": found.first_rebound if isinstance(found, ExactResponse) else None,
+        "samples_per_period": answer.per_period if isinstance(answer, SampledHistory) else None,
+        "over_nonlinear": _over_nonlinear(answer, answers),
+    }
+
+
+def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
+    """The peak of a linear model over that of the nonlinear one; NaN where either has none."""
+    best = answers["nonlinear"]
+    peak = outcome(best).peak_ratio
+    return outcome(answer).peak_ratio / peak if answer is not best and peak > 0 else nan
+
+
 def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
-    found = list(answers.values())
-
-    def in_degrees(phi: float | None) -> str:
-        return ABSENT if phi is None else number(degrees(phi), 5)
-
+    found = [outcome(each) for each in answers.values()]
+    exact = [isinstance(each, ExactResponse) for each in found]
     rows = [
-        ["pulse", *("exact" if each.exact else "sampled" for each in found), ""],
-        ["outcome", *(_outcome(each) for each in found), ""],
+        ["pulse", *("exact" if each else "sampled" for each in exact), ""],
+        ["outcome", *(_ends(each) for each in found), ""],
         ["peak / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
-        ["  over nonlinear", *(number(each.over_nonlinear, 5) for each in found), ""],
+        ["  over nonlinear", *(number(_over_nonlinear(each, answers), 5) for each in answers.values()), ""],
         ["peak, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
         ["peak, anticlockwise", *(in_degrees(each.peak_negative) for each in found), "deg"],
-        ["first excursion", *(number(each.first_excursion, 5) for each in found), ""],
-        ["first rebound", *(number(each.first_rebound, 5) for each in found), ""],
+        ["first excursion", *(number(_data(each, answers)["first_excursion"], 5) for each in answers.values()), ""],
+        ["first rebound", *(number(_data(each, answers)["first_rebound"], 5) for each in answers.values()), ""],
         ["uplift", *(number(each.uplift_time, 5) for each in found), "s"],
         ["first impact", *(number(each.first_impact, 5) for each in found), "s"],
         ["overturning time", *(number(each.overturning_time, 5) for each in found), "s"],
@@ -99,41 +125,41 @@ def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
     return Table(title, ["", *answers, "unit"], rows, numbers=range(1, len(found) + 1))
 
 
-def _outcome(answer: Answer) -> str:
-    said = names.outcome(uplifts=answer.uplift_time is not None, overturned=answer.overturned)
-    return f"{said}\n{impacts(answer.impacts_before_overturning)}" if answer.overturned else said
+def _ends(found: OneOutcome) -> str:
+    """How it ends; of one that is left rocking, that it rocks."""
+    said = names.outcome(uplifts=found.lifted, overturned=found.overturned)
+    return f"{said}\n{after_impacts(found)}" if found.overturned else said
 
 
 def _verdict(answers: Mapping[str, Answer]) -> str:
     """What the nonlinear history says, and how the linear ones compare."""
-    nonlinear = answers["nonlinear"]
-    if nonlinear.uplift_time is None:
+    nonlinear = outcome(answers["nonlinear"])
+    if not nonlinear.lifted:
         return f"The structure {names.NO_UPLIFT}."
     if nonlinear.overturned:
-        sense = next(sense for direction, sense in SENSE.items() if direction.label == nonlinear.overturning_direction)
-        said = f"The structure {names.OVERTURNS} {sense}, {impacts(nonlinear.impacts_before_overturning)}."
+        sense = SENSE[Direction(nonlinear.fell_to)]
+        said = f"The structure {names.OVERTURNS} {sense}, {after_impacts(nonlinear)}."
     else:
         said = f"The structure {names.ROCKS} to {nonlinear.peak_ratio:.4g} of its critical rotation."
     for name in KAPPAS:
-        answer = answers[name]
-        if answer.over_nonlinear is not None:
-            off = answer.over_nonlinear - 1
+        linear, over = outcome(answers[name]), _over_nonlinear(answers[name], answers)
+        if over >= 0:
+            off = over - 1
             said += f" {name} gives {percent(abs(off))} {'more' if off > 0 else 'less'}."
-        elif answer.overturned != nonlinear.overturned:
-            lifts = answer.uplift_time is not None
-            said += f" By {name} it {names.outcome(uplifts=lifts, overturned=answer.overturned)}."
+        elif linear.overturned != nonlinear.overturned:
+            said += f" By {name} it {names.outcome(uplifts=linear.lifted, overturned=linear.overturned)}."
     return said
 
 
 def _closed_parts(closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer]) -> Iterator[Table | str]:
     """The closed form, its conditions, and how far to trust it."""
     forms = list(closed.values())
-    beside = [(form, answers[name]) for name, form in closed.items()]
+    beside = _beside(closed, answers)
     rows = [
         ["D0* (Eq. 42)", *(number(form.D0) for form in forms)],
         ["max ratio (Eq. 41)", *(number(form.max_ratio) for form in forms)],
-        ["  minus exact first rebound", *(number(form.off(exact.first_rebound), 3) for form, exact in beside)],
-        ["  minus exact peak", *(number(form.off(exact.peak_ratio), 3) for form, exact in beside)],
+        ["  minus exact first rebound", *(number(form.off(exact.first_rebound), 3) for form, exact in beside.values())],
+        ["  minus exact peak", *(number(form.off(exact.peak_ratio), 3) for form, exact in beside.values())],
         ["overturns after one impact", *(YES_NO[form.overturns] for form in forms)],
     ]
     rows += [
@@ -143,16 +169,24 @@ def _closed_parts(closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer
     yield Table("Closed form of a full sine", ["", *closed], rows, numbers=range(1, len(forms) + 1))
     for place, condition in enumerate(CONDITIONS.values(), start=1):
         yield f"{place}: {condition}"
-    for name, form in closed.items():
-        yield f"{name}: {_trust(form, answers[name])}"
+    for name, (form, exact) in beside.items():
+        yield f"{name}: {_trust(form, exact)}"
 
 
-def _trust(closed: ClosedForm, exact: Answer) -> str:
+def _beside(
+    closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer]
+) -> dict[str, tuple[ClosedForm, ExactResponse]]:
+    """Each closed form with the exact answer that it stands for: a full sine has one."""
+    exact = {name: each for name, each in answers.items() if isinstance(each, ExactResponse)}
+    return {name: (form, exact[name]) for name, form in closed.items()}
+
+
+def _trust(closed: ClosedForm, exact: ExactResponse) -> str:
     if not closed.conditions["uplift"]:
         return f"it {names.NO_UPLIFT} (a <= 1)."
     use = "all conditions hold, the closed form can be used"
     said = use if closed.valid else f"do not use the closed form, {closed.reason}"
-    return f"{said}{how_far_off(closed, exact.peak_ratio, overturns=exact.overturned)}."
+    return f"{said}{how_far_off(closed, exact)}."
 
 
 def _why_no_closed_form(pulse: Pulse) -> str:

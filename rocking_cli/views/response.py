@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
-from math import degrees, isinf
+from math import isinf
 from typing import Any
 
 from rocking_cli.core import Direction, Equivalence, Mechanism
 from rocking_cli.core.restitution import restitution_in_words
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import SENSE, agreements, governs, verdict
 from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -18,7 +19,7 @@ from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Answer, Histories, Question, Runs
-from rocking_cli.views.view import ABSENT, Table, View, number
+from rocking_cli.views.view import Table, View, in_degrees, number
 
 FIRST = 12  # impacts of a model in its table; the data have all
 
@@ -129,6 +130,11 @@ def restitution_used(mechanism: Mechanism, etas: Equivalence) -> str:
     return restitution_in_words([etas[each].eta for each in Direction], given=mechanism.restitution is not None)
 
 
+def ending(outcome: OneOutcome) -> str:
+    """How a motion ended, as programs read it."""
+    return "overturned" if outcome.overturned else "still_rocking" if outcome.still_rocking else "at_rest"
+
+
 def _history_data(history: History, etas: Equivalence | None) -> dict[str, Any]:
     found: dict[str, Any] = {
         "peak_positive": history.peak_positive,
@@ -136,10 +142,10 @@ def _history_data(history: History, etas: Equivalence | None) -> dict[str, Any]:
         "peak_ratio": history.peak_ratio,
         "overturned": history.overturned,
         "overturning_time": history.overturning_time,
-        "overturning_direction": history.fell_to.label if history.fell_to else None,
+        "overturning_direction": Direction(history.fell_to).label if history.overturned else None,
         "uplift_time": history.uplift_time,
         "impacts": history.impact_count,
-        "outcome": history.outcome.name.lower(),
+        "outcome": ending(history),
         "contact_lost": history.contact_lost,
     }
     if etas is not None:
@@ -224,9 +230,6 @@ def _tables(
 def _table(title: str, histories: Histories) -> Table:
     runs = list(histories.values())
 
-    def in_degrees(phi: float | None) -> str:
-        return ABSENT if phi is None else number(degrees(phi), 5)
-
     rows = [
         ["outcome", *(run.words for run in runs), ""],
         ["peak / phi_cr", *(number(run.peak_ratio, 5) for run in runs), ""],
@@ -257,5 +260,5 @@ def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
         return f"By the {model} model it {whole.words} under the record; under its pulse alone it {alone.words}."
     if not whole.peak_ratio:
         return f"By the {model} model it {whole.words} under the record."
-    share = 100 * (alone.peak_ratio or 0.0) / whole.peak_ratio
+    share = 100 * alone.peak_ratio / whole.peak_ratio
     return f"By the {model} model the pulse alone rocks it to {share:.3g} % of the peak under the record."

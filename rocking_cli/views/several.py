@@ -85,4 +85,4 @@ def _fate(history: History) -> str:
     """A cell: the peak, or that it overturns or does not uplift."""
     if history.overturned:
         return "overturns"
-    return "no uplift" if history.uplift_time is None and not history.peak_ratio else f"{history.peak_ratio:.4g}"
+    return f"{history.peak_ratio:.4g}" if history.lifted else "no uplift"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from math import degrees, isnan
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -61,4 +62,9 @@ def heading(mechanism: Mechanism) -> str:
 
 def number(value: float | None, digits: int = 6) -> str:
     """A number as people read it; a dash where there is none."""
-    return ABSENT if value is None else f"{value:.{digits}g}"
+    return ABSENT if value is None or isnan(value) else f"{value:.{digits}g}"
+
+
+def in_degrees(phi: float) -> str:
+    """A rotation [rad] as people read it [deg]; a dash where there is none."""
+    return number(degrees(phi), 5)

@@ -149,7 +149,7 @@ COLUMNS = tuple(each.name for each in fields(Rows))
 
 
 @dataclass(frozen=True, eq=False)
-class Outcomes:
+class Endings:
     """What fragility asks of finished runs, one a place: some of the columns of `Rows`, and whether they uplift."""
 
     id: Integers
@@ -157,9 +157,9 @@ class Outcomes:
     peak_ratio: Reals
     uplifts: NDArray[np.bool_]
 
-    def select(self, which: NDArray[np.bool_]) -> Outcomes:
+    def select(self, which: NDArray[np.bool_]) -> Endings:
         """Some of them."""
-        return Outcomes(self.id[which], self.outcome[which], self.peak_ratio[which], self.uplifts[which])
+        return Endings(self.id[which], self.outcome[which], self.peak_ratio[which], self.uplifts[which])
 
 
 class Store:
@@ -530,9 +530,9 @@ class Store:
         blocks = list(self._blocks(first, stop)) or [_rows([])]
         return Rows(*(np.concatenate([getattr(each, name) for each in blocks]) for name in COLUMNS))
 
-    def outcomes(
+    def endings(
         self, first: int, stop: int, counted: Callable[[int], None] = lambda numbers: None
-    ) -> Iterator[Outcomes]:
+    ) -> Iterator[Endings]:
         """How the finished runs with numbers from `first` to before `stop` end, a block at a time.
 
         Parameters
@@ -547,12 +547,12 @@ class Store:
             end = min(start + READ, stop)
             if self.damaged or self.unreadable:
                 rows = self._read(start, end)[0]
-                yield Outcomes(rows.id, rows.outcome, rows.peak_ratio, np.isfinite(rows.uplift_time))
+                yield Endings(rows.id, rows.outcome, rows.peak_ratio, np.isfinite(rows.uplift_time))
             else:  # all have been held against their checksums
                 found = self._connection.execute(query, (start, end)).fetchall()
                 table = np.array(found, dtype=np.float64).reshape(-1, 4).T
                 whole = table[:2].astype(np.int64)
-                yield Outcomes(whole[0], whole[1], table[2], np.isfinite(table[3]))
+                yield Endings(whole[0], whole[1], table[2], np.isfinite(table[3]))
             counted(end - start)
 
     def _blocks(self, first: int, stop: int) -> Iterator[Rows]:

@@ -12,7 +12,7 @@ from rocking_cli.studies.fragility.definition import OVERTURNING, SCALE, Limit
 from rocking_cli.studies.fragility.intensity import PGA, PGV, intensity, proportional
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
-from rocking_cli.studies.fragility.store import FAILED, STANDS, Outcomes, Store
+from rocking_cli.studies.fragility.store import FAILED, STANDS, Endings, Store
 from rocking_cli.studies.fragility.study import RESTITUTION
 
 OF_THE_MOTION = (PGA, PGV, SCALE)  # measures that do not ask what is shaken
@@ -186,7 +186,7 @@ def count(
     first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in limits if ladders}
     each = records * plan.block
     start = samples.start * each
-    for found in store.outcomes(start, samples.stop * each, counted):
+    for found in store.endings(start, samples.stop * each, counted):
         found = found.select(found.outcome != FAILED)
         sample, record, eta, level, polarity = plan.places(found.id)
         sample = sample - samples.start
@@ -203,7 +203,7 @@ def count(
     return Tally(plan, samples, runs, exceeding, Ladders(first, there) if ladders else None)
 
 
-def exceeds(found: Outcomes, limit: Limit) -> Bools:
+def exceeds(found: Endings, limit: Limit) -> Bools:
     """Which runs exceed a limit state."""
     overturned: Bools = found.outcome != STANDS
     if isinstance(limit, str):
@@ -220,7 +220,7 @@ def peaks(store: Store, plan: Plan, structure: str) -> Reals:
     each = records * plan.block
     table = np.full((len(samples), records, etas, levels, polarities), np.nan)
     there = np.zeros(table.shape, dtype=bool)
-    for found in store.outcomes(samples.start * each, samples.stop * each):
+    for found in store.endings(samples.start * each, samples.stop * each):
         found = found.select(found.outcome != FAILED)
         place = found.id - samples.start * each
         table.ravel()[place] = np.where(found.outcome == STANDS, found.peak_ratio, np.nan)

@@ -1,0 +1,83 @@
+"""What became of a motion, or of many: the one answer of every solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
+
+from rocking_cli import names
+
+if TYPE_CHECKING:  # numpy: who asks for one exact motion has not paid for it
+    import numpy as np
+    from numpy.typing import NDArray
+
+Flags = TypeVar("Flags")
+Counts = TypeVar("Counts")
+Numbers = TypeVar("Numbers")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Outcome(Generic[Flags, Counts, Numbers]):
+    """What became of a motion, each a number; or of many, each an ndarray of one shape.
+
+    What there is none of is NaN, of times and rotations; JSON has null for it.
+
+    Parameters
+    ----------
+    overturned, still_rocking, failed : bool
+        How it ended, if not at rest: it passed its critical rotation for good; it was left rocking, and will not
+        overturn; it could not be followed, and its other values mean nothing.
+    fell_to : int
+        Sign of the direction in which it overturned, 0 if it did not.
+    peak_positive, peak_negative : float
+        Largest rotation in either direction [rad], >= 0; NaN in a direction in which it overturned.
+    peak_ratio : float
+        Largest rotation over the critical rotation; 0 without uplift, NaN if it overturned.
+    overturning_time : float
+        When the rotation passed the critical one for good [s]; NaN if it did not, or this was not asked for.
+    uplift_time : float
+        The first uplift from rest [s]; NaN if there is none.
+    impact_count : int
+        Number of impacts: before it overturned; else up to the end of the motion, or to where it was left because
+        nothing could change any more.
+    end_time : float
+        When it came to rest for good, or was certain to overturn [s]; NaN if this was not asked for.
+    """
+
+    overturned: Flags
+    still_rocking: Flags
+    failed: Flags
+    fell_to: Counts
+    peak_positive: Numbers
+    peak_negative: Numbers
+    peak_ratio: Numbers
+    overturning_time: Numbers
+    uplift_time: Numbers
+    impact_count: Counts
+    end_time: Numbers
+
+    @property
+    def at_rest(self) -> Flags:
+        """Whether it came to rest in the end, or never lifted."""
+        left: Any = self.overturned | self.still_rocking | self.failed  # type: ignore[operator]
+        return left ^ True  # type: ignore[no-any-return]
+
+    @property
+    def lifted(self) -> Flags:
+        """Whether it moved at all: it uplifted, or was released from a tilt."""
+        return (self.uplift_time >= 0) | self.overturned | (self.peak_ratio > 0)  # type: ignore[operator, no-any-return]
+
+    @property
+    def words(self) -> str:
+        """How one motion ended, in the words of `rocking_cli.names`."""
+        return names.outcome(
+            uplifts=bool(self.lifted), overturned=bool(self.overturned), still_rocking=bool(self.still_rocking)
+        )
+
+
+OneOutcome: TypeAlias = "Outcome[bool, int, float]"
+"""Of one motion."""
+Outcomes: TypeAlias = "Outcome[NDArray[np.bool_], NDArray[np.int64], NDArray[np.float64]]"
+"""Of many motions, one a place."""
+
+OUTCOME = tuple(field.name for field in fields(Outcome))

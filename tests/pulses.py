@@ -1,0 +1,12 @@
+"""The exact answer to a pulse, as the data of `rocking pulse` have it: what there is none of is None."""
+
+from math import isnan
+from types import SimpleNamespace
+
+from rocking_cli.dynamics import pulse_response
+from rocking_cli.views.pulse import exact_data
+
+
+def exact_pulse(a, omega, eta, shape="sine"):
+    data = exact_data(pulse_response.exact_pulse(a, omega, eta, shape))
+    return SimpleNamespace(**{name: None if isnan(value or 0) else value for name, value in data.items()})
