@@ -35,6 +35,8 @@ KINDS: Mapping[str, Mapping[str, str]] = {
     },
     "density": {"kg/m3": "1", "t/m3": "1000", "g/cm3": "1000", "kg/dm3": "1000", "lb/ft3": "0.45359237/0.028316846592"},
     "weight density": {"N/m3": "1", "kN/m3": "1000", "lbf/ft3": "4.4482216152605/0.028316846592"},
+    "time": {"s": "1", "ms": "0.001", "min": "60"},
+    "velocity": {"m/s": "1", "cm/s": "0.01", "mm/s": "0.001", "in/s": "0.0254"},
     "angle": {"rad": "1", "deg": f"{PI}/180", "°": f"{PI}/180", "mrad": "0.001"},
 }
 STANDARD_GRAVITY = Decimal("9.80665")  # m/s2

@@ -329,7 +329,7 @@ class TestRespond:
             ("--polarity", "2", "'1', '-1'"),
             ("--release", "1.5", "between 0 and 1"),
             ("--release", "0", "between 0 and 1"),
-            ("--tail", "-1", "between 0 and 3600"),
+            ("--tail", "-1", "is not positive"),
             ("--dt", "0", "positive"),
             ("--units", "ft/s2", "gal"),
         ],
@@ -551,7 +551,7 @@ def test_the_default_block_is_a_structure():
 
 def test_the_units_offered_are_those_the_readers_know():
     """Written twice so that `--help` needs no numpy."""
-    from rocking_cli.cli.options import UNITS
+    from rocking_cli.cli.quantities import UNITS
     from rocking_cli.excitation.records import units
 
     assert set(UNITS) == set(units.UNITS)

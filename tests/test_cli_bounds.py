@@ -63,11 +63,11 @@ def test_an_arch_that_hung_is_refused(tmp_path):
 @pytest.mark.parametrize(
     "arguments",
     [
-        ("overturning", BLOCK, "--periods", "1e-300:1e300"),
-        ("overturning", BLOCK, "--periods", "0.2:1e7"),
+        ("overturning", BLOCK, "--period", "1e-300:1e300"),
+        ("overturning", BLOCK, "--period", "0.2:1e7"),
         ("overturning", "--omega", "1e-300:1e300"),
         ("overturning", "--a", "1:1e300"),
-        ("overturning", BLOCK, "--accelerations", "0.1g:1e300g"),
+        ("overturning", BLOCK, "--ag", "0.1g:1e300g"),
         ("spectrum", BLOCK, "--pulse", PULSE, "--sizes", "1e-300:1e300"),
         ("spectrum", BLOCK, "--pulse", PULSE, "--jobs", "100000000"),
         ("equivalent", BLOCK, BLOCK, "--ag", "1e300g", "--period", "1"),

@@ -103,7 +103,7 @@ def made(tmp_path):
 
 class TestInARecord:
     def test_json_has_every_shape_by_both_criteria(self, made):
-        data = run_json("record", made, "--pulse", "--scale", "2")
+        data = run_json("record", made, "--fit-pulse", "--scale", "2")
         assert list(data)[-2:] == ["warnings", "pulses"] and "pulses" not in run_json("record", made)
         assert list(data["pulses"]) == ["acceleration", "velocity"]
         motion = read_record(made).scaled(2)
@@ -122,12 +122,12 @@ class TestInARecord:
     @pytest.mark.parametrize("width", [40, 60, 80, 200])
     def test_the_tables_fit_the_terminal_and_say_what_is_maximised(self, width, made, monkeypatch):
         monkeypatch.setenv("COLUMNS", str(width))
-        text = run("record", made, "--pulse").stdout
+        text = run("record", made, "--fit-pulse").stdout
         rows = [line for line in text.splitlines() if not line.startswith("Energy captured")]
         assert max(map(len, rows)) <= max(width, 55)
         assert "fitted in acceleration" in " ".join(text.split()) and "fitted in velocity" in " ".join(text.split())
         assert "1 - sum (r - s)^2 / sum r^2" in text
-        for fits in run_json("record", made, "--pulse")["pulses"].values():
+        for fits in run_json("record", made, "--fit-pulse")["pulses"].values():
             for found in fits.values():
                 assert f"{100 * found['captured']:.1f}" in text
                 assert all(f"{found[key]:.4g}" in text for key in ("amplitude", "period", "start", "centre"))
@@ -135,18 +135,18 @@ class TestInARecord:
 
     def test_several_files_and_one_without_a_pulse(self, made, tmp_path):
         (tmp_path / "zero.csv").write_text("t,accel_g\n" + "".join(f"{k},0\n" for k in range(40)), encoding="utf-8")
-        result = CliRunner().invoke(main, ["record", "zero.csv", str(made), "--pulse", "--json"])
+        result = CliRunner().invoke(main, ["record", "zero.csv", str(made), "--fit-pulse", "--json"])
         assert result.exit_code == 5 and "zero throughout" in result.stderr
         assert json.loads(result.stdout)["pulses"]["velocity"]["sine"]["sign"] == -1
 
     def test_a_long_search_says_how_far_it_is(self, made, monkeypatch):
         monkeypatch.setattr("rocking_cli.cli.record.PATIENCE", float("inf"))
-        assert "fitted" not in run("record", made, "--pulse").stderr
+        assert "fitted" not in run("record", made, "--fit-pulse").stderr
         monkeypatch.setattr("rocking_cli.cli.record.PATIENCE", 0.0)
-        assert "made.csv: 3 of 6 pulses fitted" in run("record", made, "--pulse").stderr
+        assert "made.csv: 3 of 6 pulses fitted" in run("record", made, "--fit-pulse").stderr
 
     def test_the_picture_shows_the_best_of_each_criterion(self, made, tmp_path):
-        run("record", made, "--pulse", "--plot", "plot.png")
+        run("record", made, "--fit-pulse", "--plot", "plot.png")
         assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
         motion = read_record(made)
         fits = [fit_pulse(motion, "sine", "velocity"), fit_pulse(motion, "ricker", "acceleration")]
@@ -183,7 +183,7 @@ class TestWithPulse:
 
     def test_without_a_value_the_best_is_taken(self, made):
         data = run_json("respond", "--record", made, "--model", "linear1", "--with-pulse")
-        fits = run_json("record", made, "--pulse")["pulses"]["velocity"]
+        fits = run_json("record", made, "--fit-pulse")["pulses"]["velocity"]
         assert data["pulse"] == max(fits.values(), key=lambda fit: fit["captured"])
         assert list(data["pulse_responses"]) == ["linear1"]
 

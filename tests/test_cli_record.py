@@ -85,7 +85,7 @@ class TestWhatIsShown:
         data = run_json("record", "two.v2a", "--channel", "UP")
         assert (data["channel"], data["name"]) == ("UP", "two.v2a channel UP")
         assert " channel " in run("record", "two.v2a", "--channel", "2").stdout
-        run("record", "two.v2a", "--channel", "UP", "--to", "csv")
+        run("record", "two.v2a", "--channel", "UP", "--out", ".")
         assert (tmp_path / "two-UP.csv").exists()
 
 
@@ -159,7 +159,7 @@ class TestScaling:
         assert "accel.csv, accel.csv reversed" in text and "scaled by 1 -1" in text
         assert "one polarity" in run("record", ACCEL, "--polarity", "both", "--plot", "r.png", code=2).stderr
         shutil.copy(ACCEL, tmp_path / "a.AT2")
-        run("record", "a.AT2", "--polarity", "both", "--to", "csv")
+        run("record", "a.AT2", "--polarity", "both", "--out", ".")
         one, other = (read_record(tmp_path / f"{name}.csv").acceleration for name in ("a", "a-reversed"))
         assert (one == -other).all() and one.any()
 
@@ -191,12 +191,12 @@ class TestCleanFile:
     def test_it_goes_into_this_folder_and_its_path_is_said(self, tmp_path):
         source = tmp_path / "motion.txt"
         source.write_text("accel_g\n0\n0.1\n-0.3\n0\n", encoding="utf-8")
-        result = run("record", source, "--dt", "0.01", "--to", "csv", "--scale", "2")
+        result = run("record", source, "--dt", "0.01", "--out", ".", "--scale", "2")
         assert f"wrote {(tmp_path / 'motion.csv').resolve()}" in result.stderr
         assert (tmp_path / "motion.csv").read_text(encoding="utf-8").splitlines()[0] == "t [s],a [m/s2]"
         back, want = read_record(tmp_path / "motion.csv"), read_record(source, dt=0.01).scaled(2)
         assert back.dt == 0.01 and (back.acceleration == want.acceleration).all()
-        run("record", source, "--dt", "0.01", "--to", "csv")  # its own file may be renewed
+        run("record", source, "--dt", "0.01", "--out", ".")  # its own file may be renewed
 
     @settings(deadline=None)  # it writes files
     @given(
@@ -221,17 +221,17 @@ class TestCleanFile:
 
     def test_an_input_is_never_replaced(self, tmp_path):
         (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
-        assert "overwrite what is read" in run("record", "accel.csv", "--to", "csv", code=2).stderr
+        assert "overwrite what is read" in run("record", "accel.csv", "--out", ".", code=2).stderr
         assert (tmp_path / "accel.csv").read_bytes() == (EXAMPLES / "accel.csv").read_bytes()
 
     def test_a_file_of_somebody_else_is_never_replaced(self, tmp_path):
         (tmp_path / "accel.csv").write_text("precious\n", encoding="utf-8")
-        assert "did not write" in run("record", ACCEL, "--to", "csv", code=2).stderr
+        assert "did not write" in run("record", ACCEL, "--out", ".", code=2).stderr
         assert (tmp_path / "accel.csv").read_text(encoding="utf-8") == "precious\n"
 
     def test_two_records_of_one_name_are_refused(self, tmp_path):
         (tmp_path / "accel.AT2").write_bytes((EXAMPLES / "accel.csv").read_bytes())
-        assert "two records would be written" in run("record", ACCEL, "accel.AT2", "--to", "csv", code=2).stderr
+        assert "two records would be written" in run("record", ACCEL, "accel.AT2", "--out", ".", code=2).stderr
         assert [path.name for path in tmp_path.iterdir()] == ["accel.AT2"]
 
 

@@ -208,10 +208,10 @@ class TestCommand:
             ([BLOCK, WALL, "--ag", "0.6", "--period", "1"], "has no unit: give one of g, m/s2"),
             ([BLOCK, WALL, "--ag", "-1g", "--period", "1"], "is not positive"),
             ([BLOCK, WALL, "--ag", "0.6g", "--period", "0"], "is not positive"),
-            ([BLOCK, WALL, "--ag", "0.6g", "--period", "1ms"], "a period is in s"),
+            ([BLOCK, WALL, "--ag", "0.6g", "--period", "1kg"], "1kg is a mass, not a time"),
             ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--eta", "0"], "neither a number above 0"),
             ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--eta", "mine"], "neither a number above 0"),
-            ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--pulse", "sinus"], "did you mean sine?"),
+            ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--shape", "sinus"], "did you mean sine?"),
             ([BLOCK, "nowhere.yaml", "--ag", "0.6g", "--period", "1"], "no such file"),
         ],
     )

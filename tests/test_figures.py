@@ -79,7 +79,7 @@ def test_figure_15_block_and_symmetric_frame_do_the_same_and_the_others_nearly()
 
 
 def test_the_command_writes_a_picture_and_the_data(tmp_path):
-    result = run("figure", "3", "--folder", tmp_path / "new", "--format", "svg", "--json")
+    result = run("figure", "3", "--out", tmp_path / "new", "--format", "svg", "--json")
     (made,) = json.loads(result.stdout)["figures"]
     assert made["figure"] == 3
     assert (tmp_path / "new" / "figure3.svg").read_text(encoding="utf-8").startswith("<?xml")
@@ -91,7 +91,7 @@ def test_the_command_writes_a_picture_and_the_data(tmp_path):
 
 
 def test_figure_14_takes_a_record_and_no_other_does(tmp_path):
-    run("figure", "14", "--record", EXAMPLES / "accel.csv", "--folder", tmp_path)
+    run("figure", "14", "--record", EXAMPLES / "accel.csv", "--out", tmp_path)
     assert (tmp_path / "figure14.png").stat().st_size > 20_000
     assert "Figure 14" in run("figure", "3", "--record", EXAMPLES / "accel.csv", code=2).stderr
     assert "no such file" in run("figure", "14", "--record", tmp_path / "none", code=2).stderr

@@ -78,7 +78,7 @@ COMMANDS = {
     "draw": "draw S --plot out.svg",
     "error": "error S --plot out.svg",
     "record": "record R --plot out.svg",
-    "record and pulse": "record R --pulse --plot out.svg",
+    "record and pulse": "record R --fit-pulse --plot out.svg",
     "respond": "respond S --record R --plot out.svg --out out.csv",
     "spectrum": "spectrum S n.yaml --record R --sizes 1:3:3 --plot out.svg --out out.csv",
     "overturning": "overturning S n.yaml --compare --points 3 --plot out.svg",
@@ -114,7 +114,7 @@ def test_a_study_of_files_that_nobody_can_spell(hostile, tmp_path):
         "levels: {measure: PGA, least: 0.1, most: 1.5, count: 3}\n",
         encoding="utf-8",
     )
-    found = run("fragility", "st.yaml", "--pictures", "pictures")
+    found = run("fragility", "st.yaml", "--plot", "pictures")
     assert not HARMFUL.search(found.stdout + found.stderr)
     run("results", "st.db", "--out", "runs.csv")
     assert printable(hostile[1]) in (tmp_path / "runs.csv").read_text(encoding="utf-8")

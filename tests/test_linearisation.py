@@ -166,7 +166,7 @@ def test_the_directions_of_a_frame_differ_more_the_more_asymmetric_it_is():
 
 
 def test_the_command_gives_what_the_library_gives():
-    data = run_json("error", EXAMPLES / "frame.yaml", "--at", "0.3", "--at", "0.8", "--accel", "1.5")
+    data = run_json("error", EXAMPLES / "frame.yaml", "--at", "0.3", "--at", "0.8", "--a", "1.5")
     mechanism = load_structure(EXAMPLES / "frame.yaml")
     assert set(data["directions"]) == {"positive", "negative"}
     for direction in Direction:
@@ -212,7 +212,7 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
     file = tmp_path / "s.yaml"
     fields = structure.model_dump(exclude_none=True)
     file.write_text(json.dumps({"mechanism": structure.mechanism, **fields}), encoding="utf-8")
-    data = run_json("error", file, "--at", asked[0], "--accel", asked[1])
+    data = run_json("error", file, "--at", asked[0], "--a", asked[1])
     sides = data["directions"].values()
     said, names = data["verdict"], [name for name, _ in GRADES]
     found = {}
@@ -297,8 +297,8 @@ def test_it_draws(suffix, tmp_path):
 
 @pytest.mark.parametrize(
     ("option", "value", "words"),
-    [("--at", "1", "between 0 and 1"), ("--at", "0", "between 0 and 1"), ("--accel", "1", "above 1"),
-     ("--accel", "-2", "above 1"), ("--at", "x", "not a number"), ("--plot", "x.txt", "does not end")],
+    [("--at", "1", "between 0 and 1"), ("--at", "0", "between 0 and 1"), ("--a", "1", "above 1"),
+     ("--a", "-2", "above 1"), ("--at", "x", "not a number"), ("--plot", "x.txt", "does not end")],
 )  # fmt: skip
 def test_wrong_options_are_refused(option, value, words):
     assert words in run("error", EXAMPLES / "block.yaml", option, value, code=2).stderr
@@ -307,7 +307,7 @@ def test_wrong_options_are_refused(option, value, words):
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("name", ["block", "frame", "wall", "arch", "cone"])
 def test_the_ends_of_what_can_be_asked_are_answered(name):
-    ends = ["--at", "1e-6", "--at", "0.999999", "--accel", "1.000001", "--accel", "1e6"]
+    ends = ["--at", "1e-6", "--at", "0.999999", "--a", "1.000001", "--a", "1e6"]
     found = json.loads(run("error", EXAMPLES / f"{name}.yaml", *ends, "--json").stdout)
     assert found["verdict"]
 

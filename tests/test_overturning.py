@@ -327,8 +327,8 @@ class TestShape:
 class TestCommand:
     def test_a_map_in_every_form(self):
         result = run(
-            "overturning", FILES[0], "--points", 24, "--out", "map.csv", "--plot", "map.png", "--periods", "0.3:2.5",
-            "--accelerations", "0.1g:2g", "--json",
+            "overturning", FILES[0], "--points", 24, "--out", "map.csv", "--plot", "map.png", "--period", "0.3:2.5",
+            "--ag", "0.1g:2g", "--json",
         )  # fmt: skip
         (line,) = result.stdout.splitlines()
         data = json.loads(line)
@@ -406,7 +406,7 @@ class TestCommand:
         text = run("overturning", "--compare", "one.yaml", "two.yaml", "--points", 4, "--model", "linear2").stdout
         assert "(one.yaml)" in text and "(two.yaml)" in text
 
-    @pytest.mark.parametrize("arguments", [["--a", "0.2:0.9"], [FILES[0], "--accelerations", "0.01g:0.02g"]])
+    @pytest.mark.parametrize("arguments", [["--a", "0.2:0.9"], [FILES[0], "--ag", "0.01g:0.02g"]])
     def test_a_map_of_pulses_too_weak_to_lift_is_a_result(self, arguments, tmp_path):
         arguments = ["overturning", *arguments, "--points", 8, "--plot", "map.png", "--out", "map.csv"]
         data = json.loads(run(*arguments, "--json").stdout)
@@ -418,7 +418,7 @@ class TestCommand:
 
     def test_curves_of_pulses_too_weak_to_lift_are_a_result(self, tmp_path):
         arguments = [
-            "overturning", "--compare", *FILES, "--accelerations", "0.001g:0.1g", "--points", 4, "--plot", "c.png",
+            "overturning", "--compare", *FILES, "--ag", "0.001g:0.1g", "--points", 4, "--plot", "c.png",
         ]  # fmt: skip
         data = json.loads(run(*arguments, "--json").stdout)
         assert data["first"] == [None] * 4
@@ -439,19 +439,19 @@ class TestCommand:
             (["--eta", "1.2"], "above 0 and at most 1"),
             (["--pulse", "sinus"], "did you mean sine?"),
             (["--pulse", "sine:1g:1s"], "give the shape alone"),
-            (["--periods", "0.2:4"], "give --omega"),
+            (["--period", "0.2:4"], "give --omega"),
             (["--model", "nonlinear"], "give FILE"),
             (["--points", "1"], "1 is not in the range"),
             (["--plot", "map.txt"], "does not end in"),
             (["--out", "nowhere/map.csv"], "does not exist"),
-            ([FILES[0], "--accelerations", "0.1:2"], "has no unit: give one of g, m/s2"),
-            ([FILES[0], "--accelerations", "1ft:2ft"], "'ft' is no unit of acceleration"),
-            ([FILES[0], "--accelerations", "2g:1g"], "give the smaller first"),
-            ([FILES[0], "--periods", "0:1"], "is not positive"),
-            ([FILES[0], "--omega", "1:2"], "give --periods, or add --dimensionless"),
+            ([FILES[0], "--ag", "0.1:2"], "has no unit: give one of g, m/s2"),
+            ([FILES[0], "--ag", "1ft:2ft"], "'ft' is no unit of acceleration"),
+            ([FILES[0], "--ag", "2g:1g"], "give the smaller first"),
+            ([FILES[0], "--period", "0:1"], "is not positive"),
+            ([FILES[0], "--omega", "1:2"], "give --period, or add --dimensionless"),
             ([FILES[0], FILES[1]], "--compare"),
             (["--compare", FILES[0]], "two structures or more"),
-            (["--compare", *FILES, "--a", "1:2"], "give --accelerations"),
+            (["--compare", *FILES, "--a", "1:2"], "give --ag"),
             (["--compare", *FILES, "--dimensionless"], "leave --dimensionless out"),
             (["nowhere.yaml"], "no such file"),
         ],

@@ -241,7 +241,7 @@ class TestSpecifications:
             ("sine:0.6g", "malformed pulse"),
             ("sine:0.6g:0.8s:2", "malformed pulse"),
             ("sine:0.6:0.8s", "no unit of amplitude, give g, m/s2, cm/s2, mm/s2, gal"),
-            ("sine:0.6g:0.8", "no unit of period, give s, ms, Hz"),
+            ("sine:0.6g:0.8kg", "unknown unit 'kg' of period, give s, ms, Hz"),
             ("sine:0.6kg:0.8s", "unknown unit 'kg' of amplitude"),
             ("sine:0.8s:0.6g", "unknown unit 's' of amplitude"),
             ("sine:x:0.8s", "'x' is no amplitude"),

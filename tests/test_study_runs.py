@@ -632,7 +632,7 @@ def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_pa
 
 def test_structures_of_like_names_have_a_picture_each(tmp_path):
     text = STUDY.replace("name: uncertain", "name: Valley/bridge")
-    result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text, 5)), "--pictures", "drawn"])
+    result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text, 5)), "--plot", "drawn"])
     assert "wrote 5 pictures" in result.stderr
     assert len({each.name.lower() for each in (tmp_path / "drawn").iterdir()}) == 5
 
@@ -703,7 +703,7 @@ def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
 
 def test_the_example_runs_with_pictures_and_tables(tmp_path):
     study = EXAMPLES / "study" / "near_fault.yaml"
-    where = ["--store", "near.db", "--pictures", "drawn"]
+    where = ["--store", "near.db", "--plot", "drawn"]
     result = CliRunner().invoke(main, ["fragility", str(study), *where])
     assert result.exit_code == 0, result.stderr
     assert "a year" in result.stdout and "c2" in result.stdout
@@ -729,7 +729,7 @@ def test_the_example_runs_with_pictures_and_tables(tmp_path):
 
 def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     path = write(tmp_path, STUDY.replace("method: stripes", "method: ida"), count=6)
-    result = CliRunner().invoke(main, ["fragility", str(path), "--json", "--pictures", "drawn"])
+    result = CliRunner().invoke(main, ["fragility", str(path), "--json", "--plot", "drawn"])
     assert result.exit_code == 0, result.stderr
     with Store.reading(tmp_path / "study.db") as kept:
         plan, definition = kept.plan(), load_study(path).definition

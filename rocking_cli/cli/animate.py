@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -9,13 +10,17 @@ import click
 
 from rocking_cli.cli import motions, options, terminal
 from rocking_cli.cli.groups import Near, Shaking
+from rocking_cli.cli.quantities import Finite
 from rocking_cli.errors import INCOMPLETE, InputError, Problem, RockingError
 from rocking_cli.names import percent
 from rocking_cli.views.view import ABSENT, Table, View, heading
 
 if TYPE_CHECKING:
-    from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.dynamics.model import Model, ModelName
+    from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.studies.film import Film
+    from rocking_cli.studies.neighbours import Neighbours
+    from rocking_cli.studies.picture import Picture
 
 # The names of the models stand here again so that `--help` needs no numpy.
 MODELS = ("nonlinear", "linear1", "linear2")
@@ -36,36 +41,43 @@ def _speed(ctx: click.Context, param: click.Parameter, value: float | None) -> f
     return value
 
 
+@dataclass(frozen=True)
+class Pace:
+    """How fast a motion is shown, and in how many frames."""
+
+    speed: float | None
+    fps: float
+
+
 @click.command(short_help="The mechanism moving under a ground motion: GIF or page.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @options.shaking
 @options.reading
 @options.scaling("1", "-1")
 @click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help="Which history.")
-@click.option(
-    "--out", required=True, callback=options.output_path(".gif", ".html"), metavar="FILE.html",
-    help="Where to: an animated GIF, or a page of its own with a slider (.html).",
+@options.out(
+    ".gif", ".html", required=True, metavar="FILE.html",
+    what="Where to: an animated GIF, or a page of its own with a slider (.html).",
 )  # fmt: skip
 @click.option(
-    "--speed", type=options.Finite(positive=True), callback=_speed, metavar="TIMES",
+    "--speed", type=Finite(positive=True), callback=_speed, metavar="TIMES",
     help="Seconds of motion a second.  [default: 1; a GIF faster, so as to last 20 s at most]",
 )  # fmt: skip
 @click.option(
-    "--fps", type=options.Finite(positive=True), default=FPS, show_default=True, callback=_fps, metavar="FRAMES",
+    "--fps", type=Finite(positive=True), default=FPS, show_default=True, callback=_fps, metavar="FRAMES",
     help="Frames a second of a GIF.",
 )  # fmt: skip
 @options.around
 @options.as_json
 @click.pass_context
-@options.grouped(shaking=Shaking, near=Near)
+@options.grouped(shaking=Shaking, pace=Pace, near=Near)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
     shaking: Shaking,
     model: str,
     out: Path,
-    speed: float | None,
-    fps: float,
+    pace: Pace,
     near: Near,
     as_json: bool,
 ) -> None:
@@ -95,10 +107,7 @@ def command(
         ctx.exit(InputError.exit_code)
     from rocking_cli.cli import inputs
     from rocking_cli.cli.work import say_if_compiling
-    from rocking_cli.dynamics.history import RTOL, TAIL, follow
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.studies.film import Film
-    from rocking_cli.studies.neighbours import neighbours
     from rocking_cli.studies.picture import picture
     from rocking_cli.views.animation import view
 
@@ -112,29 +121,41 @@ def command(
     keep_apart([("--out", place) for place in places], read)
     say_if_compiling()
     built, drawn = structure.model(cast("ModelName", model)), picture(structure.mechanism)
+    title = heading(structure.mechanism)
     rows: list[list[str]] = []
     for each, place in zip(given, places, strict=True):
         assert place is not None
         motion = each.motion.scaled(shaking.signs[0] * each.factor)
         try:
-            film = Film(drawn, follow(built, motion, tail=TAIL, rtol=RTOL), motion)
-            found = _write(place, film, heading(structure.mechanism), speed, fps)
+            film, found, beside = _shoot(place, built, drawn, motion, title, pace, near)
         except RockingError as error:
             if not several:
                 raise
             terminal.error(f"{motion.name}: {error}")
             refused += 1
             continue
-        beside = neighbours(built, motion, near.around) if near.neighbours else None
         rows.append([motion.name, film.verdict, ABSENT if beside is None else percent(beside.overturned)])
         one = view(structure.mechanism, structure.equivalence, film, beside, {**found, "file": str(place)})
         if as_json or not several:
             terminal.show(one, as_json=as_json)
     if several and rows and not as_json:
-        table = Table(heading(structure.mechanism), ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
+        table = Table(title, ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
         terminal.show(View({}, [table, one.parts[-1]]), as_json=False)
     if missing or refused:
         ctx.exit(INCOMPLETE)
+
+
+def _shoot(
+    place: Path, model: Model, picture: Picture, motion: GroundMotion, title: str, pace: Pace, near: Near
+) -> tuple[Film, dict[str, float | int | None], Neighbours | None]:
+    """Follow a model under a motion, write what is to be seen, and follow the neighbours."""
+    from rocking_cli.dynamics.history import follow
+    from rocking_cli.studies.film import Film
+    from rocking_cli.studies.neighbours import neighbours
+
+    film = Film(picture, follow(model, motion), motion)
+    found = _write(place, film, title, pace.speed, pace.fps)
+    return film, found, neighbours(model, motion, near.around) if near.neighbours else None
 
 
 def _write(out: Path, film: Film, title: str, speed: float | None, fps: float) -> dict[str, float | int | None]:

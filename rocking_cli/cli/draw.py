@@ -9,6 +9,7 @@ import click
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.pictures import write_picture
+from rocking_cli.cli.quantities import Finite
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def _ratio(ctx: click.Context, param: click.Parameter, value: float | None) -> f
 @click.command(short_help="The structure at rest and displaced, with hinges and dimensions.")
 @click.argument("file", required=False, type=click.Path())
 @click.option(
-    "--at", "ratio", type=options.Finite(), metavar="RATIO", callback=_ratio,
+    "--at", "ratio", type=Finite(), metavar="RATIO", callback=_ratio,
     help="How far it is displaced, as a multiple of phi_cr.  [default: 1]",
 )  # fmt: skip
 @options.plot("Where to", "[default: FILE with .png, in this folder; none with --json]")

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Literal, cast
 import click
 
 from rocking_cli.cli import options, terminal
-from rocking_cli.cli.groups import Output
-from rocking_cli.cli.quantities import Quantity
+from rocking_cli.cli.groups import Output, SizedPulse
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
@@ -27,12 +26,13 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
     return eta
 
 
-@click.command(short_help="Pulses to which several structures are equally vulnerable.")
+@click.command(
+    cls=options.Renamed,
+    renamed={"--pulse": "--shape"},
+    short_help="Pulses to which several structures are equally vulnerable.",
+)
 @click.argument("files", metavar="FILE FILE...", nargs=-1, type=click.Path())
-@click.option("--ag", required=True, type=Quantity("acceleration"), metavar="AMPLITUDE", help="With unit: 0.6g.")
-@click.option("--period", required=True, type=Quantity("period"), metavar="SECONDS", help="Period of the pulse.")
-@click.option("--pulse", default="sine", show_default=True, metavar="SHAPE", help="Shape of the pulse.")
-@click.option("--polarity", type=click.Choice(["1", "-1"]), default="1", show_default=True, help="-1 reverses it.")
+@options.sized_pulse("1", "-1", required=True)
 @click.option("--kappa", type=click.Choice(["1", "2"]), default="2", show_default=True, help="Scaling of the pulses.")
 @click.option(
     "--eta",
@@ -42,18 +42,15 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
     callback=_eta,
     help="Restitution of all: a number, that of the first FILE, or each its own.",
 )
-@click.option("--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the responses over p t.")
+@options.out(".csv", what="Write the responses over p t.")
 @options.plot("Draw them")
 @options.as_json
 @click.pass_context
-@options.grouped(output=Output)
+@options.grouped(pulse=SizedPulse, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    ag: float,
-    period: float,
-    pulse: str,
-    polarity: str,
+    pulse: SizedPulse,
     kappa: str,
     eta: float | Literal["first", "own"],
     output: Output,
@@ -75,23 +72,19 @@ def command(
     """
     if len(files) < 2:
         raise click.UsageError("Equivalent to what? Give two FILEs or more; the pulse is for the first.")
-    from dataclasses import replace
-
     from rocking_cli.cli import structures, work
-    from rocking_cli.excitation.base import STANDARD_GRAVITY
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.equivalent import equivalent, judge
-    from rocking_cli.studies.shaken import parse_shape
     from rocking_cli.views.equivalent import table, title, view
 
     keep_apart([("--out", output.out), ("--plot", output.plot)], files)
-    given = replace(parse_shape(pulse), amplitude=ag * STANDARD_GRAVITY, period=period)
+    given = pulse.pulse
     loaded, good, bad = structures.load_each(files)
     if files[0] not in good or len(good) < 2:
         raise InputError("the first FILE and one more are needed: the pulse is for the first")
     mechanisms = structures.told_apart(loaded, good)
     work.say_if_compiling()
-    found = equivalent(mechanisms, given, polarity=int(polarity), kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
+    found = equivalent(mechanisms, given, polarity=pulse.signs[0], kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
 
     def draw() -> Figure:
         from rocking_cli.plotting.equivalent import draw_equivalent

@@ -8,6 +8,7 @@ import click
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.pictures import write_picture
+from rocking_cli.cli.quantities import Finite
 from rocking_cli.views.view import heading
 
 
@@ -23,15 +24,19 @@ def _checked(
     return values
 
 
-@click.command(short_help="Error of the equivalent block: period, uplift, overturning time.")
+@click.command(
+    cls=options.Renamed,
+    renamed={"--accel": "--a"},
+    short_help="Error of the equivalent block: period, uplift, overturning.",
+)
 @click.argument("file", required=False, type=click.Path())
 @click.option(
-    "--at", "amplitudes", type=options.Finite(), multiple=True, default=(0.5,), show_default="0.5", metavar="RATIO",
+    "--at", "amplitudes", type=Finite(), multiple=True, default=(0.5,), show_default="0.5", metavar="RATIO",
     callback=_checked, help="Amplitude phi/phi_cr of interest; may be repeated.",
 )  # fmt: skip
 @click.option(
-    "--accel", "accelerations", type=options.Finite(), multiple=True, default=(2.0,), show_default="2",
-    metavar="TIMES", callback=_checked, help="Constant acceleration over that at uplift; may be repeated.",
+    "--a", "accelerations", type=Finite(), multiple=True, default=(2.0,), show_default="2",
+    metavar="RATIO", callback=_checked, help="Constant acceleration over that at uplift; may be repeated.",
 )  # fmt: skip
 @options.plot("Draw the errors over their ranges")
 @options.as_json
@@ -48,7 +53,7 @@ def command(
 
     \b
     Example:
-      rocking error arch.yaml --at 0.3 --at 0.7 --accel 1.5 --plot error.png
+      rocking error arch.yaml --at 0.3 --at 0.7 --a 1.5 --plot error.png
 
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 24-25.
     """

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.cli.groups import Reading
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
@@ -17,7 +18,11 @@ if TYPE_CHECKING:
 NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
 
 
-@click.command(short_help="The paper's figures, computed anew: picture and data.")
+@click.command(
+    cls=options.Renamed,
+    renamed={"--folder": "--out"},
+    short_help="The paper's figures, computed anew: picture and data.",
+)
 @click.argument("number", type=click.Choice([*NUMBERS, "all"]))
 @click.option(
     "--record",
@@ -28,7 +33,15 @@ NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
     help="For Figure 14; else the shipped example, a synthetic motion.",
 )
 @options.reading
-@click.option("--folder", type=click.Path(file_okay=False), default=".", show_default="this one", help="Where to.")
+@click.option(
+    "-o",
+    "--out",
+    type=click.Path(file_okay=False),
+    default=".",
+    show_default="this one",
+    metavar="FOLDER",
+    help="Where to; made if absent.",
+)
 @click.option(
     "--format",
     "suffix",
@@ -38,13 +51,12 @@ NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
     help="Of pictures.",
 )
 @options.as_json
+@options.grouped(reading=Reading)
 def command(
     number: str,
     records: tuple[str, ...],
-    units: str | None,
-    dt: float | None,
-    channel: str | None,
-    folder: str,
+    reading: Reading,
+    out: str,
     suffix: str,
     as_json: bool,
 ) -> None:
@@ -54,7 +66,7 @@ def command(
     Example:
       rocking figure 3
       rocking figure 14 --record accel.csv
-      rocking figure all --folder figures --format svg
+      rocking figure all --out figures --format svg
 
     Source: DeJong and Dimitrakopoulos (2014). Geometries that the scan has lost are our choice; the captions say so.
     """
@@ -63,10 +75,11 @@ def command(
     if len(records) > 1:
         raise click.UsageError(f"Figure 14 is of one record, and {len(records)} are given: {', '.join(records)}.")
     record = records[0] if records else None
-    motion = _motion(record, dt, units, channel) if number in ("14", "all") else None
+    motion = _motion(record, reading) if number in ("14", "all") else None
+    from rocking_cli.io.files import folder as make_folder
+
     wanted = [int(each) for each in (NUMBERS if number == "all" else [number])]
-    place = Path(folder)
-    place.mkdir(parents=True, exist_ok=True)
+    place = make_folder(out)
     made: list[tuple[int, list[str]]] = []
     with terminal.progress(len(wanted), "figures") as advance:
         for each in wanted:
@@ -80,12 +93,12 @@ def command(
         terminal.result(f"figure {each}: {', '.join(files)}")
 
 
-def _motion(record: str | None, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
+def _motion(record: str | None, reading: Reading) -> GroundMotion:
     """The record of Figure 14: the user's, or the shipped example, which a wheel has and a checkout has elsewhere."""
     from rocking_cli.excitation.records import read_record
 
     if record is not None:
-        return read_record(record, dt=dt, units=units, channel=channel)
+        return read_record(record, **vars(reading))
     package = Path(__file__).parents[1]
     shipped = package / "data" / "accel.csv"
     return read_record(shipped if shipped.exists() else package.parent / "examples" / "accel.csv")

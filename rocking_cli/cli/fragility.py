@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,25 +21,47 @@ if TYPE_CHECKING:
 NAMED = 10  # bad records or samples named one by one
 
 
-@click.command(short_help="Run a study of many records and intensities, and fit fragility curves.")
+@dataclass(frozen=True)
+class Running:
+    """Where the runs are made and kept."""
+
+    jobs: int | None
+    scheduler: str | None
+    store: str | None
+    restart: bool
+
+    def __post_init__(self) -> None:
+        if self.scheduler is not None and self.jobs is not None:
+            raise click.UsageError("--jobs is for this machine: a cluster has as many workers as it has.")
+
+    def engine(self) -> AbstractContextManager[Engine]:
+        """What makes them."""
+        from rocking_cli.studies.fragility import engines
+
+        return engines.cluster(self.scheduler) if self.scheduler is not None else engines.threads(self.jobs)
+
+
+@click.command(
+    cls=options.Renamed,
+    renamed={"--pictures": "--plot"},
+    short_help="Run a study of many records and intensities, and fit fragility curves.",
+)
 @click.argument("file", metavar="STUDY.yaml", type=click.Path())
 @click.option("--check", is_flag=True, help="Say what would be run, and run nothing.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processors to use.  [default: all]")
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the dask.distributed cluster of this scheduler.")
 @click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
 @click.option("--restart", is_flag=True, help="Begin anew; the present store is kept under another name.")
-@click.option("--pictures", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.as_json
 @click.pass_context
+@options.grouped(running=Running)
 def command(
     ctx: click.Context,
     file: str,
     check: bool,
-    jobs: int | None,
-    scheduler: str | None,
-    store: str | None,
-    restart: bool,
-    pictures: str | None,
+    running: Running,
+    plot: str | None,
     as_json: bool,
 ) -> None:
     """Run a fragility study, and fit its curves.
@@ -52,16 +75,13 @@ def command(
     \b
     Example:
       rocking fragility study.yaml --check
-      rocking fragility study.yaml --pictures pictures
+      rocking fragility study.yaml --plot pictures
       rocking fragility study.yaml --scheduler tcp://10.0.0.1:8786
       rocking results study.db --out runs.csv
     """
-    if scheduler is not None and jobs is not None:
-        raise click.UsageError("--jobs is for this machine: a cluster has as many workers as it has.")
     from rocking_cli.cli import structures
-    from rocking_cli.cli.fragility_pictures import ready
     from rocking_cli.cli.fragility_results import give
-    from rocking_cli.io.files import check_writable, keep_apart
+    from rocking_cli.io.files import check_writable, folder, keep_apart
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
 
@@ -71,16 +91,16 @@ def command(
         first = {sample.structure: sample.mechanism for sample in study.samples if sample.number == 0}
         for each in first.values():
             structures.warn(each)
-        place = Path(store) if store is not None else Path(file).with_suffix(".db")
-        keep_apart([("--store" if store is not None else "the store beside the study", place)], [file])
+        place = Path(running.store) if running.store is not None else Path(file).with_suffix(".db")
+        keep_apart([("--store" if running.store is not None else "the store beside the study", place)], [file])
         if check:
             complete = _check(study, as_json=as_json)
         else:
             check_writable(place)
-            folder = ready(pictures)
-            _bring_up_to_date(study, place, jobs, scheduler, restart=restart)
+            pictures = folder(plot) if plot is not None else None
+            _bring_up_to_date(study, place, running)
             with Store.reading(place) as kept:
-                complete = give(kept, None, folder, as_json=as_json)
+                complete = give(kept, None, pictures, as_json=as_json)
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(endings.exit_code(stopped))
@@ -100,34 +120,28 @@ def _check(study: Study, *, as_json: bool) -> bool:
     return not left_out(plan)
 
 
-def _bring_up_to_date(study: Study, place: Path, jobs: int | None, scheduler: str | None, *, restart: bool) -> None:
-    """Run what the store does not hold; with `restart` all, and the old store is kept under another name."""
+def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
+    """Run what the store does not hold; to begin anew all, and the old store is kept under another name."""
     from rocking_cli.cli import work
     from rocking_cli.studies.fragility.campaign import prepare, run
     from rocking_cli.studies.fragility.store import Store
 
     with ExitStack() as stack:
         # The old store gives way only when there is somebody to run the study anew.
-        engine = stack.enter_context(_engine(jobs, scheduler)) if restart else None
-        say = terminal.note if restart else terminal.warning
-        store = stack.enter_context(Store.writing(place, anew=restart, say=say))
+        engine = stack.enter_context(running.engine()) if running.restart else None
+        say = terminal.note if running.restart else terminal.warning
+        store = stack.enter_context(Store.writing(place, anew=running.restart, say=say))
         with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
             prepared = prepare(study, store, examined)
         _report(prepared)
         if prepared.finished == prepared.plan.total:
             return
-        if scheduler is None:
+        if running.scheduler is None:
             work.say_if_compiling()
-        engine = engine or stack.enter_context(_engine(jobs, scheduler))
+        engine = engine or stack.enter_context(running.engine())
         done, failed = prepared.finished, prepared.failed
         with terminal.progress(prepared.plan.total, "runs", done=done, failed=failed) as advance:
             run(prepared, store, engine, advance)
-
-
-def _engine(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Engine]:
-    from rocking_cli.studies.fragility import engines
-
-    return engines.cluster(scheduler) if scheduler is not None else engines.threads(jobs)
 
 
 def _report(prepared: Prepared) -> None:

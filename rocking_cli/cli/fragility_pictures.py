@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import terminal
-from rocking_cli.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,18 +16,6 @@ if TYPE_CHECKING:
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.store import Store
-
-
-def ready(folder: str | None) -> Path | None:
-    """The folder for pictures, made if it is not there: before any work, as it may be refused."""
-    if folder is None:
-        return None
-    path = Path(folder)
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(Problem(f"cannot be a folder of pictures: {error.strerror or error}", folder)) from None
-    return path
 
 
 def draw_all(

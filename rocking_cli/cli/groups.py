@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.io.tables import Columns
     from rocking_cli.studies.neighbours import Around
 
@@ -62,7 +63,7 @@ class Scaling:
     @property
     def signs(self) -> tuple[int, ...]:
         """The polarities, of 1 and -1."""
-        return (1, -1) if self.polarity == "both" else (int(self.polarity),)
+        return polarities(self.polarity)
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,35 @@ class Shaking(Scaling, Reading):
     def __bool__(self) -> bool:
         """Whether there is any."""
         return bool(self.records or self.pulses)
+
+
+def polarities(polarity: str) -> tuple[int, ...]:
+    """Of 1 and -1, those that an option asks for."""
+    return (1, -1) if polarity == "both" else (int(polarity),)
+
+
+@dataclass(frozen=True)
+class SizedPulse:
+    """One pulse by its shape, amplitude [g] and period [s], and which way round it is."""
+
+    shape: str
+    ag: float | None
+    period: float | None
+    polarity: str
+
+    @property
+    def pulse(self) -> Pulse:
+        """The pulse itself, of which both sizes are given."""
+        from rocking_cli.excitation.base import STANDARD_GRAVITY
+        from rocking_cli.studies.shaken import parse_shape
+
+        assert self.ag is not None and self.period is not None
+        return replace(parse_shape(self.shape), amplitude=self.ag * STANDARD_GRAVITY, period=self.period)
+
+    @property
+    def signs(self) -> tuple[int, ...]:
+        """The polarities, of 1 and -1."""
+        return polarities(self.polarity)
 
 
 @dataclass(frozen=True)

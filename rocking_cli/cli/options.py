@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import wraps
 from pathlib import Path
@@ -10,46 +10,12 @@ from typing import Any
 
 import click
 
+from rocking_cli.cli import terminal
+from rocking_cli.cli.quantities import AMPLITUDE, INTERVAL, PERIOD, PGA, PGV, Finite, Quantity, Share, Unit
+
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-# The names of units stand here again so that `--help` needs no numpy; a test holds them together.
-UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
-
 as_json: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
-
-
-class Finite(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A finite number; `positive` ones more than zero."""
-
-    name = "number"
-
-    def __init__(self, *, positive: bool = False) -> None:
-        self.positive = positive
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Turn a text into the number, or fail naming the option."""
-        try:
-            number = float(value)
-        except ValueError:
-            self.fail(f"{value!r} is not a number.", param, ctx)
-        if not abs(number) < float("inf") or (self.positive and number <= 0):
-            self.fail(f"{value} is not a {'positive' if self.positive else 'finite'} number.", param, ctx)
-        return number
-
-
-class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A unit of acceleration, in any spelling that the header of a record may have: `m/s^2` is `m/s2`."""
-
-    def __init__(self) -> None:
-        super().__init__(UNITS)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Turn a spelling into the name, or fail naming the option and the choices."""
-        if value in UNITS:
-            return value
-        from rocking_cli.excitation.records.units import canonical
-
-        return super().convert(canonical(str(value)) or value, param, ctx)
 
 
 def restitution(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
@@ -83,6 +49,18 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
     return check
 
 
+def out(*suffixes: str, what: str, required: bool = False, metavar: str | None = None) -> Decorator:
+    """Where to write what is made: `out`, of one of these suffixes; the help says what it is."""
+    return click.option(
+        "-o",
+        "--out",
+        required=required,
+        callback=output_path(*suffixes),
+        metavar=metavar or f"FILE{suffixes[0]}",
+        help=what,
+    )
+
+
 def plot(what: str, more: str = "") -> Decorator:
     """Where to draw a picture: `plot`; the help says what it shows, and what more there is to say."""
     return click.option(
@@ -91,6 +69,32 @@ def plot(what: str, more: str = "") -> Decorator:
         metavar="FILE.png",
         help=f"{what} (.png, .svg or .pdf).{'  ' * bool(more)}{more}",
     )
+
+
+class Renamed(click.Command):
+    """A command some of whose options had other names, which go on working with a word on the new one.
+
+    Parameters
+    ----------
+    renamed : mapping of str to str
+        The option of today by the old name, such as `{"--periods": "--period"}`.
+    """
+
+    def __init__(self, *args: Any, renamed: Mapping[str, str], **more: Any) -> None:
+        super().__init__(*args, **more)
+        self.renamed = renamed
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the command line as if it had been typed today."""
+        end = args.index("--") if "--" in args else len(args)
+        return super().parse_args(ctx, [*map(self._today, args[:end]), *args[end:]])
+
+    def _today(self, argument: str) -> str:
+        old, equals, value = argument.partition("=")
+        if old not in self.renamed:
+            return argument
+        terminal.note(f"{old} is called {self.renamed[old]} now")
+        return f"{self.renamed[old]}{equals}{value}"
 
 
 def grouped(**groups: type) -> Decorator:
@@ -147,9 +151,7 @@ motions: Decorator = _in_order(
 
 reading: Decorator = _in_order(
     click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),
-    click.option(
-        "--dt", type=Finite(positive=True), metavar="SECONDS", help="Sample interval of a record without times."
-    ),
+    click.option("--dt", type=Quantity(INTERVAL), metavar="TIME", help="Interval of a record without times, in s."),
     click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name."),
 )
 """How to read a record: `units`, `dt` and `channel`."""
@@ -164,10 +166,16 @@ def scaling(*polarities: str, both: str = "one after the other", default: str = 
     return _in_order(
         click.option("--scale", type=Finite(), metavar="FACTOR", help="Factor on the record.  [default: 1]"),
         click.option(
-            "--target-pga", type=Finite(positive=True), metavar="G", help="Scale the record to this peak, in g."
+            "--target-pga",
+            type=Quantity(PGA),
+            metavar="ACCELERATION",
+            help="Scale the record to this peak, in g.",
         ),
         click.option(
-            "--target-pgv", type=Finite(positive=True), metavar="M/S", help="Scale it to this peak velocity, in m/s."
+            "--target-pgv",
+            type=Quantity(PGV),
+            metavar="VELOCITY",
+            help="Scale it to this peak velocity, in m/s.",
         ),
         click.option(
             "--polarity",
@@ -175,6 +183,39 @@ def scaling(*polarities: str, both: str = "one after the other", default: str = 
             default=default,
             show_default=True,
             help="-1 reverses the record." + (f" both: {both}." if "both" in polarities else ""),
+        ),
+    )
+
+
+shape: Decorator = click.option(
+    "--shape",
+    default="sine",
+    show_default=True,
+    metavar="SHAPE",
+    help="Of the pulse: sine, cosine, half_sine, rectangular, ricker, ... with what it takes besides.",
+)
+
+
+def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
+    """One pulse: `shape`, `ag`, `period` and `polarity`, which is one of these."""
+    return _in_order(
+        click.option(
+            "--ag",
+            required=required,
+            type=Quantity(AMPLITUDE),
+            metavar="AMPLITUDE",
+            help="Amplitude of the pulse with its unit, such as 0.6g or 5.9m/s2.",
+        ),
+        click.option(
+            "--period", required=required, type=Quantity(PERIOD), metavar="PERIOD", help="Period of the pulse, in s."
+        ),
+        shape,
+        click.option(
+            "--polarity",
+            type=click.Choice(polarities),
+            default="1",
+            show_default=True,
+            help="-1 reverses the pulse." + (" both: one after the other." if "both" in polarities else ""),
         ),
     )
 
@@ -190,7 +231,7 @@ around: Decorator = _in_order(
     ),
     click.option(
         "--within-amplitude",
-        type=Finite(),
+        type=Share(),
         default=0.02,
         show_default=True,
         metavar="SHARE",

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, cast
 import click
 
 from rocking_cli.cli import options, terminal
-from rocking_cli.cli.groups import Output
-from rocking_cli.cli.quantities import Range
+from rocking_cli.cli.groups import Output, polarities
+from rocking_cli.cli.quantities import AMPLITUDE, NUMBER, PERIOD, Finite, Range
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
 class Pulses:
     """The pulses, and the equation of motion that they act on."""
 
-    pulse: str
+    shape: str
     model: str | None
     eta: float | None
     polarity: str
@@ -39,7 +39,7 @@ class Pulses:
     @property
     def signs(self) -> tuple[int, ...]:
         """The polarities, of 1 and -1."""
-        return (1, -1) if self.polarity == "both" else (int(self.polarity),)
+        return polarities(self.polarity)
 
 
 @dataclass(frozen=True)
@@ -47,21 +47,25 @@ class Plane:
     """Over what a map or a curve is drawn, and how finely."""
 
     dimensionless: bool
-    periods: tuple[float, float] | None
-    accelerations: tuple[float, float] | None
+    period: tuple[float, float] | None
+    ag: tuple[float, float] | None
     omega: tuple[float, float] | None
     a: tuple[float, float] | None
     points: int | None
 
 
-@click.command(short_help="Which pulses overturn a structure; which of several goes first.")
+@click.command(
+    cls=options.Renamed,
+    renamed={"--pulse": "--shape", "--periods": "--period", "--accelerations": "--ag"},
+    short_help="Which pulses overturn a structure; which of several goes first.",
+)
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @click.option("--compare", is_flag=True, help="The least overturning amplitude of several FILEs, in one picture.")
-@click.option("--pulse", default="sine", show_default=True, metavar="SHAPE", help="Shape of the pulses.")
+@options.shape
 @click.option("--model", type=click.Choice(MODELS), help="[default: linear2; nonlinear with --compare]")
 @click.option(
     "--eta",
-    type=options.Finite(),
+    type=Finite(),
     callback=options.restitution,
     help="Restitution.  [default: the structure's; 0.9 without FILE]",
 )
@@ -73,21 +77,17 @@ class Plane:
     help="-1 reverses the pulse. both: the worse of the two.",
 )
 @click.option("--dimensionless", is_flag=True, help="Over omega and a, also with FILE.")
-@click.option("--periods", type=Range("period"), metavar="LOW:HIGH", help="Periods in s, such as 0.2:4.")
-@click.option(
-    "--accelerations", type=Range("acceleration"), metavar="LOW:HIGH", help="Amplitudes with units, such as 0.1g:2g."
-)
-@click.option("--omega", type=Range("number"), metavar="LOW:HIGH", help="Dimensionless frequencies.  [default: 0.5:10]")
-@click.option("--a", type=Range("number"), metavar="LOW:HIGH", help="Dimensionless amplitudes.  [default: 0.5:10]")
+@click.option("--period", type=Range(PERIOD), metavar="LOW:HIGH", help="Periods in s, such as 0.2:4.")
+@click.option("--ag", type=Range(AMPLITUDE), metavar="LOW:HIGH", help="Amplitudes with units, such as 0.1g:2g.")
+@click.option("--omega", type=Range(NUMBER), metavar="LOW:HIGH", help="Dimensionless frequencies.  [default: 0.5:10]")
+@click.option("--a", type=Range(NUMBER), metavar="LOW:HIGH", help="Dimensionless amplitudes.  [default: 0.5:10]")
 @click.option(
     "--points",
     type=click.IntRange(2, 1000),
     metavar="N",
     help=f"Points of each side of the map, or periods compared.  [default: {PLANE}, {CURVE}]",
 )
-@click.option(
-    "--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the map, a line a point, or curves."
-)
+@options.out(".csv", what="Write the map, a line a point, or the curves.")
 @options.plot("Draw it")
 @options.as_json
 @click.pass_context
@@ -106,8 +106,8 @@ def command(
     \b
     Example:
       rocking overturning --plot map.png
-      rocking overturning block.yaml --model nonlinear --accelerations 0.1g:2g --plot map.png
-      rocking overturning --compare block.yaml frame.yaml wall.yaml --periods 0.2:4 --plot curves.png
+      rocking overturning block.yaml --model nonlinear --ag 0.1g:2g --plot map.png
+      rocking overturning --compare block.yaml frame.yaml wall.yaml --period 0.2:4 --plot curves.png
 
     Source: DeJong and Dimitrakopoulos (2014), Section 6; Zhang and Makris (2001).
     """
@@ -118,7 +118,7 @@ def command(
     from rocking_cli.studies.shaken import linear_block, parse_shape, shaken
 
     keep_apart([("--out", output.out), ("--plot", output.plot)], files)
-    shape = parse_shape(pulses.pulse)
+    shape = parse_shape(pulses.shape)
     model = pulses.model or ("nonlinear" if compare else "linear2")
     loaded, good, bad = structures.load_each(files) if files else ([], [], 0)
     if compare and len(loaded) < 2:
@@ -208,7 +208,7 @@ def _check(files: tuple[str, ...], compare: bool, model: str | None, plane: Plan
     if compare and plane.dimensionless:
         raise click.UsageError("--compare is over the period in s: leave --dimensionless out.")
     scaled = plane.dimensionless or not files
-    wrong, right = (("periods", "accelerations"), ("omega", "a"))[:: 1 if scaled else -1]
+    wrong, right = (("period", "ag"), ("omega", "a"))[:: 1 if scaled else -1]
     for option in wrong:
         if getattr(plane, option) is not None:
             instead = f"--{right[wrong.index(option)]}"
@@ -226,9 +226,9 @@ def _plane(subject: Shaken, plane: Plane, *, dimensionless: bool) -> tuple[Reals
     points = plane.points or PLANE
     if dimensionless:
         return np.linspace(*(plane.omega or OMEGAS), points), np.linspace(*(plane.a or AMPLITUDES), points)
-    spread = np.linspace(*(plane.periods or _usual_periods([subject])), points)
+    spread = np.linspace(*(plane.period or _usual_periods([subject])), points)
     unit = subject.unit / STANDARD_GRAVITY
-    low, high = plane.accelerations or (_round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit))
+    low, high = plane.ag or (_round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit))
     amplitudes = np.linspace(low, high, points)
     return subject.period(spread), amplitudes / unit
 
@@ -240,8 +240,8 @@ def _curves(subjects: list[Shaken], plane: Plane) -> tuple[Reals, float]:
     from rocking_cli.excitation.base import STANDARD_GRAVITY
 
     strongest = max(each.unit for each in subjects) / STANDARD_GRAVITY
-    top = plane.accelerations[1] if plane.accelerations else _round(AMPLITUDES[1] * strongest)
-    return np.geomspace(*(plane.periods or _usual_periods(subjects)), plane.points or CURVE), top
+    top = plane.ag[1] if plane.ag else _round(AMPLITUDES[1] * strongest)
+    return np.geomspace(*(plane.period or _usual_periods(subjects)), plane.points or CURVE), top
 
 
 def _usual_periods(subjects: list[Shaken]) -> tuple[float, float]:

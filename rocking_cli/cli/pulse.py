@@ -2,47 +2,37 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.cli.groups import SizedPulse
+from rocking_cli.cli.quantities import Finite
 
 ETA = 0.9
 
 
+@dataclass(frozen=True)
+class Dimensionless:
+    """A pulse on the dimensionless block, and its restitution."""
+
+    a: float | None
+    omega: float | None
+    eta: float | None
+
+
 @click.command(short_help="Response to a pulse: closed form, exact and nonlinear.")
 @click.argument("file", required=False, type=click.Path())
-@click.option("--ag", metavar="AMPLITUDE", help="Amplitude with its unit, such as 0.6g or 5.9m/s2.")
-@click.option("--period", type=options.Finite(positive=True), metavar="SECONDS", help="Period of the pulse.")
-@click.option(
-    "--polarity",
-    type=click.Choice(("1", "-1", "both")),
-    default="1",
-    show_default=True,
-    help="-1 reverses the pulse. both: one after the other.",
-)
-@click.option("--a", type=options.Finite(positive=True), help="Without a structure: amplitude a = a_g/(g lambda).")
-@click.option("--omega", type=options.Finite(positive=True), help="Frequency omega = omega_g/p.")
+@options.sized_pulse("1", "-1", "both")
+@click.option("--a", type=Finite(positive=True), help="Without a structure: amplitude a = a_g/(g lambda).")
+@click.option("--omega", type=Finite(positive=True), help="Frequency omega = omega_g/p.")
 @click.option(
     "--eta", type=click.FloatRange(0, 1, min_open=True), help=f"Coefficient of restitution.  [default: {ETA}]"
 )
-@click.option(
-    "--shape",
-    default="sine",
-    show_default=True,
-    help="Of the pulse: sine, cosine, half_sine or rectangular; for a structure any that is installed.",
-)
 @options.as_json
-def command(
-    file: str | None,
-    ag: str | None,
-    period: float | None,
-    polarity: str,
-    a: float | None,
-    omega: float | None,
-    eta: float | None,
-    shape: str,
-    as_json: bool,
-) -> None:
+@options.grouped(real=SizedPulse, bare=Dimensionless)
+def command(file: str | None, real: SizedPulse, bare: Dimensionless, as_json: bool) -> None:
     """Response of a structure, or of the dimensionless linear block, to a pulse.
 
     With --a and --omega: the linear block. The closed form (Eqs. 41-42) is for one full sine and holds only under
@@ -59,34 +49,41 @@ def command(
 
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 40-42.
     """
-    bare = {"--a": a, "--omega": omega, "--eta": eta}
-    real = {"FILE": file, "--ag": ag, "--period": period, "--polarity": None if polarity == "1" else polarity}
-    given = [[name for name, value in each.items() if value is not None] for each in (bare, real)]
-    if given[0] and given[1]:
-        raise click.UsageError(
-            f"{given[0][0]} is for the dimensionless block, {given[1][0]} for a structure: give --a and --omega, or "
-            "FILE with --ag and --period" + (" (eta is the restitution in its file)." if eta is not None else ".")
+    polarity = None if real.polarity == "1" else real.polarity
+    for_block, for_structure = (
+        [name for name, value in each.items() if value is not None]
+        for each in (
+            {"--a": bare.a, "--omega": bare.omega, "--eta": bare.eta},
+            {"FILE": file, "--ag": real.ag, "--period": real.period, "--polarity": polarity},
         )
-    if given[1]:
-        from rocking_cli.cli import pulse_on_structure
-
-        if ag is None or period is None:
-            missing = "--ag, such as 0.6g" if ag is None else "--period in seconds"
-            raise click.UsageError(f"A pulse on a structure needs {missing}.")
-        pulse_on_structure.run(file, shape, ag, period, polarity, as_json)
+    )
+    if for_block and for_structure:
+        eta = "." if bare.eta is None else " (eta is the restitution in its file)."
+        raise click.UsageError(
+            f"{for_block[0]} is for the dimensionless block, {for_structure[0]} for a structure: give --a and --omega, "
+            f"or FILE with --ag and --period{eta}"
+        )
+    if not for_structure:
+        _on_block(bare, real.shape, as_json=as_json)
         return
-    if a is None or omega is None:
-        missing = " and ".join(name for name in ("--a", "--omega") if bare[name] is None)
-        raise click.UsageError(
-            f"Missing {missing}: give --a and --omega for the dimensionless block, or FILE with --ag and --period."
-        )
-    _on_block(a, omega, ETA if eta is None else eta, shape, as_json)
+    if real.ag is None or real.period is None:
+        missing = "--ag, such as 0.6g" if real.ag is None else "--period in seconds"
+        raise click.UsageError(f"A pulse on a structure needs {missing}.")
+    from rocking_cli.cli import pulse_on_structure
+
+    pulse_on_structure.run(file, real, as_json=as_json)
 
 
-def _on_block(a: float, omega: float, eta: float, shape: str, as_json: bool) -> None:
+def _on_block(bare: Dimensionless, shape: str, *, as_json: bool) -> None:
     from rocking_cli.dynamics.pulse_response import SHAPES, closed_form, exact_pulse
     from rocking_cli.views.pulse import view
 
+    a, omega, eta = bare.a, bare.omega, ETA if bare.eta is None else bare.eta
+    if a is None or omega is None:
+        missing = " and ".join(name for name, value in (("--a", a), ("--omega", omega)) if value is None)
+        raise click.UsageError(
+            f"Missing {missing}: give --a and --omega for the dimensionless block, or FILE with --ag and --period."
+        )
     if shape not in SHAPES:
         raise click.UsageError(
             f"The dimensionless block takes the shapes {', '.join(SHAPES)}, not {shape!r}: "

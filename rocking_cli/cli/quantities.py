@@ -1,63 +1,173 @@
-"""Numbers with units on the command line, and ranges of them."""
+"""What can be typed for an option: numbers, quantities and ranges of them, by one grammar for all commands.
+
+A number with its unit. Where the help says which unit a bare number has, the unit may be left out.
+"""
 
 from __future__ import annotations
 
-import re
-from typing import Any, Literal
+from dataclasses import dataclass
+from math import inf
+from typing import Any
 
 import click
 
-from rocking_cli.cli.options import UNITS
+from rocking_cli.units import UnitError, read, split
 
-Kind = Literal["acceleration", "period", "number"]
-_FORM = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z%].*)?", re.ASCII)
-_EXAMPLES = {"acceleration": "0.6g", "period": "0.8", "number": "4"}
-# Least and largest, in g, s or none: past these a motion would be followed for hours, or is none.
-_BOUNDS = {"acceleration": (1e-9, 1e6, " g"), "period": (1e-6, 1e6, " s"), "number": (1e-6, 1e6, "")}
-_RANGES = {"acceleration": "0.1g:2g", "period": "0.2:4", "number": "0.5:10"}
+# The names of units stand here again so that `--help` needs no numpy; a test holds them together.
+UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
+
+
+class Finite(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
+    """A finite number; `positive` ones more than zero."""
+
+    name = "number"
+
+    def __init__(self, *, positive: bool = False) -> None:
+        self.positive = positive
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Turn a text into the number, or fail naming the option."""
+        try:
+            number = float(value)
+        except ValueError:
+            self.fail(f"{value!r} is not a number.", param, ctx)
+        if not abs(number) < float("inf") or (self.positive and number <= 0):
+            self.fail(f"{value} is not a {'positive' if self.positive else 'finite'} number.", param, ctx)
+        return number
+
+
+class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
+    """A unit of acceleration, in any spelling that the header of a record may have: `m/s^2` is `m/s2`."""
+
+    def __init__(self) -> None:
+        super().__init__(UNITS)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Turn a spelling into the name, or fail naming the option and the choices."""
+        if value in UNITS:
+            return value
+        from rocking_cli.excitation.records.units import canonical
+
+        return super().convert(canonical(str(value)) or value, param, ctx)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What is measured.
+
+    Parameters
+    ----------
+    name : str
+        As messages call it.
+    unit : str
+        Of the number that is given back; none of a pure number.
+    example, ranged : str
+        A quantity, and a range, as one would type them.
+    least, most : float
+        Bounds of what is followed: past these a motion would take hours, or is none.
+    zero : bool
+        Whether it may be zero.
+    """
+
+    name: str
+    unit: str
+    example: str
+    ranged: str = ""
+    least: float = 0.0
+    most: float = inf
+    zero: bool = False
+
+
+AMPLITUDE = Kind("acceleration", "g", "0.6g", "0.1g:2g", 1e-9, 1e6)  # of a pulse
+PERIOD = Kind("period", "s", "0.8s", "0.2s:4s", 1e-6, 1e6)
+NUMBER = Kind("number", "", "4", "0.5:10", 1e-6, 1e6)
+PGA = Kind("acceleration", "g", "0.35g")
+PGV = Kind("velocity", "m/s", "0.4m/s")
+INTERVAL = Kind("time", "s", "0.01s")
+TAIL = Kind("time", "s", "10s", most=3600, zero=True)
 
 
 class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A positive number: an acceleration, which needs a unit, given back in g; a period in s; or a pure number."""
+    """A quantity above zero, in the unit of its kind.
+
+    Parameters
+    ----------
+    kind : Kind
+        What is measured.
+    """
 
     name = "quantity"
 
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
-        self.bounds = _BOUNDS[kind]
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Turn a text into the number, or fail naming the option and what would be right."""
-        return self.read(value, _EXAMPLES[self.kind], param, ctx)
+        if isinstance(value, float):
+            return value
+        return self.checked(str(value), self.kind.example, param, ctx)
 
-    def read(self, text: str, example: str, param: click.Parameter | None, ctx: click.Context | None) -> float:
+    def checked(self, text: str, example: str, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """One number."""
-        match = _FORM.fullmatch(text.strip())
-        if match is None:
-            self.fail(f"{text!r} is no {self.kind}: give such as {example}.", param, ctx)
-        number, unit = float(match[1]), (match[2] or "").lower()
-        if self.kind == "acceleration":
-            from rocking_cli.excitation import base
-            from rocking_cli.excitation.records import units
+        try:
+            number = self._number(text)
+        except UnitError as error:
+            self.fail(f"{error.message}: {error.hint + ', ' if error.hint else 'give '}such as {example}.", param, ctx)
+        kind = self.kind
+        if not (0 < number < inf or (kind.zero and number == 0)):
+            turn = "; --polarity -1 reverses the pulse" if kind is AMPLITUDE and number < 0 else ""
+            self.fail(f"{text!r} is not positive: give such as {example}{turn}.", param, ctx)
+        if not kind.least <= number <= kind.most:
+            bounds = f"{kind.least:g} to {kind.most:g} {kind.unit}".strip()
+            self.fail(f"{text!r} is beyond what is followed: {bounds}.", param, ctx)
+        return number
 
-            unit = units.canonical(unit) or ""
-            if not unit:
-                has = f"{match[2]!r} is no unit of acceleration" if match[2] else f"{text!r} has no unit"
-                self.fail(f"{has}: give one of {', '.join(UNITS)}, such as {example}.", param, ctx)
-            number = number if unit == "g" else number * units.UNITS[unit] / base.STANDARD_GRAVITY
-        elif unit not in (("", "s") if self.kind == "period" else ("",)):
-            takes = "a period is in s" if self.kind == "period" else "this is a number without a unit"
-            self.fail(f"{text!r}: {takes}, such as {example}.", param, ctx)
-        if not 0 < number < float("inf"):
-            self.fail(f"{text!r} is not positive: give such as {example}.", param, ctx)
-        low, high, unit = self.bounds
-        if not low <= number <= high:
-            self.fail(f"{text!r} is beyond what is followed: {low:g} to {high:g}{unit}.", param, ctx)
+    def _number(self, text: str) -> float:
+        parts, kind = split(text), self.kind
+        if parts is None:
+            raise UnitError(f"{text!r} is no {kind.name}")
+        number, unit = parts
+        if not unit:
+            if kind is AMPLITUDE:  # of 6 nobody knows whether it is in g
+                raise UnitError(f"{text!r} has no unit", f"give one of {', '.join(UNITS)}")
+            return float(number)
+        if kind.unit == "g":
+            return _acceleration(float(number), unit)
+        if kind.name == "period" and unit.lower() == "hz":
+            return 1 / float(number) if float(number) else 0.0
+        return read(text, kind.unit)
+
+
+def _acceleration(number: float, spelling: str) -> float:
+    """An acceleration in g, its unit in any spelling that the header of a record may have."""
+    from rocking_cli.excitation.base import STANDARD_GRAVITY
+    from rocking_cli.excitation.records import units
+
+    unit = units.canonical(spelling)
+    if unit is None:
+        raise UnitError(f"{spelling!r} is no unit of acceleration", f"give one of {', '.join(UNITS)}")
+    return number if unit == "g" else number * units.UNITS[unit] / STANDARD_GRAVITY
+
+
+class Share(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
+    """A share: a number, or per cent with their sign."""
+
+    name = "share"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Turn a text into the number, or fail naming the option."""
+        text = str(value).strip()
+        try:
+            number = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+        except ValueError:
+            self.fail(f"{value!r} is not a share: give such as 0.02 or 2%.", param, ctx)
+        if not abs(number) < float("inf"):
+            self.fail(f"{value} is not a finite number.", param, ctx)
         return number
 
 
 class Range(Quantity):
-    """Two such numbers, the smaller first, with a colon between them."""
+    """Two quantities, the smaller first, with a colon between them."""
 
     name = "range"
 
@@ -65,11 +175,11 @@ class Range(Quantity):
         """Turn a text into the two numbers, or fail naming the option and what would be right."""
         if isinstance(value, tuple):
             return value
-        example = _RANGES[self.kind]
+        example = self.kind.ranged
         words = str(value).split(":")
         if len(words) != 2:
             self.fail(f"{value!r} is no range: give the least and the largest, such as {example}.", param, ctx)
-        low, high = (self.read(word, example, param, ctx) for word in words)
+        low, high = (self.checked(word, example, param, ctx) for word in words)
         if not low < high:
             self.fail(f"{value!r} does not grow: give the smaller first, such as {example}.", param, ctx)
         return low, high
@@ -81,8 +191,7 @@ class Sizes(Range):
     name = "sizes"
 
     def __init__(self, count: int, most: int) -> None:
-        super().__init__("period")
-        self.bounds = (1e-3, 1e4, " s")  # blocks of 0.2 um to 19,000 km
+        super().__init__(Kind("period", "s", "0.8s", "1s:10s", 1e-3, 1e4))  # blocks of 0.2 um to 19,000 km
         self.count, self.most = count, most
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:

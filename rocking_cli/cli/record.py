@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -18,12 +19,23 @@ from rocking_cli.errors import INCOMPLETE, InputError, Problem
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.pulse_fit import PulseFit
-    from rocking_cli.views.record import Shown
+    from rocking_cli.views.record import Examined
 
 PATIENCE = 1.0  # s without a word
 
 
-@click.command(short_help="What records are, how strong, and what is doubtful about them.")
+def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
+    """`--to csv`, which wrote into this folder."""
+    if value is not None:
+        terminal.note("--to csv is called --out now, with a file or a folder: --out . is this one")
+        ctx.params["out"] = "."
+
+
+@click.command(
+    cls=options.Renamed,
+    renamed={"--pulse": "--fit-pulse"},
+    short_help="What records are, how strong, and what is doubtful about them.",
+)
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path())
 @options.reading
 @options.scaling("1", "-1", "both", both="each after the other")
@@ -31,11 +43,15 @@ PATIENCE = 1.0  # s without a word
     "--structure", type=click.Path(), metavar="FILE.yaml", help="Check the sample interval against this structure."
 )
 @click.option(
-    "--pulse", is_flag=True, help="Fit a sine, a Ricker and a near-fault pulse to each; --plot draws the best."
+    "--fit-pulse", is_flag=True, help="Fit a sine, a Ricker and a near-fault pulse to each; --plot draws the best."
 )
 @click.option(
-    "--to", type=click.Choice(["csv"]), help="Write each as a clean file of t and a, NAME.csv in this folder."
+    "-o",
+    "--out",
+    metavar="PLACE",
+    help="Write each as a clean file of t and a: FILE.csv, or a folder, made if absent, for NAME.csv.",
 )
+@click.option("--to", type=click.Choice(["csv"]), hidden=True, expose_value=False, callback=_folder_of_today)
 @options.plot("Draw one record")
 @options.as_json
 @click.pass_context
@@ -46,8 +62,8 @@ def command(
     reading: Reading,
     scaling: Scaling,
     structure: str | None,
-    pulse: bool,
-    to: str | None,
+    fit_pulse: bool,
+    out: str | None,
     plot: Path | None,
     as_json: bool,
 ) -> None:
@@ -65,78 +81,79 @@ def command(
     Example:
       rocking record accel.csv --plot record.png
       rocking record north.AT2 east.AT2 --target-pga 0.4
-      rocking record station.V2 --channel 2 --to csv
+      rocking record station.V2 --channel 2 --out clean.csv
       rocking record table.csv --channel "acc x" --units g
-      rocking record accel.csv --pulse --plot pulse.png
+      rocking record accel.csv --fit-pulse --plot pulse.png
     """
     if plot is not None and (len(files) > 1 or scaling.polarity == "both"):
         raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
-    from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.io.files import keep_apart
     from rocking_cli.views.record import data, parts
     from rocking_cli.views.view import View
 
-    signs = scaling.signs
-    clean = _clean_paths(files, reading.channel, signs) if to else {}
-    keep_apart([("--plot", plot), *((f"--to {to}", path) for path in clean.values())], [*files, structure])
-    _spare_others(clean.values())
-    p = _frequency(structure) if structure is not None else None
-
-    shown: list[Shown] = []
+    clean = _clean_paths(out, files, reading.channel, scaling.signs) if out is not None else {}
+    keep_apart([("--plot", plot), *(("--out", path) for path in clean.values())], [*files, structure])
+    _make_room(out, clean.values())
+    asked = _Asked(reading, scaling, _frequency(structure) if structure is not None else None, fit_pulse, clean, plot)
+    examined: list[Examined] = []
     for file in files:
-        found: list[Shown] = []
         try:
-            from rocking_cli.excitation.records import read_record
-
-            motion = read_record(file, dt=reading.dt, units=reading.units, channel=reading.channel)
-            for sign in signs:
-                one, scaled = _examine(name_of(file), motion, scaling.scaling, sign, p, pulse)
-                if len(signs) > 1 and sign < 0:
-                    one = one._replace(label=f"{one.label}, reversed")
-                if to:
-                    _write(clean[file, sign], scaled)
-                if plot is not None:
-                    _draw(plot, scaled, one)
-                found.append(one)
+            found = asked.of(file)
         except InputError as error:
             terminal.error(str(error))
             terminal.plugin_traceback(error)
             continue
-        shown += found
+        examined += found
         if as_json:
             for one in found:
                 terminal.print_json(data(one))
-        motions.warn(motion, found[0].doubts)
-    if shown and not as_json:
-        terminal.show(View({}, list(parts(shown, terminal.width()))), as_json=False)
-    if len(shown) < len(files) * len(signs):
-        ctx.exit(INCOMPLETE if shown else InputError.exit_code)
+        motions.warn(found[0].motion, found[0].doubts)
+    if examined and not as_json:
+        terminal.show(View({}, list(parts(examined, terminal.width()))), as_json=False)
+    if len(examined) < len(files) * len(scaling.signs):
+        ctx.exit(INCOMPLETE if examined else InputError.exit_code)
 
 
-def _clean_paths(files: Sequence[str], channel: str | None, signs: Sequence[int]) -> dict[tuple[str, int], Path]:
-    """Where the clean file of each record goes: into this folder, named after the record and the channel asked for."""
+def _clean_paths(
+    out: str, files: Sequence[str], channel: str | None, signs: Sequence[int]
+) -> dict[tuple[str, int], Path]:
+    """Where the clean file of each record goes: in a folder, it has the name of the record and the channel."""
     from rocking_cli.excitation.records.opening import name_of
 
+    if _is_file(out):
+        if len(files) > 1 or len(signs) > 1:
+            raise click.UsageError("--out FILE.csv takes one record: give one FILE and one polarity, or a folder.")
+        return {(files[0], signs[0]): Path(out)}
     suffix = "-" + re.sub(r"\W+", "-", channel.strip()) if channel is not None else ""
     paths: dict[tuple[str, int], Path] = {}
     for file in files:
         for sign in signs:
             turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
-            path = Path(f"{Path(name_of(file)).stem}{suffix}{turned}.csv")
+            path = Path(out) / f"{Path(name_of(file)).stem}{suffix}{turned}.csv"
             if path in paths.values():
                 raise InputError(Problem("two records would be written there", str(path), hint="write them one by one"))
             paths[file, sign] = path
     return paths
 
 
-def _spare_others(paths: Iterable[Path]) -> None:
-    """Refuse to replace a file that is no clean record: its name was not given, so nobody meant it."""
-    from rocking_cli.excitation.record_csv import is_record_csv
+def _is_file(out: str) -> bool:
+    return Path(out).suffix.lower() == ".csv" and not Path(out).is_dir()
 
+
+def _make_room(out: str | None, paths: Iterable[Path]) -> None:
+    """See that the files can be written: what was not named, and is no clean record, is not replaced."""
+    from rocking_cli.excitation.record_csv import is_record_csv
+    from rocking_cli.io.files import check_writable, folder
+
+    if out is None:
+        return
+    if not _is_file(out):
+        folder(out)
     for path in paths:
-        if path.exists() and not is_record_csv(path):
-            hint = "move it away, or work in another folder"
-            raise InputError(Problem("--to csv would replace a file that it did not write", str(path), hint=hint))
+        if not _is_file(out) and path.exists() and not is_record_csv(path):
+            hint = "move it away, or name another folder"
+            raise InputError(Problem("--out would replace a file that it did not write", str(path), hint=hint))
+        check_writable(path)
 
 
 def _frequency(structure: str) -> float:
@@ -146,26 +163,62 @@ def _frequency(structure: str) -> float:
     return structures.prepared([structure]).p
 
 
-def _examine(
-    file: str,
-    motion: GroundMotion,
-    asked: tuple[float | None, float | None, float | None],
-    polarity: int,
-    p: float | None,
-    pulse: bool,
-) -> tuple[Shown, GroundMotion]:
-    """The record and its scaled motion; what is doubtful is looked for in the record as read."""
-    from rocking_cli.excitation.doubts import coarse_for, doubts
-    from rocking_cli.excitation.measures import measure
-    from rocking_cli.views.record import Shown
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked of every record.
 
-    own = measure(motion)
-    found = doubts(motion, own) + (coarse_for(motion, p) if p is not None else [])
-    factor = polarity * motions.factor(motion, own, *asked)
-    scaled = motion.scaled(factor)
-    fits = _fit(scaled) if pulse else []
-    p_dt = p * motion.dt if p is not None else None
-    return Shown(file, motion.name, motion, factor, measure(scaled), found, p_dt, fits), scaled
+    Parameters
+    ----------
+    reading, scaling : Reading, Scaling
+        How it is read and scaled.
+    p : float or None
+        The frequency parameter to hold its interval against [rad/s].
+    fit_pulse : bool
+        Whether to fit pulses.
+    clean : mapping of (str, int) to Path
+        Where its clean file goes, by the record and the polarity; empty for none.
+    plot : Path or None
+        Where its picture goes.
+    """
+
+    reading: Reading
+    scaling: Scaling
+    p: float | None
+    fit_pulse: bool
+    clean: Mapping[tuple[str, int], Path]
+    plot: Path | None
+
+    def of(self, file: str) -> list[Examined]:
+        """Read a record, examine it in every polarity, and write what is to be written."""
+        from rocking_cli.excitation.records import read_record
+        from rocking_cli.excitation.records.opening import name_of
+
+        motion = read_record(file, **vars(self.reading))
+        found = []
+        for sign in self.scaling.signs:
+            one, scaled = self._examine(name_of(file), motion, sign)
+            if len(self.scaling.signs) > 1 and sign < 0:
+                one = one._replace(label=f"{one.label}, reversed")
+            if self.clean:
+                _write(self.clean[file, sign], scaled)
+            if self.plot is not None:
+                _draw(self.plot, scaled, one)
+            found.append(one)
+        return found
+
+    def _examine(self, file: str, motion: GroundMotion, polarity: int) -> tuple[Examined, GroundMotion]:
+        """The record and its scaled motion; what is doubtful is looked for in the record as read."""
+        from rocking_cli.excitation.doubts import coarse_for, doubts
+        from rocking_cli.excitation.measures import measure
+        from rocking_cli.views.record import Examined
+
+        own, p = measure(motion), self.p
+        found = doubts(motion, own) + (coarse_for(motion, p) if p is not None else [])
+        factor = polarity * motions.factor(motion, own, *self.scaling.scaling)
+        scaled = motion.scaled(factor)
+        fits = _fit(scaled) if self.fit_pulse else []
+        p_dt = p * motion.dt if p is not None else None
+        return Examined(file, motion.name, motion, factor, measure(scaled), found, p_dt, fits), scaled
 
 
 def _fit(motion: GroundMotion) -> list[PulseFit]:
@@ -190,15 +243,15 @@ def _write(path: Path, motion: GroundMotion) -> None:
     terminal.note(f"wrote {path.resolve()}")
 
 
-def _draw(path: Path, motion: GroundMotion, shown: Shown) -> None:
+def _draw(path: Path, motion: GroundMotion, examined: Examined) -> None:
     from rocking_cli.plotting.pulse_fit import draw_pulses
     from rocking_cli.plotting.record import draw_record
 
-    if shown.pulses:
-        end = shown.measures.t_95 or motion.duration
-        write_picture(path, draw_pulses(motion, _best(shown.pulses), end))
+    if examined.pulses:
+        end = examined.measures.t_95 or motion.duration
+        write_picture(path, draw_pulses(motion, _best(examined.pulses), end))
     else:
-        write_picture(path, draw_record(motion, shown.measures))
+        write_picture(path, draw_record(motion, examined.measures))
 
 
 def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:

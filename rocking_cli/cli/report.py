@@ -24,10 +24,7 @@ if TYPE_CHECKING:
 @options.motions
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse is shown", default="both")
-@click.option(
-    "-o", "--out", callback=options.output_path(".html"), metavar="FILE.html",
-    help="Where to.  [default: FILE with .html, in this folder; none with --json]",
-)  # fmt: skip
+@options.out(".html", what="Where to.  [default: FILE with .html, in this folder; none with --json]")
 @options.around
 @options.as_json
 @click.pass_context

@@ -10,6 +10,7 @@ import click
 
 from rocking_cli.cli import motions, options, terminal
 from rocking_cli.cli.groups import History, Near, Output, Shaking, Vertical
+from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import View, heading
@@ -48,12 +49,6 @@ def _release(ctx: click.Context, param: click.Parameter, value: float | None) ->
     return value
 
 
-def _tail(ctx: click.Context, param: click.Parameter, value: float) -> float:
-    if not 0 <= value <= 3600:
-        raise click.BadParameter(f"{value:g} is not a time between 0 and 3600 s.", ctx, param)
-    return value
-
-
 def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     if not FINEST_RTOL <= value < 1:
         raise click.BadParameter(
@@ -69,9 +64,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 @options.shaking
 @options.reading
 @click.option("--vertical", type=click.Path(), metavar="FILE", help="Its vertical component: g becomes g + v_g''.")
-@click.option(
-    "--vertical-dt", type=options.Finite(positive=True), metavar="SECONDS", help="Its interval, if it has one column."
-)
+@click.option("--vertical-dt", type=Quantity(INTERVAL), metavar="TIME", help="Its interval in s, if it has one column.")
 @click.option("--vertical-channel", metavar="CHANNEL", help="Which of several it is in its file.")
 @options.scaling("1", "-1", "both")
 @click.option(
@@ -83,7 +76,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 )
 @click.option(
     "--release",
-    type=options.Finite(),
+    type=Finite(),
     metavar="RATIO",
     callback=_release,
     help="Start at rest from this fraction of phi_cr; negative: anticlockwise.",
@@ -93,16 +86,15 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 )
 @click.option(
     "--tail",
-    type=options.Finite(),
+    type=Quantity(TAIL),
     default=10.0,
     show_default=True,
-    metavar="SECONDS",
-    callback=_tail,
-    help="How long the history goes on after the record.",
+    metavar="TIME",
+    help="How long the history goes on after the record, in s.",
 )
 @click.option(
     "--rtol",
-    type=options.Finite(positive=True),
+    type=Finite(positive=True),
     default=1e-9,
     show_default=True,
     metavar="TOLERANCE",
@@ -111,12 +103,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 )
 @options.around
 @click.option("--impacts", is_flag=True, help="List the impacts: times, and rates before and after.")
-@click.option(
-    "--out",
-    callback=options.output_path(".csv", ".parquet"),
-    metavar="FILE.csv",
-    help="Write the histories (.csv or .parquet).",
-)
+@options.out(".csv", ".parquet", what="Write the histories (.csv or .parquet).")
 @options.plot("Draw them")
 @options.as_json
 @click.pass_context

@@ -10,18 +10,15 @@ from rocking_cli.cli import options, terminal
 from rocking_cli.errors import INCOMPLETE
 
 
-@click.command(short_help="Summarise and export the store of a study.")
-@click.argument("file", metavar="STORE.db", type=click.Path())
-@click.option(
-    "--out",
-    callback=options.output_path(".csv", ".parquet"),
-    metavar="FILE.csv",
-    help="Write every run (.csv, .parquet).",
+@click.command(
+    cls=options.Renamed, renamed={"--pictures": "--plot"}, short_help="Summarise and export the store of a study."
 )
-@click.option("--pictures", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@click.argument("file", metavar="STORE.db", type=click.Path())
+@options.out(".csv", ".parquet", what="Write every run (.csv, .parquet).")
+@click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.as_json
 @click.pass_context
-def command(ctx: click.Context, file: str, out: Path | None, pictures: str | None, as_json: bool) -> None:
+def command(ctx: click.Context, file: str, out: Path | None, plot: str | None, as_json: bool) -> None:
     """Fragility curves and runs of a study, from its store.
 
     It needs none of the study's other files, and can look at a study while it runs.
@@ -29,23 +26,22 @@ def command(ctx: click.Context, file: str, out: Path | None, pictures: str | Non
     \b
     Example:
       rocking results study.db
-      rocking results study.db --out runs.parquet --pictures pictures
+      rocking results study.db --out runs.parquet --plot pictures
     """
-    from rocking_cli.cli.fragility_pictures import ready
     from rocking_cli.cli.fragility_results import give
-    from rocking_cli.io.files import keep_apart
+    from rocking_cli.io.files import folder, keep_apart
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.fragility.store import Store
 
     keep_apart([("--out", out)], [file])
     check_table(out)
-    folder = ready(pictures)
+    pictures = folder(plot) if plot is not None else None
     with Store.reading(Path(file)) as store:
         for each in store.doubts():
             terminal.warning(f"{file}: {each}")
         harmed = bool(store.damaged) or store.unreadable
         if harmed:
             terminal.note("`rocking fragility STUDY.yaml` takes over what is sound, and runs the rest again")
-        complete = give(store, out, folder, as_json=as_json) and not harmed
+        complete = give(store, out, pictures, as_json=as_json) and not harmed
     if not complete:
         ctx.exit(INCOMPLETE)

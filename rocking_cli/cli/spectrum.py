@@ -11,7 +11,7 @@ import click
 
 from rocking_cli.cli import motions, options, terminal
 from rocking_cli.cli.groups import Output, Shaking
-from rocking_cli.cli.quantities import Sizes
+from rocking_cli.cli.quantities import Finite, Share, Sizes
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def _numbers(low: float, high: float, what: str) -> Any:
     """A callback for a list of different numbers between two bounds."""
 
     def read(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[float, ...]:
-        number = options.Finite()
+        number = Share()
         words = value.split(",") if value is not None else []
         found = tuple(dict.fromkeys(number.convert(word, param, ctx) for word in words))
         for each in found:
@@ -89,7 +89,7 @@ class Sizing:
 @click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help="Equation of motion.")
 @click.option(
     "--eta",
-    type=options.Finite(),
+    type=Finite(),
     callback=options.restitution,
     help="Restitution.  [default: the structure's, the block's]",
 )
@@ -104,9 +104,7 @@ class Sizing:
     help="Beside the median, of several motions.",
 )
 @click.option("--jobs", type=click.IntRange(1, 1024), metavar="N", help="Processors to use.  [default: all]")
-@click.option(
-    "--out", callback=options.output_path(".csv"), metavar="FILE.csv", help="Write the curves, with every motion's."
-)
+@options.out(".csv", what="Write the curves, with every motion's.")
 @options.plot("Draw them")
 @options.as_json
 @click.pass_context

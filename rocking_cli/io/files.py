@@ -75,6 +75,17 @@ def read_at_most(stream: IO[bytes] | io.BufferedIOBase, most: int) -> bytes | No
     return b"".join(pieces)
 
 
+def folder(name: str) -> Path:
+    """A folder to write into, made if it is not there: before any work, as it may be refused, by `InputError`."""
+    path = Path(name)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(Problem(f"cannot be a folder to write into: {reason}", name)) from None
+    return path
+
+
 def check_writable(path: Path) -> None:
     """Refuse, before any work, a place where no file can be written: `InputError` says why."""
     shown, path = str(path), Path(os.path.realpath(path))  # through a link, the file it stands for

@@ -20,7 +20,7 @@ LEFT = 26  # characters that labels and units take of a table
 BESIDE = 3  # blanks between columns
 
 
-class Shown(NamedTuple):
+class Examined(NamedTuple):
     """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses.
 
     `label` is what to call it: of both polarities the reversed one says so.
@@ -36,7 +36,7 @@ class Shown(NamedTuple):
     pulses: list[PulseFit]
 
 
-def data(record: Shown) -> dict[str, Any]:
+def data(record: Examined) -> dict[str, Any]:
     """A record as plain data."""
     motion, measures = record.motion, record.measures
     found: dict[str, Any] = {
@@ -69,7 +69,7 @@ def data(record: Shown) -> dict[str, Any]:
     return found
 
 
-def parts(records: Sequence[Shown], width: int) -> Iterator[Table | str]:
+def parts(records: Sequence[Examined], width: int) -> Iterator[Table | str]:
     """A column for each record, in as many tables below one another as so many characters need; then its pulses."""
     names = [record.label if len(records) == 1 else _folded(record.label) for record in records]
     rows = _rows(records)
@@ -86,7 +86,7 @@ def parts(records: Sequence[Shown], width: int) -> Iterator[Table | str]:
             yield from pulse_fits.parts(record.label, record.pulses)
 
 
-def _rows(records: Sequence[Shown]) -> list[list[str]]:
+def _rows(records: Sequence[Examined]) -> list[list[str]]:
     """The rows of the table: a label, a cell for each record, a unit."""
     rows = [
         ("format", [_folded(r.motion.format) for r in records], ""),
@@ -114,7 +114,7 @@ def _rows(records: Sequence[Shown]) -> list[list[str]]:
     ]
 
 
-def _channel(record: Shown) -> str | None:
+def _channel(record: Examined) -> str | None:
     """The channel, of a file with several: readers put it into the name of the motion."""
     return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
 

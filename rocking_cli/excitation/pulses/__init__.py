@@ -17,7 +17,7 @@ __all__ = ["COARSE", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 
 GROUP = "rocking.pulses"
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?", re.ASCII)
-_TIMES = {"s": 1.0, "ms": 1e-3}
+_TIMES = {"": 1.0, "s": 1.0, "ms": 1e-3}
 
 
 class PulseShapes(Plugins[type[Pulse]]):
@@ -52,7 +52,7 @@ def parse_pulse(text: str) -> Pulse:
     Parameters
     ----------
     text : str
-        Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2, gal, mg or %g), period with its unit (s or ms; a frequency
+        Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2, gal, mg or %g), period in s (or with ms; a frequency
         in Hz will do), and what the shape takes besides, as numbers or with their unit: for `mavroeidis` the phase in
         deg and the number of cycles.
 

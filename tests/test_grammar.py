@@ -1,0 +1,156 @@
+"""One grammar for all commands: quantities with units, one name for one thing, and old names that go on working."""
+
+import json
+from importlib import import_module
+from pathlib import Path
+
+import click
+import pytest
+
+from rocking_cli.cli.main import COMMANDS
+from rocking_cli.cli.options import Renamed
+from rocking_cli.excitation.records import read_record
+from tests.test_cli import run
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+ACCEL, BLOCK, FRAME = (str(EXAMPLES / name) for name in ("accel.csv", "block.yaml", "frame.yaml"))
+FEW = ("--points", "6")
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def data(*arguments):
+    return json.loads(run(*arguments, "--json").stdout)
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "alike"),
+    [
+        (("pulse", BLOCK, "--ag", "0.4g"), "--period", ["0.8", "0.8s", "800ms", "1.25Hz", "0.8 s"]),
+        (("pulse", BLOCK, "--period", "1"), "--ag", ["0.4g", "0.4 g", "400mg", "40%g"]),
+        (("record", ACCEL), "--target-pga", ["0.25", "0.25g", "250mg"]),
+        (("record", ACCEL), "--target-pgv", ["0.5", "0.5m/s", "50 cm/s", "500mm/s"]),
+        (("respond", BLOCK, "--record", ACCEL), "--tail", ["2", "2s", "2000ms"]),
+        (("respond", BLOCK, "--record", ACCEL, "--model", "linear2"), "--within-amplitude", ["0.05", "5%", "5 %"]),
+        (("respond", BLOCK, "--model", "linear2"), "--pulse", ["sine:0.4g:0.8s", "sine:0.4g:0.8", "sine:400mg:800ms"]),
+        (("spectrum", BLOCK, "--record", ACCEL, "--sizes", "1:2:3"), "--fractiles", ["0.1,0.9", "10%,90%"]),
+        (("spectrum", "--record", ACCEL, "--slenderness", "0.2"), "--sizes", ["1:2:3", "1s:2s:3", "1000ms:2s:3"]),
+        (("overturning", BLOCK, *FEW), "--period", ["0.2:4", "0.2s:4s", "200ms:4s"]),
+        (("equivalent", BLOCK, FRAME, "--ag", "0.6g"), "--period", ["0.5", "500ms", "2Hz"]),
+    ],
+)
+def test_the_same_quantity_in_any_spelling_gives_the_same(command, option, alike):
+    first, *others = (run(*command, option, text, "--json").stdout for text in alike)
+    assert others == [first] * len(others)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("record", ACCEL, "--target-pga", "3m"), "'m' is no unit of acceleration: give one of g, m/s2"),
+        (("record", ACCEL, "--target-pgv", "3m"), "3m is a length, not a velocity"),
+        (("record", ACCEL, "--dt", "10 Hz"), "'Hz' is not a unit of time"),
+        (("record", ACCEL, "--dt", "x"), "'x' is no time: give such as 0.01s"),
+        (("respond", BLOCK, "--record", ACCEL, "--tail", "2h"), "'h' is not a unit of time"),
+        (("respond", BLOCK, "--record", ACCEL, "--tail", "61min"), "beyond what is followed: 0 to 3600 s"),
+        (("margin", BLOCK, "--record", ACCEL, "--within-amplitude", "2x"), "'2x' is not a share: give such as 0.02 or"),
+        (("overturning", BLOCK, "--ag", "0.1:2"), "'0.1' has no unit: give one of g"),
+    ],
+)  # fmt: skip
+def test_what_is_no_such_quantity_is_said(arguments, words):
+    assert words in " ".join(run(*arguments, code=2).stderr.split())
+
+
+# Old names
+
+
+def commands():
+    return {name: import_module(f"rocking_cli.cli.{name}").command for name in COMMANDS}
+
+
+def test_every_old_name_stands_for_an_option_of_today_and_is_none_itself():
+    renamed = {name: command for name, command in commands().items() if isinstance(command, Renamed)}
+    assert len(renamed) >= 6
+    for name, command in renamed.items():
+        today = {word for each in command.params if isinstance(each, click.Option) for word in each.opts}
+        for old, new in command.renamed.items():
+            assert new in today and old not in today, (name, old)
+
+
+def test_one_name_is_one_thing_in_every_command():
+    meant: dict[str, set[str | None]] = {}
+    for command in commands().values():
+        for each in command.params:
+            if isinstance(each, click.Option) and not each.hidden:
+                meant.setdefault(max(each.opts, key=len), set()).add(each.metavar)
+                assert ("-o" in each.opts) == ("--out" in each.opts)
+    assert meant["--pulse"] == {"PULSE"} and meant["--shape"] == {"SHAPE"}
+    assert meant["--ag"] == {"AMPLITUDE", "LOW:HIGH"} and meant["--period"] == {"PERIOD", "LOW:HIGH"}
+    assert all(kind and kind.startswith(("FILE", "FOLDER")) for kind in meant["--plot"])
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (("overturning", BLOCK, *FEW, "--periods", "0.2:4"), ("overturning", BLOCK, *FEW, "--period", "0.2:4")),
+        (("overturning", BLOCK, *FEW, "--accelerations=0.1g:2g"), ("overturning", BLOCK, *FEW, "--ag", "0.1g:2g")),
+        (("overturning", *FEW, "--pulse", "half_sine"), ("overturning", *FEW, "--shape", "half_sine")),
+        (("error", BLOCK, "--accel", "3"), ("error", BLOCK, "--a", "3")),
+        (("record", ACCEL, "--pulse"), ("record", ACCEL, "--fit-pulse")),
+    ],
+)
+def test_an_old_name_does_the_same_with_a_note_beside_the_result(old, new):
+    before, today = run(*old, "--json"), run(*new, "--json")
+    assert before.stdout == today.stdout
+    name = next(word for word in old if word.startswith("--") and word not in (*new, "--points"))
+    assert f"{name.partition('=')[0]} is called {next(w for w in new if w.startswith('--') and w not in old)} now" in (
+        before.stderr
+    )
+    assert "is called" not in today.stderr
+
+
+def test_a_file_called_like_an_old_name_is_a_file(tmp_path):
+    (tmp_path / "--pulse").write_bytes(Path(ACCEL).read_bytes())
+    result = run("record", "--", "--pulse")
+    assert "is called" not in result.stderr and "mean acceleration" in result.stdout
+
+
+def test_where_pictures_and_figures_go_by_their_old_names(tmp_path):
+    assert "--folder is called --out now" in run("figure", "3", "--folder", "there").stderr
+    assert sorted(path.name for path in (tmp_path / "there").iterdir()) == ["figure3.csv", "figure3.png"]
+
+
+# Where a clean record goes
+
+
+def test_a_clean_record_goes_to_the_file_or_into_the_folder_that_is_named(tmp_path):
+    run("record", ACCEL, "-o", "clean.csv", "--scale", "2")
+    run("record", ACCEL, "--polarity", "both", "--out", "made/here")
+    assert sorted(path.name for path in (tmp_path / "made" / "here").iterdir()) == ["accel-reversed.csv", "accel.csv"]
+    twice = read_record("clean.csv").acceleration
+    assert twice == pytest.approx(2 * read_record("made/here/accel.csv").acceleration, rel=1e-12)
+    (tmp_path / "folder.csv").mkdir()
+    run("record", ACCEL, "--out", "folder.csv")
+    assert (tmp_path / "folder.csv" / "accel.csv").exists()
+
+
+def test_to_csv_writes_into_this_folder_as_it_did(tmp_path):
+    assert "--to csv is called --out now" in run("record", ACCEL, "--to", "csv").stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["accel.csv"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((ACCEL, "--polarity", "both", "--out", "one.csv"), "--out FILE.csv takes one record"),
+        ((ACCEL, "--out", "taken/x"), "cannot be a folder to write into"),
+        ((ACCEL, "--out", "no/one.csv"), "no/one.csv"),
+    ],
+)
+def test_what_cannot_be_written_is_said_and_nothing_is(arguments, words, tmp_path):
+    (tmp_path / "taken").write_text("", encoding="utf-8")
+    assert words in " ".join(run("record", *arguments, code=2).stderr.split())
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
