@@ -69,7 +69,7 @@ def beside_runs(folder: Path) -> None:
 def _fits(place: Path) -> float:
     """Seconds from a finished store to its curves, in a new process but for what every command imports."""
     code = (
-        "import sys, time; from pathlib import Path; from rocking_cli.cli.fragility_results import give;"
+        "import sys, time; from pathlib import Path; from rocking_cli.cli.study_output import give;"
         "from rocking_cli.studies.fragility.store import Store; import rocking_cli.studies.fragility.campaign;"
         "start = time.perf_counter();\n"
         "with Store.reading(Path(sys.argv[1])) as store: give(store, None, None, as_json=True)\n"

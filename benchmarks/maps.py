@@ -21,7 +21,7 @@ from rocking_cli import Runs, load_structure, respond_many
 from rocking_cli.dynamics.model import linear_model
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.studies.overturning import overturning_map
-from rocking_cli.studies.shaken import Shaken, linear_block, outcomes, parse_shape, shaken
+from rocking_cli.studies.under_pulses import Shaken, linear_block, outcomes, parse_shape, shaken
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 POINTS = 256

@@ -23,7 +23,7 @@ from rocking_cli.dynamics.history import History, respond
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
-from rocking_cli.plotting.fragility import Drawn, draw_curves, draw_surface
+from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_surface
 from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.overturning import draw_map
@@ -35,7 +35,7 @@ from rocking_cli.studies.margin import FACTORS, Margin
 from rocking_cli.studies.neighbours import Around
 from rocking_cli.studies.overturning import OverturningMap, overturning_map
 from rocking_cli.studies.picture import picture
-from rocking_cli.studies.shaken import linear_block, parse_shape
+from rocking_cli.studies.under_pulses import linear_block, parse_shape
 from tests.conftest import EXAMPLES
 
 FOLDER = Path(__file__).parent / "pictures"
@@ -86,7 +86,9 @@ def _seen(median: float, dispersion: float) -> Observations:
 
 def _curves(*medians: float) -> Figure:
     seen = [_seen(each, 0.3 + 0.1 * k) for k, each in enumerate(medians)]
-    return draw_curves([Drawn(f"{k}", fit_curve(each), each) for k, each in enumerate(seen)], "PGA [g]", "curves")
+    return draw_curves(
+        [LabelledCurve(f"{k}", fit_curve(each), each) for k, each in enumerate(seen)], "PGA [g]", "curves"
+    )
 
 
 def _surface() -> Figure:

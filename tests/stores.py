@@ -315,7 +315,7 @@ def _is_sound(place: Path, sound: Sound, told: str) -> None:
 WAITS = """
 import sys, time
 from pathlib import Path
-import rocking_cli.cli.fragility, rocking_cli.cli.fragility_results, rocking_cli.studies.fragility.campaign
+import rocking_cli.cli.fragility, rocking_cli.cli.study_output, rocking_cli.studies.fragility.campaign
 import rocking_cli.dynamics.kernels, rocking_cli.views.fragility
 from rocking_cli.cli.main import main
 Path(sys.argv[1]).touch()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from rocking_cli.cli import motions, respond
+from rocking_cli.cli import motion_files, respond
 from rocking_cli.cli.main import main
 from rocking_cli.dynamics import history
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -88,7 +88,7 @@ def test_a_pulse_too_short_to_be_shown_is_no_question_of_dt():
 
 def test_the_bounds_that_stand_twice_agree():
     assert respond.FINEST_RTOL == history.FINEST_RTOL
-    assert (motions.MOST_PGA, motions.MOST_PGV) == (1e3, 1e4)
+    assert (motion_files.MOST_PGA, motion_files.MOST_PGV) == (1e3, 1e4)
 
 
 def test_the_finest_tolerance_is_reached():

@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from rocking_cli.cli.work import say_if_compiling
+from rocking_cli.cli.waiting import say_if_compiling
 from rocking_cli.dynamics import compiled
 from tests.conftest import EXAMPLES
 

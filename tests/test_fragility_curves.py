@@ -21,7 +21,7 @@ from rocking_cli.studies.fragility.fit import NO_ERRORS, fit_outcomes
 from rocking_cli.studies.fragility.goodness import goodness_of_runs
 from rocking_cli.studies.fragility.likelihood import separable
 from rocking_cli.studies.fragility.observed import HELD
-from rocking_cli.studies.shaken import linear_block, outcomes, parse_shape
+from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape
 from tests.conftest import PROJECT
 
 COVERAGE = runpy.run_path(str(PROJECT / "docs" / "make_coverage.py"))

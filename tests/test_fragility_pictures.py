@@ -10,7 +10,7 @@ import pytest
 from matplotlib.collections import LineCollection
 from scipy.stats import binomtest
 
-from rocking_cli.plotting.fragility import Drawn, draw_curves, draw_ida, draw_surface
+from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_ida, draw_surface
 from rocking_cli.studies.fragility.assess import Bivariate
 from rocking_cli.studies.fragility.curves import Observations, fit_curve, fit_surface
 
@@ -28,7 +28,7 @@ def bivariate(x1, x2, exceeded):
 
 
 def drawn(name, seen):
-    return Drawn(name, fit_curve(seen), seen)
+    return LabelledCurve(name, fit_curve(seen), seen)
 
 
 def marks(axes):

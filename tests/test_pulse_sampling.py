@@ -19,7 +19,7 @@ from rocking_cli.dynamics.model import build_model
 from rocking_cli.dynamics.sampled_pulse import sampled_history
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 from rocking_cli.excitation.pulses.base import FINE
-from rocking_cli.studies.shaken import parse_shape
+from rocking_cli.studies.under_pulses import parse_shape
 
 BLOCK = Block(width=0.9, height=3.4, gravity=9.81)
 ALPHA, R = atan(0.9 / 3.4), hypot(0.9, 3.4) / 2

@@ -20,7 +20,7 @@ from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting.spectrum import draw_spectra
-from rocking_cli.studies.spectrum import shape_of, spectra, work
+from rocking_cli.studies.spectrum import count_histories, shape_of, spectra
 
 
 class Laden(Mechanism):
@@ -120,7 +120,7 @@ def test_enlarging_multiplies_lengths_in_lists_and_defaults_too_and_nothing_else
 def test_of_several_motions_and_both_polarities_every_history_is_counted_and_progress_told():
     shape, done = shape_of(LADEN, "linear2"), []
     (found,) = spectra([shape], PERIODS, MOTIONS, polarities=(1, -1), progress=done.append)
-    assert sum(done) == work([shape], PERIODS, 2, (1, -1)) and found.peak_ratio.shape == (2, 5)
+    assert sum(done) == count_histories([shape], PERIODS, 2, (1, -1)) and found.peak_ratio.shape == (2, 5)
 
 
 def test_a_size_that_cannot_be_built_is_named():

@@ -18,7 +18,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting.spectrum import draw_spectra
-from rocking_cli.studies.spectrum import Shape, Spectrum, blocks_of, fractile, shape_of, spectra, work
+from rocking_cli.studies.spectrum import Shape, Spectrum, blocks_of, count_histories, fractile, shape_of, spectra
 
 PULSE = parse_pulse("sine:0.45g:0.8s")
 FRAME = {
@@ -126,13 +126,13 @@ class TestTheStructureItself:
         each = [[worst(stone, motion.scaled(sign)) for motion in motions] for sign in (1, -1)]
         assert found.peak_ratio[:, 0].tolist() == np.max(each, axis=0).tolist()
         assert np.argmax(each, axis=0).tolist() not in ([0, 0, 0], [1, 1, 1])
-        assert sum(done) == work([shape], periods, 3, (1, -1)) == 6
+        assert sum(done) == count_histories([shape], periods, 3, (1, -1)) == 6
 
     def test_a_symmetric_structure_needs_one_polarity(self):
         shape, periods, motion = blocks_of(0.25, "nonlinear"), np.geomspace(1, 8, 5), a_record()
         one, other = (spectra([shape], periods, [motion], polarities=[sign])[0] for sign in (1, -1))
         assert one.peak_ratio == pytest.approx(other.peak_ratio, rel=1e-9)
-        assert work([shape], periods, 1, (1, -1)) == 5
+        assert count_histories([shape], periods, 1, (1, -1)) == 5
 
     def test_a_restitution_given_is_that_of_every_impact(self):
         shape = shape_of(Block(**BLOCK), "nonlinear", 0.8)

@@ -21,7 +21,7 @@ from rocking_cli import GroundMotion, equivalent_block, exact_response, load_str
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.fragility import assess, curves, engines, sources, store, store_file, tally, work
+from rocking_cli.studies.fragility import assess, curves, engines, sources, store, store_file, tally, units
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.definition import RecordEntry
 from rocking_cli.studies.fragility.intensity import MEASURES, Scales, intensity
@@ -130,7 +130,7 @@ class TestSameResults:
         assert dump(tmp_path / "other.db") == dump(whole[2])
 
     def test_whatever_memory_there_is_for_records(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr(work, "SAMPLES", 1)
+        monkeypatch.setattr(units, "SAMPLES", 1)
         monkeypatch.setattr("rocking_cli.studies.fragility.sources.KEPT", 1)
         carry_out(whole[0], tmp_path / "other.db", jobs=2)
         assert dump(tmp_path / "other.db") == dump(whole[2])
@@ -143,7 +143,7 @@ class TestSameResults:
             if len(done) == 3:
                 raise OSError("the machine is on fire")
             done.append(unit)
-            return work.carry_out(unit)
+            return units.carry_out(unit)
 
         place = tmp_path / "other.db"
         monkeypatch.setattr("rocking_cli.studies.fragility.campaign.carry_out", breaks)
@@ -153,7 +153,7 @@ class TestSameResults:
             assert 0 < kept.count()[0] < whole[1].plan.total
         ran = []
         monkeypatch.setattr(
-            "rocking_cli.studies.fragility.campaign.carry_out", lambda unit: ran.append(unit) or work.carry_out(unit)
+            "rocking_cli.studies.fragility.campaign.carry_out", lambda unit: ran.append(unit) or units.carry_out(unit)
         )
         before = whole[1].plan.total - carry_out(whole[0], place, jobs=2).finished
         assert sum(len(unit.id) for unit in ran) == before  # nothing twice
@@ -503,12 +503,12 @@ def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, m
 
 
 def test_units_hold_few_models(tmp_path, monkeypatch):
-    monkeypatch.setattr(work, "MODELS", 3)
+    monkeypatch.setattr(units, "MODELS", 3)
     path = write(tmp_path, STUDY.replace("samples: 4", "samples: 20"), count=2)
     with Store.writing(tmp_path / "study.db") as kept:
         prepared = prepare(load_study(path), kept)
         study, plan = prepared.study, prepared.plan
-        made = list(work.units(plan, study.samples, prepared.motions, "nonlinear", kept.finished, 1000))
+        made = list(units.units(plan, study.samples, prepared.motions, "nonlinear", kept.finished, 1000))
     assert max(len(each.models) for each in made) == 3
     assert np.concatenate([each.id for each in made]).tolist() == list(range(plan.total))
 

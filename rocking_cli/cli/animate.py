@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
-from rocking_cli.cli import motions, options, terminal
-from rocking_cli.cli.groups import Near, Shaking
+from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli.groups import GroundMotions, Near
 from rocking_cli.cli.quantities import Finite
 from rocking_cli.errors import INCOMPLETE, InputError, Problem, RockingError
 from rocking_cli.names import percent
@@ -51,7 +51,7 @@ class Pace:
 
 @click.command(short_help="The mechanism moving under a ground motion: GIF or page.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
-@options.shaking
+@options.ground_motions
 @options.reading
 @options.scaling("1", "-1")
 @click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help="Which history.")
@@ -70,11 +70,11 @@ class Pace:
 @options.around
 @options.as_json
 @click.pass_context
-@options.grouped(shaking=Shaking, pace=Pace, near=Near)
+@options.grouped(asked=GroundMotions, pace=Pace, near=Near)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    shaking: Shaking,
+    asked: GroundMotions,
     model: str,
     out: Path,
     pace: Pace,
@@ -97,27 +97,27 @@ def command(
       rocking animate frame.yaml --record accel.csv --out frame.html
       rocking animate arch.yaml --pulse sine:0.5g:1.2s --out arch.gif --speed 0.5
     """
-    if bool(shaking.records) == bool(shaking.pulses):
+    if bool(asked.records) == bool(asked.pulses):
         raise click.UsageError("Give --record FILE or --pulse PULSE, and not both.")
-    if not shaking.records and any(value is not None for value in shaking.reading):
+    if not asked.records and any(value is not None for value in asked.reading):
         raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
-    paths, missing = motions.find(shaking.records)
-    several = len(paths) + missing + len(shaking.pulses) > 1
-    if not paths and not shaking.pulses:
+    paths, missing = motion_files.find(asked.records)
+    several = len(paths) + missing + len(asked.pulses) > 1
+    if not paths and not asked.pulses:
         ctx.exit(InputError.exit_code)
     from rocking_cli.cli import inputs
-    from rocking_cli.cli.work import say_if_compiling
+    from rocking_cli.cli.waiting import say_if_compiling
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.picture import picture
     from rocking_cli.views.animation import view
 
     read = [*files, *(str(path) for path in paths)]
     keep_apart([("--out", out)], read)
-    structure = inputs.structure(files, shaking.records)
-    given, refused = inputs.gather(paths, shaking, structure.equivalence, several=several)
+    structure = inputs.structure(files, asked.records)
+    given, refused = inputs.gather(paths, asked, structure.equivalence, several=several)
     if not given:
         ctx.exit(InputError.exit_code)
-    places = motions.separate(out, given, several=several)
+    places = motion_files.separate(out, given, several=several)
     keep_apart([("--out", place) for place in places], read)
     say_if_compiling()
     built, drawn = structure.model(cast("ModelName", model)), picture(structure.mechanism)
@@ -125,7 +125,7 @@ def command(
     rows: list[list[str]] = []
     for each, place in zip(given, places, strict=True):
         assert place is not None
-        motion = each.motion.scaled(shaking.signs[0] * each.factor)
+        motion = each.motion.scaled(asked.signs[0] * each.factor)
         try:
             film, found, beside = _shoot(place, built, drawn, motion, title, pace, near)
         except RockingError as error:

@@ -72,7 +72,7 @@ def command(
     """
     if len(files) < 2:
         raise click.UsageError("Equivalent to what? Give two FILEs or more; the pulse is for the first.")
-    from rocking_cli.cli import structures, work
+    from rocking_cli.cli import structures, waiting
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.equivalent import equivalent, judge
     from rocking_cli.views.equivalent import table, title, view
@@ -83,7 +83,7 @@ def command(
     if files[0] not in good or len(good) < 2:
         raise InputError("the first FILE and one more are needed: the pulse is for the first")
     mechanisms = structures.told_apart(loaded, good)
-    work.say_if_compiling()
+    waiting.say_if_compiling()
     found = equivalent(mechanisms, given, polarity=pulse.signs[0], kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
 
     def draw() -> Figure:

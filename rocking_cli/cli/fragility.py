@@ -80,7 +80,7 @@ def command(
       rocking results study.db --out runs.csv
     """
     from rocking_cli.cli import structures
-    from rocking_cli.cli.fragility_results import give
+    from rocking_cli.cli.study_output import show_study
     from rocking_cli.io.files import check_writable, folder, keep_apart
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
@@ -100,7 +100,7 @@ def command(
             pictures = folder(plot) if plot is not None else None
             _bring_up_to_date(study, place, running)
             with Store.reading(place) as kept:
-                complete = give(kept, None, pictures, as_json=as_json)
+                complete = show_study(kept, None, pictures, as_json=as_json)
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(endings.exit_code(stopped))
@@ -122,7 +122,7 @@ def _check(study: Study, *, as_json: bool) -> bool:
 
 def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
     """Run what the store does not hold; to begin anew all, and the old store is kept under another name."""
-    from rocking_cli.cli import work
+    from rocking_cli.cli import waiting
     from rocking_cli.studies.fragility.campaign import prepare, run
     from rocking_cli.studies.fragility.store import Store
 
@@ -137,7 +137,7 @@ def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
         if prepared.finished == prepared.plan.total:
             return
         if running.scheduler is None:
-            work.say_if_compiling()
+            waiting.say_if_compiling()
         engine = engine or stack.enter_context(running.engine())
         done, failed = prepared.finished, prepared.failed
         with terminal.progress(prepared.plan.total, "runs", done=done, failed=failed) as advance:

@@ -67,7 +67,7 @@ class Scaling:
 
 
 @dataclass(frozen=True)
-class Shaking(Scaling, Reading):
+class GroundMotions(Scaling, Reading):
     """Which ground motions, how records are read, and how both are scaled."""
 
     records: tuple[str, ...]
@@ -96,7 +96,7 @@ class SizedPulse:
     def pulse(self) -> Pulse:
         """The pulse itself, of which both sizes are given."""
         from rocking_cli.excitation.base import STANDARD_GRAVITY
-        from rocking_cli.studies.shaken import parse_shape
+        from rocking_cli.studies.under_pulses import parse_shape
 
         assert self.ag is not None and self.period is not None
         return replace(parse_shape(self.shape), amplitude=self.ag * STANDARD_GRAVITY, period=self.period)

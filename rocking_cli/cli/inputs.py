@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rocking_cli.cli import motions, terminal
+from rocking_cli.cli import motion_files, terminal
 from rocking_cli.excitation.scaled import Scaled
 
 if TYPE_CHECKING:
-    from rocking_cli.cli.groups import Shaking, Vertical
+    from rocking_cli.cli.groups import GroundMotions, Vertical
     from rocking_cli.core import Equivalence
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
@@ -27,12 +27,12 @@ def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
     from rocking_cli.errors import InputError
 
     if len(files) > 1:
-        motions.check_strays(files, records)
+        motion_files.check_strays(files, records)
         raise click.UsageError(f"This is of one structure, and {len(files)} are given: {', '.join(files)}.")
     try:
         return structures.prepared(files)
     except InputError:
-        motions.check_strays(files, records)
+        motion_files.check_strays(files, records)
         raise
 
 
@@ -94,8 +94,8 @@ def judge(
     if motion.format != "pulse":  # what a formula leaves the ground with is meant
         _warn(motion, measured, blocks)
     if motion.vertical is not None:
-        motions.warn(motion.vertical, doubts(motion.vertical, measure(motion.vertical)))
-    factor = motions.factor(motion, measured, scale, target_pga, target_pgv)
+        motion_files.warn(motion.vertical, doubts(motion.vertical, measure(motion.vertical)))
+    factor = motion_files.factor(motion, measured, scale, target_pga, target_pgv)
     if factor != 1:
         pga, pgv = abs(factor) * measured.pga, abs(factor) * measured.pgv
         terminal.note(f"scaled by {factor:.6g}: PGA = {pga:.4g} g, PGV = {pgv:.4g} m/s")
@@ -106,11 +106,11 @@ def _warn(motion: GroundMotion, measured: Measures, blocks: Equivalence) -> None
     from rocking_cli.excitation.doubts import coarse_for, doubts
 
     p = max(blocks.positive.p, blocks.negative.p)
-    motions.warn(motion, doubts(motion, measured) + coarse_for(motion, p))
+    motion_files.warn(motion, doubts(motion, measured) + coarse_for(motion, p))
 
 
 def gather(
-    paths: Sequence[Path], asked: Shaking, blocks: Equivalence, vertical: Vertical | None = None, *, several: bool
+    paths: Sequence[Path], asked: GroundMotions, blocks: Equivalence, vertical: Vertical | None = None, *, several: bool
 ) -> tuple[list[Scaled], int]:
     """The motions that shake a structure, and how many of those asked for cannot be used.
 
@@ -119,7 +119,7 @@ def gather(
     """
     if several:
         p = max(blocks.positive.p, blocks.negative.p)
-        return motions.gather(paths, asked.pulses, asked.reading, asked.scaling, p, "this structure")
+        return motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, p, "this structure")
     pulse, file = None, None
     if asked.pulses:
         pulse, motion = make(asked.pulses[0])

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rocking_cli.cli import motions, options, terminal
-from rocking_cli.cli.groups import Near, Shaking
+from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli.groups import GroundMotions, Near
 from rocking_cli.errors import INCOMPLETE, InputError
 from rocking_cli.views.view import heading
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 @click.command(short_help="How close motions are to overturning, as shares over the factor.")
 @click.argument("file", required=False, type=click.Path())
-@options.motions
+@options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse of the two", default="both")
 @options.around
 @options.plot("Draw the shares")
 @options.as_json
 @click.pass_context
-@options.grouped(shaking=Shaking, near=Near)
+@options.grouped(asked=GroundMotions, near=Near)
 def command(
-    ctx: click.Context, file: str | None, shaking: Shaking, near: Near, plot: Path | None, as_json: bool
+    ctx: click.Context, file: str | None, asked: GroundMotions, near: Near, plot: Path | None, as_json: bool
 ) -> None:  # fmt: skip
     """How close ground motions are to overturning a structure: the share of overturning over the factor on each.
 
@@ -46,7 +46,7 @@ def command(
       rocking margin frame.yaml --record "records/*.AT2" --polarity 1
       rocking margin --pulse sine:0.5g:0.8s --neighbours 1000
     """
-    if not shaking:
+    if not asked:
         raise click.UsageError("Nothing to vary: give --record PLACE or --pulse PULSE, each as often as you like.")
     if not near.neighbours:
         raise click.UsageError("A share needs neighbours: --neighbours must be at least 1 here.")
@@ -54,33 +54,33 @@ def command(
     from rocking_cli.io.files import keep_apart
     from rocking_cli.views.margin import view
 
-    paths, missing = motions.find(shaking.records)
+    paths, missing = motion_files.find(asked.records)
     keep_apart([("--plot", plot)], [file, *(str(path) for path in paths)])
     structure = structures.prepared([file] if file else [])
     mechanism, model = structure.mechanism, structure.model("nonlinear")
-    chosen, refused = motions.gather(paths, shaking.pulses, shaking.reading, shaking.scaling, structure.p)
+    chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, structure.p)
     if not chosen:
         ctx.exit(InputError.exit_code)
-    rows = _rows(model, chosen, shaking.signs, near.around)
+    rows = _rows(model, chosen, asked.signs, near.around)
     if plot is not None:
         from rocking_cli.cli.pictures import write_picture
         from rocking_cli.plotting.margin import draw_margins
 
         write_picture(plot, draw_margins({row.name: row.margin for row in rows}, heading(mechanism)))
-    terminal.show(view(mechanism, rows, shaking.polarity, near.around), as_json=as_json)
+    terminal.show(view(mechanism, rows, asked.polarity, near.around), as_json=as_json)
     if missing or refused:
         ctx.exit(INCOMPLETE)
 
 
 def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], around: Around) -> list[Any]:
     """The margin of each motion, and the share next to the motion itself."""
-    from rocking_cli.cli import work
+    from rocking_cli.cli import waiting
     from rocking_cli.studies.margin import FACTORS, margin
     from rocking_cli.views.margin import Row
 
     rows = []
     each_has = (FACTORS.size + 1) * around.count * len(polarities)
-    with work.histories(each_has * len(chosen)) as progress:
+    with waiting.histories(each_has * len(chosen)) as progress:
         for motion, factor, *_ in chosen:
             scaled = motion.scaled(factor)
             rows.append(

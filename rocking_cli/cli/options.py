@@ -98,7 +98,7 @@ class Renamed(click.Command):
 
 
 def grouped(**groups: type) -> Decorator:
-    """Hand options to a command as objects: `shaking=Shaking` makes one of the options that are its fields.
+    """Hand options to a command as objects: `asked=GroundMotions` makes one of the options that are its fields.
 
     The options themselves are declared by other decorators, above this one.
     """
@@ -128,26 +128,17 @@ def _in_order(*decorators: Decorator) -> Decorator:
     return decorate
 
 
-shaking: Decorator = _in_order(
+ground_motions: Decorator = _in_order(
     click.option(
         "--record", "records", multiple=True, metavar="PLACE",
         help="A ground motion, - for standard input, or a pattern in quotes: 'records/*.AT2'. May be repeated.",
     ),
     click.option(
         "--pulse", "pulses", multiple=True, metavar="PULSE",
-        help="A pulse instead, such as sine:0.6g:0.8s: NAME:AMPLITUDE:PERIOD. May be repeated.",
+        help="A pulse for one, NAME:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s. May be repeated.",
     ),
 )  # fmt: skip
-"""Ground motions, one or several: `records` or `pulses`."""
-
-motions: Decorator = _in_order(
-    click.option(
-        "--record", "records", multiple=True, metavar="PLACE",
-        help="A ground motion, - for standard input, or a pattern in quotes: 'records/*.AT2'. May be repeated.",
-    ),
-    click.option("--pulse", "pulses", multiple=True, metavar="PULSE", help="Such as sine:0.6g:0.8s. May be repeated."),
-)  # fmt: skip
-"""Any number of ground motions: `records` and `pulses`."""
+"""Ground motions, any number of them: `records` and `pulses`."""
 
 reading: Decorator = _in_order(
     click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),

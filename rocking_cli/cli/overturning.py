@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.pulses import Pulse
-    from rocking_cli.studies.shaken import Reals, Shaken
+    from rocking_cli.studies.under_pulses import PulsedModel, Reals
 
 MODELS = ("linear2", "linear1", "nonlinear")
 PLANE, CURVE = 256, 60  # points, of each side of a map and of a curve
@@ -115,7 +115,7 @@ def command(
     from rocking_cli.cli import structures
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.studies.shaken import linear_block, parse_shape, shaken
+    from rocking_cli.studies.under_pulses import linear_block, parse_shape, pulsed_model
 
     keep_apart([("--out", output.out), ("--plot", output.plot)], files)
     shape = parse_shape(pulses.shape)
@@ -125,7 +125,7 @@ def command(
         raise InputError("only one of the FILEs can be used: --compare needs two or more")
     mechanisms = structures.told_apart(loaded, good)
     subjects = [
-        shaken(Prepared(each, file), cast("ModelName", model), shape, pulses.signs, pulses.eta)
+        pulsed_model(Prepared(each, file), cast("ModelName", model), shape, pulses.signs, pulses.eta)
         for each, file in zip(mechanisms, good, strict=True)
     ]
     exact = model != "nonlinear" and bool(shape.segments())
@@ -139,7 +139,7 @@ def command(
 
 
 def _compare(
-    subjects: list[Shaken],
+    subjects: list[PulsedModel],
     mechanisms: list[Mechanism],
     shape: Pulse,
     signs: tuple[int, ...],
@@ -149,12 +149,14 @@ def _compare(
     exact: bool,
 ) -> None:
     """Find the least amplitudes that overturn several structures, and show them."""
-    from rocking_cli.cli import work
+    from rocking_cli.cli import waiting
     from rocking_cli.studies import overturning as study
     from rocking_cli.views import overturning as views
 
     spread, top = _curves(subjects, plane)
-    with work.histories(study.work(subjects, spread.size * study.SCAN * study.PASSES, signs), exact=exact) as progress:
+    with waiting.histories(
+        study.count_histories(subjects, spread.size * study.SCAN * study.PASSES, signs), exact=exact
+    ) as progress:
         found = study.compare(subjects, shape, spread, top, polarities=signs, progress=progress)
 
     def draw() -> Figure:
@@ -167,7 +169,7 @@ def _compare(
 
 
 def _map(
-    subject: Shaken,
+    subject: PulsedModel,
     mechanism: Mechanism | None,
     shape: Pulse,
     signs: tuple[int, ...],
@@ -177,13 +179,15 @@ def _map(
     exact: bool,
 ) -> None:
     """Follow a plane of pulses on one structure, or on the linear block, and show the map."""
-    from rocking_cli.cli import work
+    from rocking_cli.cli import waiting
     from rocking_cli.studies import overturning as study
     from rocking_cli.views import overturning as views
 
     dimensionless = plane.dimensionless or mechanism is None
     omegas, amplitudes = _plane(subject, plane, dimensionless=dimensionless)
-    with work.histories(study.work([subject], omegas.size * amplitudes.size, signs), exact=exact) as progress:
+    with waiting.histories(
+        study.count_histories([subject], omegas.size * amplitudes.size, signs), exact=exact
+    ) as progress:
         found = study.overturning_map(subject, shape, omegas, amplitudes, polarities=signs, progress=progress)
 
     def draw() -> Figure:
@@ -217,7 +221,7 @@ def _check(files: tuple[str, ...], compare: bool, model: str | None, plane: Plan
             raise click.UsageError(f"--{option} has no meaning {why}: give {instead}{more}.")
 
 
-def _plane(subject: Shaken, plane: Plane, *, dimensionless: bool) -> tuple[Reals, Reals]:
+def _plane(subject: PulsedModel, plane: Plane, *, dimensionless: bool) -> tuple[Reals, Reals]:
     """omega and a of the columns and rows, even over what the map is drawn over."""
     import numpy as np
 
@@ -233,7 +237,7 @@ def _plane(subject: Shaken, plane: Plane, *, dimensionless: bool) -> tuple[Reals
     return subject.period(spread), amplitudes / unit
 
 
-def _curves(subjects: list[Shaken], plane: Plane) -> tuple[Reals, float]:
+def _curves(subjects: list[PulsedModel], plane: Plane) -> tuple[Reals, float]:
     """Periods [s], and the largest amplitude to try [g]."""
     import numpy as np
 
@@ -244,7 +248,7 @@ def _curves(subjects: list[Shaken], plane: Plane) -> tuple[Reals, float]:
     return np.geomspace(*(plane.period or _usual_periods(subjects)), plane.points or CURVE), top
 
 
-def _usual_periods(subjects: list[Shaken]) -> tuple[float, float]:
+def _usual_periods(subjects: list[PulsedModel]) -> tuple[float, float]:
     """From the shortest at the largest p to the longest at the smallest [s]."""
     from math import pi
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rocking_cli.cli import structures, terminal
 from rocking_cli.cli.groups import SizedPulse
-from rocking_cli.cli.work import say_if_compiling
+from rocking_cli.cli.waiting import say_if_compiling
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.pulse_on_structure import Answer, answers, closed_forms, sampled_histories

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import motions, options, terminal
+from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import Reading, Scaling
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
@@ -107,7 +107,7 @@ def command(
         if as_json:
             for one in found:
                 terminal.print_json(data(one))
-        motions.warn(found[0].motion, found[0].doubts)
+        motion_files.warn(found[0].motion, found[0].doubts)
     if examined and not as_json:
         terminal.show(View({}, list(parts(examined, terminal.width()))), as_json=False)
     if len(examined) < len(files) * len(scaling.signs):
@@ -214,7 +214,7 @@ class _Asked:
 
         own, p = measure(motion), self.p
         found = doubts(motion, own) + (coarse_for(motion, p) if p is not None else [])
-        factor = polarity * motions.factor(motion, own, *self.scaling.scaling)
+        factor = polarity * motion_files.factor(motion, own, *self.scaling.scaling)
         scaled = motion.scaled(factor)
         fits = _fit(scaled) if self.fit_pulse else []
         p_dt = p * motion.dt if p is not None else None

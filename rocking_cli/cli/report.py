@@ -9,28 +9,28 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import inputs, motions, options, terminal
-from rocking_cli.cli.groups import Near, Shaking
+from rocking_cli.cli import inputs, motion_files, options, terminal
+from rocking_cli.cli.groups import GroundMotions, Near
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
-    from rocking_cli.core import Equivalence
     from rocking_cli.dynamics.prepared import Prepared
-    from rocking_cli.report.content import File, Given
+    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.studies.assessment import File
 
 
 @click.command(short_help="A document to hand over: one page with all that there is to say.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
-@options.motions
+@options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse is shown", default="both")
 @options.out(".html", what="Where to.  [default: FILE with .html, in this folder; none with --json]")
 @options.around
 @options.as_json
 @click.pass_context
-@options.grouped(shaking=Shaking, near=Near)
+@options.grouped(asked=GroundMotions, near=Near)
 def command(
-    ctx: click.Context, files: tuple[str, ...], shaking: Shaking, out: Path | None, near: Near, as_json: bool
+    ctx: click.Context, files: tuple[str, ...], asked: GroundMotions, out: Path | None, near: Near, as_json: bool
 ) -> None:  # fmt: skip
     """Write a report on a structure: one HTML file that opens in any browser, without a network, and prints.
 
@@ -46,33 +46,37 @@ def command(
       rocking report frame.yaml --record accel.csv -o report.html
       rocking report arch.yaml --record one.AT2 --record two.AT2 --target-pga 0.3
     """
-    if not shaking.records and any(value is not None for value in shaking.reading):
+    if not asked.records and any(value is not None for value in asked.reading):
         raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
     if not near.neighbours:
         raise click.UsageError("A report says how close a result is: --neighbours must be at least 1 here.")
-    if not shaking and shaking.is_scaled:
+    if not asked and asked.is_scaled:
         raise click.UsageError(
             "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
         )
-    from rocking_cli.cli.work import say_if_compiling
+    from rocking_cli.cli.waiting import say_if_compiling
     from rocking_cli.io.files import check_writable, keep_apart, write_whole
-    from rocking_cli.report.content import gather, steps
-    from rocking_cli.report.view import view
+    from rocking_cli.studies.assessment import gather, steps
+    from rocking_cli.views.assessment import view
 
     if out is None and not as_json:
         out = Path(f"{Path(files[0]).stem if files else 'rocking'}.html")
         check_writable(out)
-    paths, bad = motions.find(shaking.records)
+    paths, bad = motion_files.find(asked.records)
     keep_apart([("--out", out)], [*files, *(str(path) for path in paths)])
-    structure = inputs.structure(files, shaking.records)
-    given, refused = _gather(paths, shaking, structure.equivalence)
+    structure = inputs.structure(files, asked.records)
+    several = len(paths) + bad + len(asked.pulses) > 1
+    given: list[Scaled] = []
+    refused = 0
+    if paths or asked.pulses:
+        given, refused = inputs.gather(paths, asked, structure.equivalence, several=several)
     bad += refused
     if bad and not given:
         ctx.exit(InputError.exit_code)
     say_if_compiling()
     with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
-            structure, _file(structure), given, shaking.signs, around=near.around,
+            structure, _file(structure), given, asked.signs, around=near.around,
             command=_command_line(ctx), date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"), progress=advance,
         )  # fmt: skip
     if out is not None:
@@ -86,46 +90,14 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _gather(paths: list[Path], shaking: Shaking, blocks: Equivalence) -> tuple[list[Given], int]:
-    """The ground motions, and how many records cannot be used."""
-    given, refused = [], 0
-    for path in paths:
-        try:
-            given.append(_record(str(path), blocks, shaking.reading, shaking.scaling))
-        except InputError as error:
-            terminal.error(str(error))
-            refused += 1
-    return given + [_pulse(each, blocks, shaking.scaling) for each in shaking.pulses], refused
-
-
 def _file(structure: Prepared) -> File:
     """The content of the file that a structure stands in."""
     from rocking_cli.cli import structures
-    from rocking_cli.report.content import File
+    from rocking_cli.studies.assessment import File
 
     if structure.file is None:
         return File("default block", structures.DEFAULT.encode())
     return File(structure.file, Path(structure.file).read_bytes())
-
-
-def _record(
-    place: str,
-    blocks: Equivalence,
-    reading: tuple[float | None, str | None, str | None],
-    asked: tuple[float | None, float | None, float | None],
-) -> Given:
-    from rocking_cli.excitation.records.opening import name_of, original
-    from rocking_cli.report.content import File, Given
-
-    motion = inputs.read("record", place, *reading)
-    return Given(motion, inputs.judge(motion, blocks, *asked), File(name_of(place), original(place)))
-
-
-def _pulse(text: str, blocks: Equivalence, asked: tuple[float | None, float | None, float | None]) -> Given:
-    from rocking_cli.report.content import Given
-
-    pulse, motion = inputs.make(text)
-    return Given(motion, inputs.judge(motion, blocks, *asked), pulse=pulse)
 
 
 def _command_line(ctx: click.Context) -> str:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import motions, options, terminal
-from rocking_cli.cli.groups import History, Near, Output, Shaking, Vertical
+from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli.groups import GroundMotions, History, Near, Output, Vertical
 from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 from rocking_cli.excitation.scaled import Scaled
@@ -61,7 +61,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 
 @click.command(short_help="Response to a ground motion: nonlinear and linear histories.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
-@options.shaking
+@options.ground_motions
 @options.reading
 @click.option("--vertical", type=click.Path(), metavar="FILE", help="Its vertical component: g becomes g + v_g''.")
 @click.option("--vertical-dt", type=Quantity(INTERVAL), metavar="TIME", help="Its interval in s, if it has one column.")
@@ -107,11 +107,11 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 @options.plot("Draw them")
 @options.as_json
 @click.pass_context
-@options.grouped(shaking=Shaking, vertical=Vertical, history=History, near=Near, output=Output)
+@options.grouped(asked=GroundMotions, vertical=Vertical, history=History, near=Near, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    shaking: Shaking,
+    asked: GroundMotions,
     vertical: Vertical,
     history: History,
     near: Near,
@@ -138,15 +138,15 @@ def command(
       rocking respond frame.yaml --pulse ricker:0.4g:1.2s --polarity both
       rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
     """
-    _hold_together(shaking, vertical, history)
-    paths, missing = motions.find(shaking.records)
-    several = len(paths) + missing + len(shaking.pulses) > 1
+    _hold_together(asked, vertical, history)
+    paths, missing = motion_files.find(asked.records)
+    several = len(paths) + missing + len(asked.pulses) > 1
     if several and vertical.vertical is not None:
         raise click.UsageError("--vertical is that of one motion: give one --record FILE or one --pulse PULSE.")
-    if shaking and not paths and not shaking.pulses:
+    if asked and not paths and not asked.pulses:
         ctx.exit(InputError.exit_code)
     from rocking_cli.cli import inputs
-    from rocking_cli.cli.work import say_if_compiling
+    from rocking_cli.cli.waiting import say_if_compiling
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.response import Question
@@ -154,20 +154,20 @@ def command(
     read = [*files, *(str(path) for path in paths), vertical.vertical]
     keep_apart([("--out", output.out), ("--plot", output.plot)], read)
     check_table(output.out)
-    structure = inputs.structure(files, shaking.records)
+    structure = inputs.structure(files, asked.records)
     chosen: Sequence[Scaled | None] = [None]  # a free release
     refused = 0
-    if shaking:
-        chosen, refused = inputs.gather(paths, shaking, structure.equivalence, vertical, several=several)
+    if asked:
+        chosen, refused = inputs.gather(paths, asked, structure.equivalence, vertical, several=several)
         if not chosen:
             ctx.exit(InputError.exit_code)
-    outs, plots = (motions.separate(path, chosen, several=several) for path in (output.out, output.plot))
+    outs, plots = (motion_files.separate(path, chosen, several=several) for path in (output.out, output.plot))
     if several:
         keep_apart([*(("--out", each) for each in outs), *(("--plot", each) for each in plots)], read)
     say_if_compiling()
     structure.models(history.names)
-    asked = Question(shaking.signs, history.release, history.tail, history.rtol, history.with_pulse, near.around)
-    job = _Job(structure, history.names, asked, shaking.polarity, several, impacts, output.as_json)
+    question = Question(asked.signs, history.release, history.tail, history.rtol, history.with_pulse, near.around)
+    job = _Job(structure, history.names, question, asked.polarity, several, impacts, output.as_json)
     with terminal.progress(len(outs), "motions") as advance:
         for each, out, plot in zip(chosen, outs, plots, strict=True):
             refused += not job.follow(each, out, plot)
@@ -177,27 +177,27 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _hold_together(shaking: Shaking, vertical: Vertical, history: History) -> None:
+def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -> None:
     """Refuse options that say nothing, or two things, beside each other."""
-    if shaking.records and shaking.pulses:
+    if asked.records and asked.pulses:
         raise click.UsageError("--record and --pulse exclude each other.")
-    if not shaking and history.release is None:
+    if not asked and history.release is None:
         raise click.UsageError(
             "Nothing to respond to: give --record FILE or --pulse PULSE, or --release RATIO, or both."
         )
-    if not shaking and vertical.vertical is not None:
+    if not asked and vertical.vertical is not None:
         raise click.UsageError("--vertical goes with a horizontal component: give --record FILE or --pulse PULSE.")
-    if not shaking.records and vertical.vertical is None and (shaking.units is not None or shaking.dt is not None):
+    if not asked.records and vertical.vertical is None and (asked.units is not None or asked.dt is not None):
         raise click.UsageError("--units and --dt describe a record: give --record FILE.")
-    if not shaking.records and shaking.channel is not None:
+    if not asked.records and asked.channel is not None:
         raise click.UsageError("--channel is one of a record: give --record FILE.")
-    if not shaking and (shaking.is_scaled or shaking.polarity != "1"):
+    if not asked and (asked.is_scaled or asked.polarity != "1"):
         raise click.UsageError(
             "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE or --pulse PULSE."
         )
-    if history.with_pulse is not None and not shaking.records:
+    if history.with_pulse is not None and not asked.records:
         raise click.UsageError("--with-pulse finds the pulse in a record: give --record FILE.")
-    if history.with_pulse is not None and shaking.polarity == "both":
+    if history.with_pulse is not None and asked.polarity == "both":
         raise click.UsageError("--with-pulse and --polarity both exclude each other: ask for one after the other.")
 
 

@@ -28,7 +28,7 @@ def command(ctx: click.Context, file: str, out: Path | None, plot: str | None, a
       rocking results study.db
       rocking results study.db --out runs.parquet --plot pictures
     """
-    from rocking_cli.cli.fragility_results import give
+    from rocking_cli.cli.study_output import show_study
     from rocking_cli.io.files import folder, keep_apart
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.fragility.store import Store
@@ -42,6 +42,6 @@ def command(ctx: click.Context, file: str, out: Path | None, plot: str | None, a
         harmed = bool(store.damaged) or store.unreadable
         if harmed:
             terminal.note("`rocking fragility STUDY.yaml` takes over what is sound, and runs the rest again")
-        complete = give(store, out, pictures, as_json=as_json) and not harmed
+        complete = show_study(store, out, pictures, as_json=as_json) and not harmed
     if not complete:
         ctx.exit(INCOMPLETE)

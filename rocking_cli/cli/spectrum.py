@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from rocking_cli.cli import motions, options, terminal
-from rocking_cli.cli.groups import Output, Shaking
+from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.quantities import Finite, Share, Sizes
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.dynamics.model import ModelName
-    from rocking_cli.studies.shaken import Reals
     from rocking_cli.studies.spectrum import Shape
+    from rocking_cli.studies.under_pulses import Reals
     from rocking_cli.views.spectrum import Results
 
 MODELS = ("nonlinear", "linear1", "linear2")
@@ -73,7 +73,7 @@ class Sizing:
 
 @click.command(short_help="Peak rotation and overturning over the size of structures.")
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
-@options.motions
+@options.ground_motions
 @click.option(
     "--slenderness",
     metavar="A,B,...",
@@ -108,11 +108,11 @@ class Sizing:
 @options.plot("Draw them")
 @options.as_json
 @click.pass_context
-@options.grouped(shaking=Shaking, sizing=Sizing, output=Output)
+@options.grouped(asked=GroundMotions, sizing=Sizing, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    shaking: Shaking,
+    asked: GroundMotions,
     sizing: Sizing,
     fractiles: tuple[float, ...],
     jobs: int | None,
@@ -136,30 +136,30 @@ def command(
 
     Source: Makris and Konstantinidis (2003).
     """
-    if not shaking:
+    if not asked:
         raise click.UsageError(
             "Nothing to respond to: give --record PLACE or --pulse PULSE, each as often as you like."
         )
-    if not shaking.records and any(value is not None for value in shaking.reading):
+    if not asked.records and any(value is not None for value in asked.reading):
         raise click.UsageError("--units, --dt and --channel describe records: give --record PLACE.")
-    motions.check_strays(files, shaking.records)
-    from rocking_cli.cli import work
+    motion_files.check_strays(files, asked.records)
+    from rocking_cli.cli import waiting
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies import spectrum as study
     from rocking_cli.views.spectrum import Results, lost
 
-    paths, missing = motions.find(shaking.records)
+    paths, missing = motion_files.find(asked.records)
     keep_apart([("--out", output.out), ("--plot", output.plot)], [*files, *(str(path) for path in paths)])
     shapes, bad = _shapes(files, sizing.slenderness, cast("ModelName", sizing.model), sizing.eta)
     periods = _sizes(shapes, sizing.sizes)
     smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])
-    chosen, refused = motions.gather(paths, shaking.pulses, shaking.reading, shaking.scaling, 2 * pi / smallest)
+    chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, 2 * pi / smallest)
     if not chosen:
         ctx.exit(InputError.exit_code)
     scaled = [each.motion.scaled(each.factor) for each in chosen]
-    with work.histories(study.work(shapes, periods, len(chosen), shaking.signs)) as progress:
-        found = study.spectra(shapes, periods, scaled, polarities=shaking.signs, threads=jobs, progress=progress)
-    results = Results(found, chosen, tuple(sorted({*fractiles, 0.5})), shaking.polarity)
+    with waiting.histories(study.count_histories(shapes, periods, len(chosen), asked.signs)) as progress:
+        found = study.spectra(shapes, periods, scaled, polarities=asked.signs, threads=jobs, progress=progress)
+    results = Results(found, chosen, tuple(sorted({*fractiles, 0.5})), asked.polarity)
     if unfollowed := lost(results):
         terminal.error(unfollowed)
     _give(results, output)

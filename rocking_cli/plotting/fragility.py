@@ -34,7 +34,7 @@ CROWDED = 15  # levels of shaking from which on not every one is counted out
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class LabelledCurve:
     """One curve of a picture.
 
     Parameters
@@ -52,12 +52,12 @@ class Drawn:
     observations: Observations
 
 
-def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
+def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figure:
     """Draw curves with their bands, and the observed parts that exceed with intervals that count records.
 
     Parameters
     ----------
-    drawn : sequence of Drawn
+    drawn : sequence of LabelledCurve
         Several limit states of one structure, or several structures for one limit state.
     label : str
         The measure of intensity, with its unit in brackets.
@@ -108,7 +108,7 @@ def draw_curves(drawn: Sequence[Drawn], label: str, title: str) -> Figure:
     return figure
 
 
-def _remarks(drawn: Sequence[Drawn]) -> list[str]:
+def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:
     """What to be careful about in a picture, each thing once."""
     unbounded = [each.name for each in drawn if each.curve.unbounded]
     steps = [each.name for each in drawn if each.curve.step is not None]
@@ -123,7 +123,7 @@ def _lines(text: str) -> str:
     return "\n".join(wrap(whole, WIDEST_LINE, subsequent_indent="    "))
 
 
-def _draw_observed(axes: Axes, each: Drawn, look: dict[str, Any], *, alone: bool) -> None:
+def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], *, alone: bool) -> None:
     """Mark the part that exceeds in each group, at the mean intensity, with its interval; faint beside others."""
     seen = each.observations.parts(each.curve.confidence)
     some = slice(None, None, _every(seen.x.size, alone=alone))
@@ -146,7 +146,7 @@ def _every(groups: int, *, alone: bool) -> int:
     return -(-groups // MARKS[alone])
 
 
-def _draw_curve(axes: Axes, each: Drawn, look: dict[str, Any], fine: Reals, *, filled: bool) -> None:
+def _draw_curve(axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Reals, *, filled: bool) -> None:
     """Draw a curve over its band, filled or as its two edges; of a step the interval in which it lies."""
     curve = each.curve
     if curve.kind == "none":
@@ -165,7 +165,7 @@ def _draw_curve(axes: Axes, each: Drawn, look: dict[str, Any], fine: Reals, *, f
     )
 
 
-def _key(each: Drawn, look: dict[str, Any]) -> Line2D:
+def _key(each: LabelledCurve, look: dict[str, Any]) -> Line2D:
     """The entry of a curve in the legend, with its numbers."""
     curve = each.curve
     said: str = curve.kind

@@ -14,8 +14,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from rocking_cli.plotting import style
-from rocking_cli.studies.shaken import Reals
 from rocking_cli.studies.spectrum import Spectrum
+from rocking_cli.studies.under_pulses import Reals
 
 NAME = 40  # characters of a structure's name in the legend
 SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks

@@ -23,13 +23,13 @@ from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
-from rocking_cli.report import words
-from rocking_cli.report.content import Content, PulseMap, Shaking, amplitude_in_g, share
 from rocking_cli.report.definitions import PARAMETERS
 from rocking_cli.report.figures import inline_svg
+from rocking_cli.studies.assessment import Assessment, MotionResult, PulseMap, amplitude_in_g, share
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
 from rocking_cli.text import printable
+from rocking_cli.views import assessment_words as words
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
 FEWEST, MOST = 300, 2500  # of one motion
@@ -41,12 +41,12 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 Rows = list[list[str]]
 
 
-def render(content: Content) -> str:
+def render(content: Assessment) -> str:
     """The page.
 
     Parameters
     ----------
-    content : Content
+    content : Assessment
         What it says; every text in it is escaped.
     """
     environment = Environment(
@@ -54,13 +54,13 @@ def render(content: Content) -> str:
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     environment.filters["symbols"] = symbols
-    bins = int(np.clip(BINS // max(1, len(content.shakings)), FEWEST, MOST))
+    bins = int(np.clip(BINS // max(1, len(content.results)), FEWEST, MOST))
     page = environment.get_template("report.html").render(
         content=content,
         answer=words.in_a_sentence(content),
         verdicts=words.verdicts(content),
         overview=words.overview(content),
-        governs=words.governs(content) if content.shakings else "",
+        governs=words.governs(content) if content.results else "",
         doubts=words.doubts(content),
         restitution=words.restitution(content),
         drawing=_still(draw_structure(content.picture, content.name), "drawing"),
@@ -70,17 +70,17 @@ def render(content: Content) -> str:
         advice=_advice(content),
         trust=_greek(content.trust),
         geometry=_geometry(content),
-        responses=[_response(content, each, k, bins) for k, each in enumerate(content.shakings)],
-        margins=_still(draw_margins({each.given.motion.name: each.margin for each in content.shakings}, ""), "margins")
-        if content.shakings
+        responses=[_response(content, each, k, bins) for k, each in enumerate(content.results)],
+        margins=_still(draw_margins({each.given.motion.name: each.margin for each in content.results}, ""), "margins")
+        if content.results
         else None,
-        around=content.shakings[0].margin.around if content.shakings else None,
+        around=content.results[0].margin.around if content.results else None,
         maps=[_map(each, k) for k, each in enumerate(content.maps)],
         errors=_still(draw_linearisation(content.curves, content.asked, ""), "errors") if content.curves else None,
         error_tables=[
             (each.direction.label if len(content.asked) > 1 else "", _errors(each)) for each in content.asked
         ],
-        measures=[_measures(each) for each in content.shakings],
+        measures=[_measures(each) for each in content.results],
         style=Markup(asset("motion.css")),
         script=Markup(asset("motion.js")),
     )
@@ -101,7 +101,7 @@ def _still(figure: Figure, prefix: str) -> Markup:
     return Markup(inline_svg(figure, prefix))
 
 
-def _dimensions(content: Content) -> list[str]:
+def _dimensions(content: Assessment) -> list[str]:
     measured: list[Length | Angle] = [*content.picture.sketch.lengths, *content.picture.sketch.angles]
     return [f"{each.text} ({each.direction.label})" if each.direction else each.text for each in measured]
 
@@ -113,13 +113,13 @@ def _number(value: float | None, digits: int = 4) -> str:
     return f"{mantissa} \N{MULTIPLICATION SIGN} 10{str(int(power)).translate(RAISED)}" if power else mantissa
 
 
-def _directions(content: Content) -> list[str]:
+def _directions(content: Assessment) -> list[str]:
     if content.equivalence.symmetric:
         return ["value"]
     return [f"{each.label} ({SENSE[each]})" for each in Direction]
 
 
-def _parameters(content: Content) -> list[dict[str, Any]]:
+def _parameters(content: Assessment) -> list[dict[str, Any]]:
     shown = [Direction.POSITIVE] if content.equivalence.symmetric else list(Direction)
     blocks = [content.equivalence[each].as_dict() for each in shown]
     return [
@@ -136,17 +136,17 @@ def _parameters(content: Content) -> list[dict[str, Any]]:
     ]
 
 
-def _per_mass(content: Content, unit: str) -> bool:
+def _per_mass(content: Assessment, unit: str) -> bool:
     return unit.startswith("kg ") and not content.mechanism.has_mass
 
 
-def _advice(content: Content) -> list[str]:
+def _advice(content: Assessment) -> list[str]:
     if content.equivalence.symmetric:
         return [_greek(preferred_kappa(content.equivalence.positive).why)]
     return [_greek(f"{each.label}: {preferred_kappa(content.equivalence[each]).why}") for each in Direction]
 
 
-def _geometry(content: Content) -> Rows:
+def _geometry(content: Assessment) -> Rows:
     """What the file gives: field, symbol, value, unit, meaning; of what is one number or word."""
     rows = []
     for key, info in type(content.mechanism).model_fields.items():
@@ -158,24 +158,24 @@ def _geometry(content: Content) -> Rows:
     return rows
 
 
-def _response(content: Content, shaking: Shaking, k: int, bins: int) -> dict[str, Any]:
-    best = shaking.histories["nonlinear"]
-    film = Film(content.picture, best, shaking.motion)
-    pulses = [replace(each, sign=each.sign * shaking.polarity) for each in shaking.fits[:1] if shaking.given.file]
-    charts = [ratio_chart(shaking.histories, bins), ground_chart(shaking.motion, pulses, bins)]
+def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> dict[str, Any]:
+    best = result.histories["nonlinear"]
+    film = Film(content.picture, best, result.motion)
+    pulses = [replace(each, sign=each.sign * result.polarity) for each in result.fits[:1] if result.file]
+    charts = [ratio_chart(result.histories, bins), ground_chart(result.motion, pulses, bins)]
     moment = _peak_time(best, film)
-    label = f"{content.name}, as it moves under {shaking.given.motion.name}"
+    label = f"{content.name}, as it moves under {result.given.motion.name}"
     data = moving(film, charts, label=label, speed=1.0, moment=moment)
     return {
-        "name": shaking.given.motion.name,
-        "reversed": shaking.polarity == -1,
+        "name": result.given.motion.name,
+        "reversed": result.polarity == -1,
         "moment": moment,
         "data": Markup(as_script(data)),
         "id": f"motion-{k}",
-        "models": [words.MODELS[name] for name in shaking.histories],
-        "rows": _outcomes(list(shaking.histories.values())),
-        "fits": [_fit(fit) for fit in shaking.fits if shaking.given.file],
-        "alone": words.alone(shaking),
+        "models": [words.MODELS[name] for name in result.histories],
+        "rows": _outcomes(list(result.histories.values())),
+        "fits": [_fit(fit) for fit in result.fits if result.file],
+        "alone": words.alone(result),
     }
 
 
@@ -251,12 +251,12 @@ def _errors(each: Linearisation) -> Rows:
     return rows
 
 
-def _measures(shaking: Shaking) -> dict[str, Any]:
-    given, found = shaking.given, shaking.measured
+def _measures(result: MotionResult) -> dict[str, Any]:
+    given, found = result.given, result.measured
     motion = given.motion
     return {
         "name": motion.name,
-        "file": given.file,
+        "file": result.file,
         "rows": [
             ["format", motion.format, ""],
             ["unit in the file", motion.unit, ""],

@@ -20,7 +20,7 @@ from rocking_cli.dynamics.verdict import CLOSE
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
-from rocking_cli.studies.shaken import check_eta, uplift, weakest
+from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
 
 Reals = NDArray[np.float64]
 AFTER = 12.0  # p t shown after the pulse

@@ -16,7 +16,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.boundaries import UPLIFT, Boundary, boundaries
-from rocking_cli.studies.shaken import Integers, Progress, Reals, Shaken, outcomes
+from rocking_cli.studies.under_pulses import Integers, Progress, PulsedModel, Reals, outcomes
 
 SCAN = 200  # amplitudes tried at a time: overturning has islands below larger amplitudes that do not overturn
 NEAREST = 1e-3  # a - 1 of the first of them
@@ -52,7 +52,7 @@ class OverturningMap:
 
     Parameters
     ----------
-    structure : Shaken
+    structure : PulsedModel
         What is shaken.
     shape : Pulse
         The shape of the pulses.
@@ -66,7 +66,7 @@ class OverturningMap:
         What becomes of it at each point, of shape (m, n).
     """
 
-    structure: Shaken
+    structure: PulsedModel
     shape: Pulse
     polarities: tuple[int, ...]
     omega: Reals
@@ -118,7 +118,7 @@ class OverturningMap:
 
 
 def overturning_map(
-    structure: Shaken,
+    structure: PulsedModel,
     shape: Pulse,
     omega: Reals,
     a: Reals,
@@ -130,7 +130,7 @@ def overturning_map(
 
     Parameters
     ----------
-    structure : Shaken
+    structure : PulsedModel
         What is shaken; see `linear_block` and `shaken`.
     shape : Pulse
         The shape of the pulses; see `parse_shape`.
@@ -139,7 +139,7 @@ def overturning_map(
     polarities : sequence of int
         Of 1 and -1; with both, the worse counts.
     progress : callable, optional
-        Called with the number of histories done since the last call, of `work(...)`.
+        Called with the number of histories done since the last call, of `count_histories(...)`.
 
     Raises
     ------
@@ -162,7 +162,7 @@ def overturning_map(
     )
 
 
-def _check_range(structure: Shaken, periods: Reals, a: float) -> None:
+def _check_range(structure: PulsedModel, periods: Reals, a: float) -> None:
     """Refuse pulses beyond all sense."""
     low, high = (structure.period(np.array(omega)).item() for omega in (LARGEST, 1 / LARGEST))
     if not (low <= periods.min() and periods.max() <= high):
@@ -181,7 +181,7 @@ class Comparison:
 
     Parameters
     ----------
-    structures : tuple of Shaken
+    structures : tuple of PulsedModel
         What is shaken.
     shape : Pulse
         The shape of the pulses.
@@ -195,7 +195,7 @@ class Comparison:
         The largest amplitude tried [standard gravity].
     """
 
-    structures: tuple[Shaken, ...]
+    structures: tuple[PulsedModel, ...]
     shape: Pulse
     polarities: tuple[int, ...]
     periods: Reals
@@ -212,7 +212,7 @@ class Comparison:
 
 
 def compare(
-    structures: Sequence[Shaken],
+    structures: Sequence[PulsedModel],
     shape: Pulse,
     periods: Reals,
     top: float,
@@ -224,7 +224,7 @@ def compare(
 
     Parameters
     ----------
-    structures : sequence of Shaken
+    structures : sequence of PulsedModel
         What is shaken.
     shape : Pulse
         The shape of the pulses.
@@ -235,7 +235,7 @@ def compare(
     polarities : sequence of int
         Of 1 and -1.
     progress : callable, optional
-        Called with the number of histories done since the last call, of `work(...)`.
+        Called with the number of histories done since the last call, of `count_histories(...)`.
 
     Notes
     -----
@@ -250,7 +250,12 @@ def compare(
 
 
 def _least(
-    structure: Shaken, shape: Pulse, periods: Reals, top: float, polarities: Sequence[int], progress: Progress | None
+    structure: PulsedModel,
+    shape: Pulse,
+    periods: Reals,
+    top: float,
+    polarities: Sequence[int],
+    progress: Progress | None,
 ) -> Reals:
     """The least amplitude that overturns a structure, for each period [m/s2]."""
     beyond = np.full(periods.size, top * STANDARD_GRAVITY / structure.unit - 1)  # a - 1 up to which to look
@@ -287,6 +292,6 @@ def _least(
     return (1 + high) * structure.unit
 
 
-def work(structures: Sequence[Shaken], pulses: int, polarities: Sequence[int]) -> int:
+def count_histories(structures: Sequence[PulsedModel], pulses: int, polarities: Sequence[int]) -> int:
     """How many histories `pulses` pulses on each structure take."""
     return pulses * sum(1 if each.symmetric else len(polarities) for each in structures)

@@ -15,8 +15,8 @@ from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.studies.shaken import Integers, Progress, Reals, Shaken, parse_shape, shaken, uplift
 from rocking_cli.studies.sizes import Sizes
+from rocking_cli.studies.under_pulses import Integers, Progress, PulsedModel, Reals, parse_shape, pulsed_model, uplift
 
 SAME = 1e-9  # relative difference below which a size is that of the structure as given
 TOGETHER = 50  # sizes of their own in one call: their tables are in memory at once
@@ -28,7 +28,7 @@ class Shape:
 
     Parameters
     ----------
-    structure : Shaken
+    structure : PulsedModel
         At scale 1; its direction is the one with the smaller uplift acceleration, whose p measures sizes.
     slenderness : float, optional
         alpha [rad] of a block whose R is 1 m at scale 1, so that its scale is R in m; None for a structure as given.
@@ -37,7 +37,7 @@ class Shape:
         alone decides.
     """
 
-    structure: Shaken
+    structure: PulsedModel
     slenderness: float | None = None
     own: Sizes | None = None
 
@@ -79,7 +79,7 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, f
         If the structure does not stand, or its restitution is not known.
     """
     # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
-    found = shaken(Prepared(mechanism, file), model, parse_shape("sine"), eta=eta)
+    found = pulsed_model(Prepared(mechanism, file), model, parse_shape("sine"), eta=eta)
     given = mechanism if eta is None else mechanism.model_copy(update={"restitution": eta})
     sizes = Sizes(given, model, found.direction)
     return Shape(found, own=None if sizes.are_alike() else sizes)
@@ -213,7 +213,7 @@ def spectra(
     threads : int, optional
         Histories at a time; without it, one for each processor.
     progress : callable, optional
-        Called with the number of histories done since the last call, of `work(...)`.
+        Called with the number of histories done since the last call, of `count_histories(...)`.
 
     Returns
     -------
@@ -280,7 +280,7 @@ def _peaks(
     return np.where(answer.failed, np.nan, np.where(answer.overturned, inf, answer.peak_ratio))
 
 
-def work(shapes: Sequence[Shape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:
+def count_histories(shapes: Sequence[Shape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:
     """How many histories `spectra` runs."""
     return motions * sum(_scales(each, periods).size * len(_signs(each, polarities)) for each in shapes)
 

@@ -12,7 +12,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import OVERTURNS
 from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
-from rocking_cli.studies.shaken import Reals, Shaken
+from rocking_cli.studies.under_pulses import PulsedModel, Reals
 from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 9  # of a table: the curves themselves are in --out and --json
@@ -113,7 +113,7 @@ def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionle
     }
 
 
-def _structure(shaken: Shaken, mechanism: Mechanism) -> dict[str, Any]:
+def _structure(shaken: PulsedModel, mechanism: Mechanism) -> dict[str, Any]:
     """A structure, and what its pulses are measured by."""
     return {
         "mechanism": mechanism.mechanism,

@@ -11,8 +11,8 @@ import numpy as np
 
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
-from rocking_cli.studies.shaken import Integers, Reals
 from rocking_cli.studies.spectrum import Spectrum
+from rocking_cli.studies.under_pulses import Integers, Reals
 from rocking_cli.views.overturning import FROM_KINEMATICS, numbers
 from rocking_cli.views.view import ABSENT, Table, View
 

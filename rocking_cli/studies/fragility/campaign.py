@@ -16,10 +16,10 @@ from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
-from rocking_cli.studies.fragility.sources import Motions
+from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
-from rocking_cli.studies.fragility.work import carry_out, unit_size, units
+from rocking_cli.studies.fragility.units import carry_out, unit_size, units
 
 Progress = Callable[[int, int], None]
 """Called with how many runs have finished since the last call, and how many of these failed."""
@@ -38,7 +38,7 @@ class Prepared:
         The study.
     plan : Plan
         Its runs.
-    motions : Motions
+    motions : KeptMotions
         Its ground motions.
     finished, failed : int
         Runs that the store holds already, and those of them that could not be followed.
@@ -48,7 +48,7 @@ class Prepared:
 
     study: Study
     plan: Plan
-    motions: Motions
+    motions: KeptMotions
     finished: int
     failed: int
     mended: tuple[str, ...]
@@ -96,7 +96,7 @@ def prepare(study: Study, store: Store, examined: Examined | None = None) -> Pre
     return Prepared(study, plan, motions, finished, failed, tuple(records[k].name for k in mended))
 
 
-def survey(study: Study, examined: Examined | None = None, known: Plan | None = None) -> tuple[Plan, Motions]:
+def survey(study: Study, examined: Examined | None = None, known: Plan | None = None) -> tuple[Plan, KeptMotions]:
     """Examine the records and structures of a study.
 
     Parameters
@@ -112,12 +112,12 @@ def survey(study: Study, examined: Examined | None = None, known: Plan | None = 
     -------
     plan : Plan
         All runs.
-    motions : Motions
+    motions : KeptMotions
         The ground motions, those that were read still in memory as far as there is room.
     """
     tell = examined if examined is not None else lambda count: None
     before = {each.name: each for each in known.records} if known is not None else {}
-    motions = Motions(study.sources)
+    motions = KeptMotions(study.sources)
     records, trials = [], []
     for k, source in enumerate(study.sources):
         records.append(motions.examine(k, before.get(source.name)))

@@ -14,7 +14,7 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.studies.fragility.definition import SCALE
 from rocking_cli.studies.fragility.intensity import Scales, intensity
 from rocking_cli.studies.fragility.sources import Record
-from rocking_cli.studies.shaken import uplift
+from rocking_cli.studies.under_pulses import uplift
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]

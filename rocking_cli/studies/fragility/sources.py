@@ -114,7 +114,7 @@ def examine(source: Source) -> tuple[Record, GroundMotion | None]:
     return found, motion
 
 
-class Motions:
+class KeptMotions:
     """The samples of a study's ground motions, the ones last used kept in memory.
 
     Parameters

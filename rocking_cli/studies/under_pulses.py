@@ -25,7 +25,7 @@ TIE = 1e-9  # relative difference of amplitudes below which both directions lift
 
 
 @dataclass(frozen=True, eq=False)
-class Shaken:
+class PulsedModel:
     """One model of a structure, and what the pulses on it are measured by.
 
     Parameters
@@ -102,12 +102,12 @@ def parse_shape(text: str) -> Pulse:
     return replace(parse_pulse(":".join([name, "1m/s2", "1s", *further])), amplitude=1.0, period=1.0)
 
 
-def linear_block(eta: float) -> Shaken:
+def linear_block(eta: float) -> PulsedModel:
     """The linear block in dimensionless terms, p = g = lambda = 1: a pulse has amplitude a and period 2 pi/omega."""
     check_eta(eta)
     block = EquivalentBlock(**{**dict.fromkeys((each.name for each in fields(EquivalentBlock)), 1.0), "eta": eta})
     model = linear_model("linear block", "linear2", (block, block), 1.0)
-    return Shaken(model.structure, model, Equivalence(block, block), Direction.NEGATIVE)
+    return PulsedModel(model.structure, model, Equivalence(block, block), Direction.NEGATIVE)
 
 
 def check_eta(eta: float) -> None:
@@ -116,9 +116,9 @@ def check_eta(eta: float) -> None:
         raise InputError(f"eta must be in (0, 1], got {eta:g}")
 
 
-def shaken(
+def pulsed_model(
     structure: Prepared, model: ModelName, shape: Pulse, polarities: Sequence[int] = (1,), eta: float | None = None
-) -> Shaken:
+) -> PulsedModel:
     """Prepare a structure for pulses.
 
     Parameters
@@ -144,7 +144,7 @@ def shaken(
         structure = structure.with_eta(eta)
     direction = weakest(structure.equivalence, shape, polarities)
     given = structure.mechanism.restitution is not None
-    return Shaken(structure.name, structure.model(model), structure.equivalence, direction, given)
+    return PulsedModel(structure.name, structure.model(model), structure.equivalence, direction, given)
 
 
 def uplift(block: EquivalentBlock, model: ModelName) -> float:
@@ -163,7 +163,7 @@ def weakest(equivalence: Equivalence, shape: Pulse, polarities: Sequence[int] = 
 
 
 def outcomes(
-    structure: Shaken,
+    structure: PulsedModel,
     shape: Pulse,
     periods: Reals,
     amplitudes: Reals,
@@ -175,7 +175,7 @@ def outcomes(
 
     Parameters
     ----------
-    structure : Shaken
+    structure : PulsedModel
         What is shaken.
     shape : Pulse
         The shape of the pulses.
@@ -209,7 +209,7 @@ def outcomes(
 
 
 def _exactly(
-    structure: Shaken, shape: Pulse, periods: Reals, amplitudes: Reals, polarity: int, progress: Progress | None
+    structure: PulsedModel, shape: Pulse, periods: Reals, amplitudes: Reals, polarity: int, progress: Progress | None
 ) -> Outcomes:
     found = exact_many(
         structure.equivalence,
@@ -226,7 +226,7 @@ def _exactly(
 
 
 def _by_histories(
-    structure: Shaken, shape: Pulse, periods: Reals, amplitudes: Reals, polarity: int, progress: Progress | None
+    structure: PulsedModel, shape: Pulse, periods: Reals, amplitudes: Reals, polarity: int, progress: Progress | None
 ) -> Outcomes:
     different, which = np.unique(periods, return_inverse=True)
     motions = [replace(shape, period=float(period)).sampled(COARSE) for period in different]
@@ -236,7 +236,7 @@ def _by_histories(
     return found
 
 
-def _check(structure: Shaken, failed: NDArray[np.bool_], periods: Reals, amplitudes: Reals) -> None:
+def _check(structure: PulsedModel, failed: NDArray[np.bool_], periods: Reals, amplitudes: Reals) -> None:
     if failed.any():
         k = int(failed.argmax())
         raise SolverError(

@@ -13,14 +13,12 @@ from rocking_cli.core.restitution import restitution_in_words, why_none
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import CLOSE, SENSE, agreements, bearing, disagree
+from rocking_cli.dynamics.verdict import SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.report.content import Content, Shaking
-from rocking_cli.studies.margin import LEVELS, in_words
+from rocking_cli.studies.assessment import Assessment, MotionResult
+from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.neighbours import governing, severity
 
-LARGE = 2.0  # a factor on a record that asks for a word of caution
-NEAR = 1.25  # a factor on the motion within which the opposite outcome of some neighbours makes a result a close one
 MODELS: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear model",
     "linear1": "equivalent block with κ₁",
@@ -58,47 +56,47 @@ class Verdict:
     doubts: tuple[str, ...]
 
 
-def verdicts(content: Content) -> tuple[Verdict, ...]:
+def verdicts(content: Assessment) -> tuple[Verdict, ...]:
     """The answers for each ground motion."""
-    return tuple(_verdict(content, each) for each in content.shakings)
+    return tuple(_verdict(content, each) for each in content.results)
 
 
-def in_a_sentence(content: Content) -> str:
+def in_a_sentence(content: Assessment) -> str:
     """The answer of the whole report."""
     name = content.name
-    if not content.shakings:
+    if not content.results:
         least = min(content.equivalence[direction].lambda_ for direction in Direction)
         return (
             f"{name} starts to rock when the ground accelerates sideways by {_ground(content, least)}. No ground "
             "motion was given, so this report does not say whether an earthquake overturns it."
         )
-    falls = [each for each in content.shakings if _overturns(each)]
-    doubtful = any(_close(each) for each in content.shakings)
+    falls = [each for each in content.results if _overturns(each)]
+    doubtful = any(each.close for each in content.results)
     close = " The result is a close one: read below what could change it." if doubtful else ""
     if falls:
         under = _listed([each.given.motion.name for each in falls])
-        of = f" ({len(falls)} of {len(content.shakings)} ground motions)" if len(content.shakings) > 1 else ""
+        of = f" ({len(falls)} of {len(content.results)} ground motions)" if len(content.results) > 1 else ""
         return f"{name} {names.OVERTURNS} under {under}{of}.{close}"
-    moved = [each for each in content.shakings if _worst_ratio(each) > 0]
+    moved = [each for each in content.results if _worst_ratio(each) > 0]
     if not moved:
-        under = _listed([each.given.motion.name for each in content.shakings])
-        are = "are" if len(content.shakings) > 1 else "is"
+        under = _listed([each.given.motion.name for each in content.results])
+        are = "are" if len(content.results) > 1 else "is"
         return f"{name} {names.NO_UPLIFT}: {under} {are} too weak to lift it.{close}"
     worst = max(moved, key=_worst_ratio)
     which = worst.given.motion.name
     share = f"{_share(_worst_ratio(worst))} of the rotation from which it would fall"
-    if len(content.shakings) == 1:
+    if len(content.results) == 1:
         return f"{name} {names.ROCKS} under {which} and does not overturn: it turns by at most {share}.{close}"
     return (
-        f"{name} rocks under {len(moved)} of {len(content.shakings)} ground motions and overturns under none: it turns "
+        f"{name} rocks under {len(moved)} of {len(content.results)} ground motions and overturns under none: it turns "
         f"by at most {share}, under {which}.{close}"
     )
 
 
-def overview(content: Content) -> list[list[str]]:
+def overview(content: Assessment) -> list[list[str]]:
     """A row for each motion: its name, PGA [g], the nonlinear peak, the share of its neighbours, and their median."""
     rows = []
-    for each in content.shakings:
+    for each in content.results:
         near, run = each.neighbours[each.polarity], each.histories["nonlinear"]
         peaks = [inf if run.overturned else run.peak_ratio, near.peak_ratio[1]]
         itself, median = (names.OVERTURNS if isinf(peak) else f"{peak:.3g}" for peak in peaks)
@@ -108,17 +106,17 @@ def overview(content: Content) -> list[list[str]]:
     return rows
 
 
-def governs(content: Content) -> str:
+def governs(content: Assessment) -> str:
     """A sentence on the motion that is the worst."""
     return governing(
         {
             each.given.motion.name: severity(each.histories["nonlinear"], each.neighbours[each.polarity])
-            for each in content.shakings
+            for each in content.results
         }
     )
 
 
-def doubts(content: Content) -> list[str]:
+def doubts(content: Assessment) -> list[str]:
     """What is doubtful about the structure and the method, whatever the motion."""
     said = []
     if not content.mechanism.verified:
@@ -147,41 +145,41 @@ def doubts(content: Content) -> list[str]:
     return said
 
 
-def _verdict(content: Content, shaking: Shaking) -> Verdict:
-    best = shaking.histories["nonlinear"]
-    headline = names.OVERTURNS if _overturns(shaking) else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
+def _verdict(content: Assessment, result: MotionResult) -> Verdict:
+    best = result.histories["nonlinear"]
+    headline = names.OVERTURNS if _overturns(result) else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
     return Verdict(
-        shaking.given.motion.name,
-        f"{headline}{' (close)' if _close(shaking) else ''}",
+        result.given.motion.name,
+        f"{headline}{' (close)' if result.close else ''}",
         (
-            Answer("Will it uplift?", _uplift(content, shaking)),
-            Answer("Will it overturn?", _overturning(shaking)),
-            Answer("How close is that?", _closeness(content, shaking)),
-            Answer("Which model to trust?", _trusted(shaking)),
+            Answer("Will it uplift?", _uplift(content, result)),
+            Answer("Will it overturn?", _overturning(result)),
+            Answer("How close is that?", _closeness(content, result)),
+            Answer("Which model to trust?", _trusted(result)),
         ),
-        tuple(_doubts(shaking)),
+        tuple(_doubts(result)),
     )
 
 
-def _uplift(content: Content, shaking: Shaking) -> str:
-    best, pga = shaking.histories["nonlinear"], shaking.measured.pga
+def _uplift(content: Assessment, result: MotionResult) -> str:
+    best, pga = result.histories["nonlinear"], result.measured.pga
     least = min(content.equivalence[direction].lambda_ for direction in Direction)
     needed = f"A ground acceleration of {_ground(content, least)} is enough to lift it"
     both = "" if content.equivalence.symmetric else " in its weaker direction"
     if best.uplift_time >= 0:
         return f"Yes, first at {best.uplift_time:.2f} s. {needed}{both}; this motion reaches {pga:.3g} g."
-    factor = shaking.margin.uplift
+    factor = result.margin.uplift
     weak = pga < least * content.mechanism.gravity / STANDARD_GRAVITY
     but = f"this motion reaches {pga:.3g} g" if weak else f"this motion, of {pga:.3g} g, reaches it only the other way"
     more = f" It would have to be {factor:.3g} times as strong to lift it." if factor is not None else ""
     return f"No. {needed}{both}; {but}.{more}"
 
 
-def _overturning(shaking: Shaking) -> str:
-    said = [f"{_fate(shaking.histories['nonlinear'], capital=True)}, {_way(shaking.polarity)}."]
-    others = [(sign, runs["nonlinear"]) for sign, runs in shaking.runs.items() if sign != shaking.polarity]
+def _overturning(result: MotionResult) -> str:
+    said = [f"{_fate(result.histories['nonlinear'], capital=True)}, {_way(result.polarity)}."]
+    others = [(sign, runs["nonlinear"]) for sign, runs in result.runs.items() if sign != result.polarity]
     said += [f"{_way(sign).capitalize()}: {_fate(run)}." for sign, run in others]
-    if len(shaking.runs) == 1:
+    if len(result.runs) == 1:
         said.append("The motion was looked at this way round only; the other may be worse.")
     return " ".join(said)
 
@@ -200,8 +198,8 @@ def _way(polarity: int) -> str:
     return "with the motion as given" if polarity == 1 else "with the motion reversed"
 
 
-def _closeness(content: Content, shaking: Shaking) -> str:
-    best, found = shaking.histories["nonlinear"], shaking.margin
+def _closeness(content: Assessment, result: MotionResult) -> str:
+    best, found = result.histories["nonlinear"], result.margin
     said = []
     if best.peak_ratio > 0:
         turned = {Direction.POSITIVE: best.peak_positive, Direction.NEGATIVE: best.peak_negative}
@@ -213,13 +211,13 @@ def _closeness(content: Content, shaking: Shaking) -> str:
         )
         if best.peak_ratio > 1:
             said.append("It passes that, and only the next push of the ground brings it back.")
-    said.append(str(shaking.neighbours[shaking.polarity]))
+    said.append(str(result.neighbours[result.polarity]))
     said.append(in_words(found))
     return " ".join(said)
 
 
-def _trusted(shaking: Shaking) -> str:
-    runs = shaking.histories
+def _trusted(result: MotionResult) -> str:
+    runs = result.histories
     best = runs["nonlinear"]
     itself = "The nonlinear model is the structure itself, and its numbers are quoted here."
     called = {name: f"the {model}" for name, model in MODELS.items()}
@@ -239,44 +237,33 @@ def _trusted(shaking: Shaking) -> str:
     return " ".join(said)
 
 
-def _doubts(shaking: Shaking) -> list[str]:
-    said = [f"{each.text[0].upper()}{each.text[1:]}." for each in shaking.doubts]
-    if _close(shaking):
+def _doubts(result: MotionResult) -> list[str]:
+    said = [f"{each.text[0].upper()}{each.text[1:]}." for each in result.doubts]
+    if result.close:
         said.append("The result is close to the other outcome. Do not rest a decision on this one computation.")
-    if any(run.still_rocking for run in shaking.histories.values()):
+    if any(run.still_rocking for run in result.histories.values()):
         said.append("A model is still rocking long after the motion has ended; it is certain not to overturn.")
-    factor = abs(shaking.given.factor)
+    factor = abs(result.given.factor)
     if factor == 0:
-        said.append("The motion was scaled by 0: this is no shaking at all.")
+        said.append("The motion was scaled by 0: this is no result at all.")
     elif factor != 1:
-        more = " Large factors make motions unlike any recorded." if factor > LARGE else ""
-        said.append(f"The motion was scaled by {shaking.given.factor:.4g}.{more}")
+        more = " Large factors make motions unlike any recorded." if result.scaled_much else ""
+        said.append(f"The motion was scaled by {result.given.factor:.4g}.{more}")
     return [text.replace("?.", "?") for text in said]
 
 
-def _overturns(shaking: Shaking) -> bool:
-    return shaking.histories["nonlinear"].overturned
+def _overturns(result: MotionResult) -> bool:
+    return result.histories["nonlinear"].overturned
 
 
-def _close(shaking: Shaking) -> bool:
-    """Whether a small change of the motion or the model could give the other outcome."""
-    if disagree(shaking.histories):
-        return True
-    if shaking.neighbours[shaking.polarity].sensitive or _worst_ratio(shaking) > CLOSE:
-        return True
-    found = shaking.margin
-    near = found.overturned[(found.factors > 1 / NEAR) & (found.factors < NEAR)]
-    return bool((near < LEVELS[-1]).any() if _overturns(shaking) else (near >= LEVELS[0]).any())
-
-
-def _worst_ratio(shaking: Shaking) -> float:
-    best = shaking.histories["nonlinear"]
+def _worst_ratio(result: MotionResult) -> float:
+    best = result.histories["nonlinear"]
     return 0.0 if best.overturned else best.peak_ratio
 
 
-def alone(shaking: Shaking) -> str:
+def alone(result: MotionResult) -> str:
     """What the pulse in a motion alone does."""
-    ratio = shaking.alone
+    ratio = result.alone
     if ratio is None:
         return "No pulse could be found in it."
     if isnan(ratio):
@@ -286,7 +273,7 @@ def alone(shaking: Shaking) -> str:
     return f"This pulse alone rocks the structure to {_share(ratio)} of its critical rotation."
 
 
-def _ground(content: Content, lambda_: float) -> str:
+def _ground(content: Assessment, lambda_: float) -> str:
     """A horizontal ground acceleration, from a multiple of the structure's own gravity."""
     return f"{lambda_ * content.mechanism.gravity / STANDARD_GRAVITY:.3g} g"
 
@@ -295,7 +282,7 @@ def _share(ratio: float) -> str:
     return f"{100 * ratio:.3g} %" if ratio < 10 else f"{ratio:.3g} times"
 
 
-def restitution(content: Content) -> str:
+def restitution(content: Assessment) -> str:
     """Which restitution the histories used, and where it comes from."""
     etas = [content.equivalence[direction].eta for direction in Direction]
     return restitution_in_words(etas, given=content.mechanism.restitution is not None).replace("eta", "η")

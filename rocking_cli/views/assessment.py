@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from rocking_cli.core import Direction
-from rocking_cli.report import words
-from rocking_cli.report.content import Content
+from rocking_cli.studies.assessment import Assessment
+from rocking_cli.views import assessment_words as words
 from rocking_cli.views.margin import margin_data
 from rocking_cli.views.response import fit_data, runs_data
 from rocking_cli.views.view import View
 
 
-def view(content: Content) -> View:
+def view(content: Assessment) -> View:
     """The answer in a sentence, and all that the report says as plain data."""
     verdicts = words.verdicts(content)
     data = {
@@ -26,8 +26,8 @@ def view(content: Content) -> View:
         "motions": [
             {
                 "name": each.given.motion.name,
-                "file": each.given.file.name if each.given.file else None,
-                "sha256": each.given.file.checksum if each.given.file else None,
+                "file": each.file.name if each.file else None,
+                "sha256": each.file.checksum if each.file else None,
                 "factor": each.given.factor,
                 "pga": each.measured.pga,
                 "headline": said.headline,
@@ -38,7 +38,7 @@ def view(content: Content) -> View:
                 "margin": margin_data(each.margin),
                 "pulses": [fit_data(fit) for fit in each.fits],
             }
-            for each, said in zip(content.shakings, verdicts, strict=True)
+            for each, said in zip(content.results, verdicts, strict=True)
         ],
         "linearisation": content.trust,
         "command": content.command,

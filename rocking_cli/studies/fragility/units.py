@@ -13,7 +13,7 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName, build_model
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.fragility.plan import Plan
-from rocking_cli.studies.fragility.sources import Motions
+from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import FAILED, Rows
 from rocking_cli.studies.fragility.study import RESTITUTION, Sample
 
@@ -68,7 +68,7 @@ def carry_out(unit: Unit) -> Rows:
 def units(
     plan: Plan,
     samples: Sequence[Sample],
-    motions: Motions,
+    motions: KeptMotions,
     model: ModelName,
     finished: Callable[[int, int], Integers],
     size: int,
@@ -81,7 +81,7 @@ def units(
         All runs.
     samples : sequence of Sample
         The structures of its trials.
-    motions : Motions
+    motions : KeptMotions
         The ground motions of its records.
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
@@ -132,7 +132,7 @@ def unit_size(runs: int, workers: int) -> int:
     return min(max(ceil(runs / (SHARE * workers)), SMALLEST), LARGEST)
 
 
-def _unit(plan: Plan, runs: Integers, models: _Models, motions: Motions) -> Unit:
+def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions) -> Unit:
     sample, record, eta, level, polarity = plan.places(runs)
     trials, model = np.unique(sample, return_inverse=True)
     records, motion = np.unique(record, return_inverse=True)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.fragility.store import Store
 
 
-def give(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool) -> bool:
+def show_study(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool) -> bool:
     """Show what a store holds, write its runs and draw its curves.
 
     Returns
@@ -39,7 +39,7 @@ def give(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool
     if out is not None:
         _write(out, store, plan)
     if pictures is not None:
-        from rocking_cli.cli.fragility_pictures import draw_all
+        from rocking_cli.cli.study_pictures import draw_all
 
         draw_all(pictures, store, definition, curves, surfaces)
     terminal.show(view(store, plan, definition, finished, failed, curves, surfaces), as_json=as_json)

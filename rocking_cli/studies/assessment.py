@@ -1,4 +1,4 @@
-"""Everything a report says, as plain data: gathered here, put into words and onto a page elsewhere."""
+"""One structure under any number of ground motions: all that a report says of it, computed."""
 
 from __future__ import annotations
 
@@ -16,23 +16,27 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.prepared import Prepared
-from rocking_cli.dynamics.verdict import governs
+from rocking_cli.dynamics.verdict import CLOSE, disagree, governs
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.doubts import Doubt, coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.excitation.records.opening import name_of, original
+from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.studies.linearisation import Linearisation, compare
-from rocking_cli.studies.margin import Margin, margin
+from rocking_cli.studies.margin import LEVELS, Margin, margin
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 from rocking_cli.studies.overturning import OverturningMap, Region, overturning_map
 from rocking_cli.studies.picture import Picture, picture
-from rocking_cli.studies.shaken import Shaken, outcomes, parse_shape, shaken
 from rocking_cli.studies.trust import trust
+from rocking_cli.studies.under_pulses import PulsedModel, outcomes, parse_shape, pulsed_model
 
 AMPLITUDES, ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)  # at which the error of the block is said
 FITTED = ("sine", "ricker")  # the pulses with an amplitude and a period and nothing else: a map has these two axes
+LARGE = 2.0  # a factor on a record that asks for a word of caution
+NEAR = 1.25  # a factor on the motion within which the opposite outcome of some neighbours makes a result a close one
 POINTS = 80  # of each side of a map
 OMEGAS, TALLEST = (1.0, 10.0), 10.0  # omega_g/p of a map, and a_g/(g lambda) up to which it goes at least
 BEYOND = 1.15  # times a mark, that a map goes further
@@ -58,35 +62,15 @@ class File:
 
 
 @dataclass(frozen=True, eq=False)
-class Given:
-    """A ground motion as the user gave it.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        As read, or the sampled pulse.
-    factor : float
-        The factor on it, polarity apart.
-    file : File or None
-        Where it was read; None for a pulse.
-    pulse : Pulse or None
-        The pulse, if it is one.
-    """
-
-    motion: GroundMotion
-    factor: float = 1.0
-    file: File | None = None
-    pulse: Pulse | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Shaking:
+class MotionResult:
     """A ground motion and what it does.
 
     Parameters
     ----------
-    given : Given
-        The motion as given.
+    given : Scaled
+        The motion as read, or the sampled pulse, and the factor on it.
+    file : File or None
+        Where it was read; None for a pulse.
     measured : Measures
         Of the motion as scaled.
     doubts : tuple of Doubt
@@ -107,7 +91,8 @@ class Shaking:
         What the best pulse alone does: the peak ratio, NaN if it overturns; None if there is no pulse.
     """
 
-    given: Given
+    given: Scaled
+    file: File | None
     measured: Measures
     doubts: tuple[Doubt, ...]
     runs: Mapping[int, Mapping[ModelName, History]]
@@ -126,6 +111,21 @@ class Shaking:
     def scaled(self, polarity: int) -> GroundMotion:
         """The motion as scaled, under the name it was given."""
         return replace(self.given.motion.scaled(polarity * self.given.factor), name=self.given.motion.name)
+
+    @property
+    def scaled_much(self) -> bool:
+        """Whether the motion was made larger than any like it has been recorded."""
+        return abs(self.given.factor) > LARGE
+
+    @property
+    def close(self) -> bool:
+        """Whether a small change of the motion or the model could give the other outcome."""
+        best = self.histories["nonlinear"]
+        if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > CLOSE:
+            return True
+        near = (self.margin.factors > 1 / NEAR) & (self.margin.factors < NEAR)
+        shares = self.margin.overturned[near]
+        return bool((shares < LEVELS[-1]).any() if best.overturned else (shares >= LEVELS[0]).any())
 
     @property
     def histories(self) -> Mapping[ModelName, History]:
@@ -150,7 +150,7 @@ class PulseMap:
 
 
 @dataclass(frozen=True, eq=False)
-class Content:
+class Assessment:
     """Everything a report says.
 
     Parameters
@@ -167,7 +167,7 @@ class Content:
         The error of the equivalent block over its range, and where it is said in numbers; empty if it has none.
     trust : str
         What that means.
-    shakings : tuple of Shaking
+    results : tuple of MotionResult
         What each ground motion does.
     maps : tuple of PulseMap
         One for each shape of pulse; empty if no history can be computed.
@@ -186,7 +186,7 @@ class Content:
     curves: tuple[Linearisation, ...]
     asked: tuple[Linearisation, ...]
     trust: str
-    shakings: tuple[Shaking, ...]
+    results: tuple[MotionResult, ...]
     maps: tuple[PulseMap, ...]
     command: str
     date: str
@@ -201,14 +201,14 @@ class Content:
 def gather(
     structure: Prepared,
     file: File,
-    given: Sequence[Given],
+    given: Sequence[Scaled],
     polarities: Sequence[int],
     *,
     command: str,
     date: str,
     around: Around | None = None,
     progress: Callable[[int], None] | None = None,
-) -> Content:
+) -> Assessment:
     """Compute everything a report says.
 
     Parameters
@@ -217,7 +217,7 @@ def gather(
         The structure.
     file : File
         Where it was read.
-    given : sequence of Given
+    given : sequence of Scaled
         The ground motions; may be empty.
     polarities : sequence of int
         Of 1 and -1: those of the motions to look at.
@@ -241,13 +241,13 @@ def gather(
     except SolverError as error:  # the rest of the report stands without it
         curves, asked, said = [], [], f"The error of the equivalent block is left out: {error}."
     done(1)
-    shakings = []
+    results = []
     for each in given:
-        shakings.append(_shake(structure, each, polarities, around or Around()))
+        results.append(_result(structure, each, polarities, around or Around()))
         done(1)
-    maps = _maps(structure, shakings)
+    maps = _maps(structure, results)
     done(1)
-    return Content(
+    return Assessment(
         mechanism=mechanism,
         file=file,
         equivalence=equivalence,
@@ -255,7 +255,7 @@ def gather(
         curves=tuple(curves),
         asked=tuple(asked),
         trust=said,
-        shakings=tuple(shakings),
+        results=tuple(results),
         maps=tuple(maps),
         command=command,
         date=date,
@@ -268,7 +268,7 @@ def gather(
     )
 
 
-def steps(given: Sequence[Given]) -> int:
+def steps(given: Sequence[Scaled]) -> int:
     """How many steps `gather` takes."""
     return len(given) + 2
 
@@ -278,7 +278,7 @@ def _plugin(mechanism: Mechanism) -> str:
     return registry.package_of(mechanism.mechanism) if mechanism.mechanism in registry else "not installed as a plugin"
 
 
-def _shake(structure: Prepared, given: Given, polarities: Sequence[int], around: Around) -> Shaking:
+def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], around: Around) -> MotionResult:
     asked = measure(given.motion)
     doubtful = [] if given.pulse is not None else doubts(given.motion, asked) + coarse_for(given.motion, structure.p)
     under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
@@ -287,8 +287,9 @@ def _shake(structure: Prepared, given: Given, polarities: Sequence[int], around:
     worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
-    return Shaking(
+    return MotionResult(
         given=given,
+        file=_file(str(given.file)) if given.file is not None else None,
         measured=measure(scaled),
         doubts=tuple(doubtful),
         runs=runs,
@@ -301,7 +302,11 @@ def _shake(structure: Prepared, given: Given, polarities: Sequence[int], around:
     )
 
 
-def _fits(given: Given, scaled: GroundMotion) -> tuple[PulseFit, ...]:
+def _file(place: str) -> File:
+    return File(name_of(place), original(place))
+
+
+def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
     """The pulses in a motion as scaled, the best first: none in one too short or too quiet for any."""
     if given.pulse is not None:
         pulse = replace(given.pulse, amplitude=given.pulse.amplitude * abs(given.factor))
@@ -315,7 +320,7 @@ def _fits(given: Given, scaled: GroundMotion) -> tuple[PulseFit, ...]:
 
 def _alone(structure: Prepared, fit: PulseFit, polarities: Sequence[int]) -> float:
     shape = _shape(fit.pulse)
-    under = shaken(structure, "nonlinear", shape, (1, -1))
+    under = pulsed_model(structure, "nonlinear", shape, (1, -1))
     signs = [polarity * fit.sign for polarity in polarities]
     period, amplitude = np.array([fit.pulse.period]), np.array([fit.pulse.amplitude])
     return float(outcomes(under, shape, period, amplitude, polarities=signs).peak_ratio[0])
@@ -325,28 +330,28 @@ def _shape(pulse: Pulse) -> Pulse:
     return replace(pulse, amplitude=1.0, period=1.0)
 
 
-def _maps(structure: Prepared, shakings: Sequence[Shaking]) -> list[PulseMap]:
+def _maps(structure: Prepared, results: Sequence[MotionResult]) -> list[PulseMap]:
     """A map for each shape among the best pulses; of the sine if there is none."""
     if min(structure.equivalence.positive.eta, structure.equivalence.negative.eta) <= 0:
         return []  # no history of it can be computed
     marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
-    for shaking in shakings:
-        if shaking.fits:
-            best = shaking.fits[0]
-            marks.setdefault(_shape(best.pulse), []).append((shaking.given.motion.name, best))
+    for result in results:
+        if result.fits:
+            best = result.fits[0]
+            marks.setdefault(_shape(best.pulse), []).append((result.given.motion.name, best))
     marks = marks or {parse_shape("sine"): []}
     return [PulseMap(_map(structure, shape, each), tuple(each)) for shape, each in marks.items()]
 
 
 def _map(structure: Prepared, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
-    under = shaken(structure, "nonlinear", shape, (1, -1))
+    under = pulsed_model(structure, "nonlinear", shape, (1, -1))
     periods, tops = _axes(under, [fit.pulse for _, fit in marks])
     omega = under.period(np.linspace(*periods, POINTS))
     a = np.linspace(tops / POINTS, tops, POINTS)
     return overturning_map(under, shape, omega, a, polarities=(1, -1))
 
 
-def _axes(structure: Shaken, pulses: Sequence[Pulse]) -> tuple[tuple[float, float], float]:
+def _axes(structure: PulsedModel, pulses: Sequence[Pulse]) -> tuple[tuple[float, float], float]:
     """Periods [s] and the largest a, so that all pulses are on the map."""
     usual = [2 * pi / (omega * structure.p) for omega in OMEGAS]
     periods = [*usual, *(each.period / BEYOND for each in pulses), *(each.period * BEYOND for each in pulses)]
