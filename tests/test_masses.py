@@ -37,7 +37,9 @@ def test_without_masses_it_is_per_unit_mass(name, tmp_path):
     assert "kg" not in said and "linearised inertia, per unit mass" in said
     (row, _) = csv.DictReader(StringIO(run("equiv", file, "--csv").stdout))
     assert row["per unit mass"] == "yes" and float(row["I_eq [kg m2]"]) == data["directions"]["positive"]["I_eq"]
-    run("report", "--neighbours", 20, file, "-o", tmp_path / "r.html")
+    if name not in ("wall", "arch"):  # a report takes its time
+        return
+    run("report", file, "-o", tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "kg m" not in page and page.count("Per unit mass of the whole structure") == 3
 

@@ -326,7 +326,7 @@ class TestSize:
         records = []
         for k in range(3):
             path = tmp_path / f"long{k}.csv"
-            values = 0.05 * rng.standard_normal(30_000)
+            values = (0.05 if k == 0 else 0.01) * rng.standard_normal(30_000)  # the others lift nothing: that is fast
             path.write_text("\n".join(f"{value:.6f}" for value in values) + "\n", encoding="utf-8")
             records += ["--record", path]
         out = tmp_path / "r.html"

@@ -348,11 +348,14 @@ def test_a_history_says_which_restitution_it_used(given, said, tmp_path):
     file, pulse = tmp_path / "b.yaml", ("--pulse", "sine:0.4g:0.5s")
     file.write_text(f"mechanism: block\nwidth: 0.7\nheight: 2.8\n{given}", encoding="utf-8")
     assert said in run("respond", file, *pulse).stdout.splitlines()
-    assert said in run("animate", file, *pulse, "--out", tmp_path / "a.html").stdout.splitlines()
     assert said in run("pulse", file, "--ag", "0.4g", "--period", "0.5").stdout.splitlines()
-    run("report", "--neighbours", 2, file, *pulse, "-o", tmp_path / "r.html")
-    assert said.replace("eta", "η") in (tmp_path / "r.html").read_text(encoding="utf-8")
-    for data in (run_json("respond", file, *pulse), run_json("animate", file, *pulse, "--out", tmp_path / "a.html")):
+    if "negative" in given:  # a report takes its time, and says all in the same words
+        run("report", "--neighbours", 2, file, *pulse, "-o", tmp_path / "r.html")
+        assert said.replace("eta", "η") in (tmp_path / "r.html").read_text(encoding="utf-8")
+    for data in (
+        run_json("respond", file, *pulse),
+        run_json("animate", file, *pulse, "--out", tmp_path / "a.html", "--neighbours", 2),
+    ):
         assert data["restitution"]["source"] == ("given" if given else "kinematics")
         assert data["restitution"]["positive_to_negative"] == run_json("equiv", file)["directions"]["positive"]["eta"]
     for text in (run("spectrum", file, *pulse).stdout, run("overturning", file, "--points", 4).stdout):
