@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -23,10 +24,10 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.fragility import assess, curves, engines, sources, store, store_file, tally, units
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
-from rocking_cli.studies.fragility.definition import RecordEntry
-from rocking_cli.studies.fragility.intensity import MEASURES, Scales, intensity
+from rocking_cli.studies.fragility.definition import SCALE, LevelMeasure, Measure, RecordEntry
+from rocking_cli.studies.fragility.intensity import MEASURES, Reference, intensity, quantities
 from rocking_cli.studies.fragility.observed import few_records
-from rocking_cli.studies.fragility.plan import weaker
+from rocking_cli.studies.fragility.plan import Trial, weaker
 from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
 from rocking_cli.studies.fragility.study import load_study
@@ -638,8 +639,8 @@ def test_structures_of_like_names_have_a_picture_each(tmp_path):
 
 
 def test_intensities_are_those_of_their_definitions():
-    scales = Scales(p=np.array([2.0]), lambda_=np.array([0.25]), gravity=np.array([4.903325]))
-    found = [float(intensity(name, np.array([0.5]), np.array([0.3]), scales)[0]) for name in MEASURES]
+    scales = Reference(p=np.array([2.0]), lambda_=np.array([0.25]), gravity=np.array([4.903325]))
+    found = [float(intensity(name, {"pga": np.array([0.5]), "pgv": np.array([0.3])}, scales)[0]) for name in MEASURES]
     assert found == pytest.approx([0.5, 0.3, 0.5 * 9.80665 / (4.903325 * 0.25), 2.0 * 0.3 / (4.903325 * 0.25)])
 
 
@@ -647,8 +648,8 @@ def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
     block = load_structure(EXAMPLES / "block.yaml").model_copy(update={"gravity": 3.7})
     motion = GroundMotion("pulse", 0.01, np.concatenate([np.zeros(5), np.sin(np.linspace(0, 6.28, 100)), np.zeros(5)]))
     lam = block.uplift(1)  # type: ignore[arg-type]
-    scales = Scales(p=1.0, lambda_=lam, gravity=block.gravity)
-    unit = float(intensity("PGA/(g lambda)", motion.pga, 1.0, scales))
+    scales = Reference(p=1.0, lambda_=lam, gravity=block.gravity)
+    unit = float(intensity("PGA/(g lambda)", {"pga": motion.pga}, scales))
     for a, uplifts in ((0.999, False), (1.001, True)):
         history = respond(block, motion.scaled(a / unit), models=("linear2",))["linear2"]
         assert (history.peak_ratio != 0) == uplifts
@@ -659,6 +660,21 @@ def test_columns_of_a_row_are_those_of_the_table(whole):
     names = [row[1] for row in connection.execute("PRAGMA table_info(run)")]
     connection.close()
     assert tuple(names) == (*COLUMNS, "checksum")
+
+
+@pytest.mark.parametrize(("table", "kind"), [("sample", Trial), ("record", sources.Record)])
+def test_columns_of_a_table_are_the_fields_of_what_it_holds_in_their_order(whole, table, kind):
+    connection = sqlite3.connect(whole[2])
+    names = [row[1] for row in connection.execute(f"PRAGMA table_info({table})")]
+    connection.close()
+    assert names == ["id", *kind.__dataclass_fields__]
+
+
+def test_a_study_may_name_every_measure_and_the_record_of_a_store_has_what_it_is_of():
+    (names, *_), (levels, *_) = get_args(Measure), get_args(LevelMeasure)
+    assert get_args(names) == tuple(MEASURES)
+    assert {name for each in get_args(levels) for name in get_args(each)} == {*MEASURES, SCALE}
+    assert set(quantities()) <= set(sources.Record.__dataclass_fields__)
 
 
 def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, monkeypatch):
@@ -733,7 +749,7 @@ def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     assert result.exit_code == 0, result.stderr
     with Store.reading(tmp_path / "study.db") as kept:
         plan, definition = kept.plan(), load_study(path).definition
-        found = tally.count(kept, plan, "uncertain", definition.limit_states, MEASURES[2:3], ladders=True)
+        found = tally.count(kept, plan, "uncertain", definition.limit_states, ["PGA/(g lambda)"], ladders=True)
         rows = kept.runs(36, plan.total)
         assert tally.peaks(kept, plan, "uncertain").shape == (24, 6)
     (_, _, overturning) = assess.curves(found, "uncertain", definition, None)

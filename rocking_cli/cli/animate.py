@@ -97,10 +97,7 @@ def command(
       rocking animate frame.yaml --record accel.csv --out frame.html
       rocking animate arch.yaml --pulse sine:0.5g:1.2s --out arch.gif --speed 0.5
     """
-    if bool(asked.records) == bool(asked.pulses):
-        raise click.UsageError("Give --record FILE or --pulse PULSE, and not both.")
-    if not asked.records and any(value is not None for value in asked.reading):
-        raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
+    _check(asked)
     paths, missing = motion_files.find(asked.records)
     several = len(paths) + missing + len(asked.pulses) > 1
     if not paths and not asked.pulses:
@@ -120,14 +117,12 @@ def command(
     places = motion_files.separate(out, given, several=several)
     keep_apart([("--out", place) for place in places], read)
     say_if_compiling()
-    built, drawn = structure.model(cast("ModelName", model)), picture(structure.mechanism)
-    title = heading(structure.mechanism)
-    rows: list[list[str]] = []
+    camera = _Camera(structure.model(cast("ModelName", model)), picture(structure.mechanism), pace, near)
+    title, rows = heading(structure.mechanism), []
     for each, place in zip(given, places, strict=True):
-        assert place is not None
         motion = each.motion.scaled(asked.signs[0] * each.factor)
         try:
-            film, found, beside = _shoot(place, built, drawn, motion, title, pace, near)
+            film, found, beside = camera.shoot(motion, title, place)
         except RockingError as error:
             if not several:
                 raise
@@ -145,17 +140,33 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _shoot(
-    place: Path, model: Model, picture: Picture, motion: GroundMotion, title: str, pace: Pace, near: Near
-) -> tuple[Film, dict[str, float | int | None], Neighbours | None]:
-    """Follow a model under a motion, write what is to be seen, and follow the neighbours."""
-    from rocking_cli.dynamics.history import follow
-    from rocking_cli.studies.film import Film
-    from rocking_cli.studies.neighbours import neighbours
+def _check(asked: GroundMotions) -> None:
+    if bool(asked.records) == bool(asked.pulses):
+        raise click.UsageError("Give --record FILE or --pulse PULSE, and not both.")
+    asked.check()
 
-    film = Film(picture, follow(model, motion), motion)
-    found = _write(place, film, title, pace.speed, pace.fps)
-    return film, found, neighbours(model, motion, near.around) if near.neighbours else None
+
+@dataclass(frozen=True, eq=False)
+class _Camera:
+    """What moves, and how it is shown."""
+
+    model: Model
+    picture: Picture
+    pace: Pace
+    near: Near
+
+    def shoot(
+        self, motion: GroundMotion, title: str, out: Path | None
+    ) -> tuple[Film, dict[str, float | int | None], Neighbours | None]:
+        """Follow a motion, write what is to be seen, and follow its neighbours."""
+        from rocking_cli.dynamics.history import follow
+        from rocking_cli.studies.film import Film
+        from rocking_cli.studies.neighbours import neighbours
+
+        assert out is not None
+        film = Film(self.picture, follow(self.model, motion), motion)
+        found = _write(out, film, title, self.pace.speed, self.pace.fps)
+        return film, found, neighbours(self.model, motion, self.near.around) if self.near.neighbours else None
 
 
 def _write(out: Path, film: Film, title: str, speed: float | None, fps: float) -> dict[str, float | int | None]:

@@ -77,6 +77,16 @@ class GroundMotions(Scaling, Reading):
         """Whether there is any."""
         return bool(self.records or self.pulses)
 
+    def check(self, vertical: str | None = None) -> None:
+        """Refuse what says nothing; `units` and `dt` also read the vertical component, if there is one, of a pulse."""
+        reading = self.reading if vertical is None else (self.channel,)
+        if not self.records and any(value is not None for value in reading):
+            raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
+        if not self and self.is_scaled:
+            raise click.UsageError(
+                "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
+            )
+
 
 def polarities(polarity: str) -> tuple[int, ...]:
     """Of 1 and -1, those that an option asks for."""

@@ -48,6 +48,7 @@ def command(
     """
     if not asked:
         raise click.UsageError("Nothing to vary: give --record PLACE or --pulse PULSE, each as often as you like.")
+    asked.check()
     if not near.neighbours:
         raise click.UsageError("A share needs neighbours: --neighbours must be at least 1 here.")
     from rocking_cli.cli import structures

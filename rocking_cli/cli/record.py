@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import motion_files, options, terminal
-from rocking_cli.cli.groups import Reading, Scaling
+from rocking_cli.cli.groups import Output, Reading, Scaling
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
 
@@ -28,7 +28,7 @@ def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | No
     """`--to csv`, which wrote into this folder."""
     if value is not None:
         terminal.note("--to csv is called --out now, with a file or a folder: --out . is this one")
-        ctx.params["out"] = "."
+        ctx.params["out"] = Path()
 
 
 @click.command(
@@ -48,6 +48,7 @@ def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | No
 @click.option(
     "-o",
     "--out",
+    type=click.Path(path_type=Path),
     metavar="PLACE",
     help="Write each as a clean file of t and a: FILE.csv, or a folder, made if absent, for NAME.csv.",
 )
@@ -55,7 +56,7 @@ def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | No
 @options.plot("Draw one record")
 @options.as_json
 @click.pass_context
-@options.grouped(reading=Reading, scaling=Scaling)
+@options.grouped(reading=Reading, scaling=Scaling, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
@@ -63,9 +64,7 @@ def command(
     scaling: Scaling,
     structure: str | None,
     fit_pulse: bool,
-    out: str | None,
-    plot: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> None:
     """What was read of records, and how strong they are: peaks, Arias intensity, durations.
 
@@ -85,6 +84,7 @@ def command(
       rocking record table.csv --channel "acc x" --units g
       rocking record accel.csv --fit-pulse --plot pulse.png
     """
+    out, plot = output.out, output.plot
     if plot is not None and (len(files) > 1 or scaling.polarity == "both"):
         raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
     from rocking_cli.io.files import keep_apart
@@ -104,18 +104,18 @@ def command(
             terminal.plugin_traceback(error)
             continue
         examined += found
-        if as_json:
+        if output.as_json:
             for one in found:
                 terminal.print_json(data(one))
         motion_files.warn(found[0].motion, found[0].doubts)
-    if examined and not as_json:
+    if examined and not output.as_json:
         terminal.show(View({}, list(parts(examined, terminal.width()))), as_json=False)
     if len(examined) < len(files) * len(scaling.signs):
         ctx.exit(INCOMPLETE if examined else InputError.exit_code)
 
 
 def _clean_paths(
-    out: str, files: Sequence[str], channel: str | None, signs: Sequence[int]
+    out: Path, files: Sequence[str], channel: str | None, signs: Sequence[int]
 ) -> dict[tuple[str, int], Path]:
     """Where the clean file of each record goes: in a folder, it has the name of the record and the channel."""
     from rocking_cli.excitation.records.opening import name_of
@@ -123,24 +123,24 @@ def _clean_paths(
     if _is_file(out):
         if len(files) > 1 or len(signs) > 1:
             raise click.UsageError("--out FILE.csv takes one record: give one FILE and one polarity, or a folder.")
-        return {(files[0], signs[0]): Path(out)}
+        return {(files[0], signs[0]): out}
     suffix = "-" + re.sub(r"\W+", "-", channel.strip()) if channel is not None else ""
     paths: dict[tuple[str, int], Path] = {}
     for file in files:
         for sign in signs:
             turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
-            path = Path(out) / f"{Path(name_of(file)).stem}{suffix}{turned}.csv"
+            path = out / f"{Path(name_of(file)).stem}{suffix}{turned}.csv"
             if path in paths.values():
                 raise InputError(Problem("two records would be written there", str(path), hint="write them one by one"))
             paths[file, sign] = path
     return paths
 
 
-def _is_file(out: str) -> bool:
-    return Path(out).suffix.lower() == ".csv" and not Path(out).is_dir()
+def _is_file(out: Path) -> bool:
+    return out.suffix.lower() == ".csv" and not out.is_dir()
 
 
-def _make_room(out: str | None, paths: Iterable[Path]) -> None:
+def _make_room(out: Path | None, paths: Iterable[Path]) -> None:
     """See that the files can be written: what was not named, and is no clean record, is not replaced."""
     from rocking_cli.excitation.record_csv import is_record_csv
     from rocking_cli.io.files import check_writable, folder
@@ -148,7 +148,7 @@ def _make_room(out: str | None, paths: Iterable[Path]) -> None:
     if out is None:
         return
     if not _is_file(out):
-        folder(out)
+        folder(str(out))
     for path in paths:
         if not _is_file(out) and path.exists() and not is_record_csv(path):
             hint = "move it away, or name another folder"

@@ -46,14 +46,9 @@ def command(
       rocking report frame.yaml --record accel.csv -o report.html
       rocking report arch.yaml --record one.AT2 --record two.AT2 --target-pga 0.3
     """
-    if not asked.records and any(value is not None for value in asked.reading):
-        raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
+    asked.check()
     if not near.neighbours:
         raise click.UsageError("A report says how close a result is: --neighbours must be at least 1 here.")
-    if not asked and asked.is_scaled:
-        raise click.UsageError(
-            "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
-        )
     from rocking_cli.cli.waiting import say_if_compiling
     from rocking_cli.io.files import check_writable, keep_apart, write_whole
     from rocking_cli.studies.assessment import gather, steps

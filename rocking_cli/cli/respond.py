@@ -187,14 +187,9 @@ def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -
         )
     if not asked and vertical.vertical is not None:
         raise click.UsageError("--vertical goes with a horizontal component: give --record FILE or --pulse PULSE.")
-    if not asked.records and vertical.vertical is None and (asked.units is not None or asked.dt is not None):
-        raise click.UsageError("--units and --dt describe a record: give --record FILE.")
-    if not asked.records and asked.channel is not None:
-        raise click.UsageError("--channel is one of a record: give --record FILE.")
-    if not asked and (asked.is_scaled or asked.polarity != "1"):
-        raise click.UsageError(
-            "--scale, --target-pga, --target-pgv and --polarity change a record: give --record FILE or --pulse PULSE."
-        )
+    asked.check(vertical.vertical)
+    if not asked and asked.polarity != "1":
+        raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
     if history.with_pulse is not None and not asked.records:
         raise click.UsageError("--with-pulse finds the pulse in a record: give --record FILE.")
     if history.with_pulse is not None and asked.polarity == "both":

@@ -140,8 +140,7 @@ def command(
         raise click.UsageError(
             "Nothing to respond to: give --record PLACE or --pulse PULSE, each as often as you like."
         )
-    if not asked.records and any(value is not None for value in asked.reading):
-        raise click.UsageError("--units, --dt and --channel describe records: give --record PLACE.")
+    asked.check()
     motion_files.check_strays(files, asked.records)
     from rocking_cli.cli import waiting
     from rocking_cli.io.files import keep_apart

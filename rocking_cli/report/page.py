@@ -23,13 +23,13 @@ from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
-from rocking_cli.report.definitions import PARAMETERS
 from rocking_cli.report.figures import inline_svg
 from rocking_cli.studies.assessment import Assessment, MotionResult, PulseMap, amplitude_in_g, share
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
 from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
+from rocking_cli.views.parameters import PARAMETERS, values
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
 FEWEST, MOST = 300, 2500  # of one motion
@@ -121,7 +121,7 @@ def _directions(content: Assessment) -> list[str]:
 
 def _parameters(content: Assessment) -> list[dict[str, Any]]:
     shown = [Direction.POSITIVE] if content.equivalence.symmetric else list(Direction)
-    blocks = [content.equivalence[each].as_dict() for each in shown]
+    blocks = [values(content.equivalence[each]) for each in shown]
     return [
         {
             "symbol": each.symbol,
@@ -129,8 +129,8 @@ def _parameters(content: Assessment) -> list[dict[str, Any]]:
                 _number(block[each.key]) + (f" ({degrees(block[each.key]):.3g}°)" if each.unit == "rad" else "")
                 for block in blocks
             ],
-            "unit": each.unit if content.mechanism.has_mass else each.unit.removeprefix("kg "),
-            "meaning": each.meaning + (PER_MASS if _per_mass(content, each.unit) else ""),
+            "unit": each.printed_unit if content.mechanism.has_mass else each.printed_unit.removeprefix("kg "),
+            "meaning": each.meaning + (PER_MASS if each.of_mass and not content.mechanism.has_mass else ""),
         }
         for each in PARAMETERS
     ]

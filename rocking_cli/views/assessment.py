@@ -6,6 +6,7 @@ from rocking_cli.core import Direction
 from rocking_cli.studies.assessment import Assessment
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.margin import margin_data
+from rocking_cli.views.parameters import values
 from rocking_cli.views.response import fit_data, runs_data
 from rocking_cli.views.view import View
 
@@ -22,7 +23,7 @@ def view(content: Assessment) -> View:
         },
         "answer": words.in_a_sentence(content),
         "doubts": words.doubts(content),
-        "parameters": {each.label: content.equivalence[each].as_dict() for each in Direction},
+        "parameters": {each.label: values(content.equivalence[each]) for each in Direction},
         "motions": [
             {
                 "name": each.given.motion.name,

@@ -10,28 +10,13 @@ from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism
 from rocking_cli.core.advice import preferred_kappa
 from rocking_cli.core.restitution import why_none
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.views.parameters import PARAMETERS, values
 from rocking_cli.views.view import Table, View, heading, number
-
-ROWS = (
-    ("p", "rad/s", "frequency parameter: small for large structures"),
-    ("phi_cr", "rad", "critical rotation: unstable equilibrium"),
-    ("lambda", "g", "ground acceleration at uplift"),
-    ("lambda_lin", "g", "the same for the linearised mechanism"),
-    ("kappa1", "", "phi/theta that keeps lambda_lin"),
-    ("kappa2", "", "phi/theta that keeps lambda"),
-    ("theta_cr1", "rad", "critical rotation of the block, kappa1"),
-    ("theta_cr2", "rad", "critical rotation of the block, kappa2"),
-    ("eta", "", "restitution of an impact ending this direction"),
-    ("I_eq", "kg m2", "linearised inertia"),
-    ("G_eq", "kg m", "linearised restoring moment over g"),
-    ("B_eq", "kg m", "linearised drive of the ground"),
-)
-PER_MASS = {"kg m2": "m2", "kg m": "m"}  # of a structure whose file gives no masses
 
 
 def view(mechanism: Mechanism, equivalence: Equivalence) -> View:
     """The parameters of both directions, in one column where they agree, and which kappa to prefer."""
-    shown = [(name, block.as_dict(), preferred_kappa(block)) for name, block in _blocks(equivalence)]
+    shown = [(name, values(block), preferred_kappa(block)) for name, block in _blocks(equivalence)]
     data = {
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
@@ -46,8 +31,16 @@ def view(mechanism: Mechanism, equivalence: Equivalence) -> View:
     }
     if equivalence.symmetric:
         shown = [("value", *shown[0][1:])]
-    rows = [[key, *(number(block[key]) for _, block, _ in shown), unit, meaning]
-            for key, unit, meaning in (ROWS if mechanism.has_mass else _per_mass())]  # fmt: skip
+    per_mass = "" if mechanism.has_mass else ", per unit mass"
+    rows = [
+        [
+            each.key,
+            *(number(block[each.key]) for _, block, _ in shown),
+            each.unit_of(mass=mechanism.has_mass),
+            each.short + (per_mass if each.of_mass else ""),
+        ]
+        for each in PARAMETERS
+    ]
     columns = ["", *(name for name, _, _ in shown), "unit", "meaning"]
     table = Table(heading(mechanism), columns, rows, numbers=range(1, len(shown) + 1), explained=True)
     said = [
@@ -67,9 +60,9 @@ def table(found: Sequence[tuple[Mechanism, Equivalence]]) -> dict[str, list[Any]
     rows: list[list[Any]] = []
     for mechanism, equivalence in found:
         for name, block in _blocks(equivalence):
-            values = (block.as_dict()[key] for key, _, _ in ROWS)
-            rows.append([mechanism.name, mechanism.mechanism, name, *values, "no" if mechanism.has_mass else "yes"])
-    units = [f"{key} [{unit}]" if unit else key for key, unit, _ in ROWS]
+            per_mass = "no" if mechanism.has_mass else "yes"
+            rows.append([mechanism.name, mechanism.mechanism, name, *values(block).values(), per_mass])
+    units = [f"{each.key} [{each.unit}]" if each.unit else each.key for each in PARAMETERS]
     names = ["name", "mechanism", "direction", *units, "per unit mass"]
     return {name: [row[k] for row in rows] for k, name in enumerate(names)}
 
@@ -101,10 +94,3 @@ def _where(equivalence: Equivalence) -> tuple[str, ...]:
 
 def _blocks(equivalence: Equivalence) -> tuple[tuple[str, EquivalentBlock], tuple[str, EquivalentBlock]]:
     return ("positive", equivalence.positive), ("negative", equivalence.negative)
-
-
-def _per_mass() -> list[tuple[str, str, str]]:
-    return [
-        (key, PER_MASS.get(unit, unit), f"{meaning}, per unit mass" if unit in PER_MASS else meaning)
-        for key, unit, meaning in ROWS
-    ]

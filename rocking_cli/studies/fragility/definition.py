@@ -70,13 +70,9 @@ def _file(value: object) -> object:
     return {"file": value} if isinstance(value, str) else value
 
 
-Measure = Annotated[
-    Literal["PGA", "PGV", "PGA/(g lambda)", "p PGV/(g lambda)"],  # MEASURES, as types must be written out
-    BeforeValidator(_measure),
-]
-LevelMeasure = Annotated[
-    Literal["PGA", "PGV", "PGA/(g lambda)", "p PGV/(g lambda)", "scale"], BeforeValidator(_measure)
-]
+_Names = Literal["PGA", "PGV", "PGA/(g lambda)", "p PGV/(g lambda)"]  # types must be written out: a test holds it
+Measure = Annotated[_Names, BeforeValidator(_measure)]
+LevelMeasure = Annotated[_Names | Literal["scale"], BeforeValidator(_measure)]
 Limit = Annotated[str | float, BeforeValidator(_limit)]
 
 

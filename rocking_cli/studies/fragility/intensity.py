@@ -1,7 +1,12 @@
-"""What the intensity of a ground motion is measured by, alone or relative to the structure it shakes."""
+"""What the intensity of a ground motion is measured by, alone or relative to the structure it shakes.
+
+One table, `MEASURES`. A measure of another quantity of the motion needs that quantity in `sources.Record`, and so in
+the table `record` of a store, with a new `store_file.VERSION`.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,15 +16,10 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 
 Reals = NDArray[np.float64]
 
-PGA, PGV = "PGA", "PGV"
-PGA_RATIO, PGV_RATIO = "PGA/(g lambda)", "p PGV/(g lambda)"
-MEASURES = (PGA, PGV, PGA_RATIO, PGV_RATIO)
-UNITS = {PGA: "g", PGV: "m/s", PGA_RATIO: "", PGV_RATIO: ""}
-
 
 @dataclass(frozen=True, eq=False)
-class Scales:
-    """What the dimensionless measures refer to, of one structure or of many: numbers, or arrays of one shape.
+class Reference:
+    """What dimensionless measures are relative to, of one structure or of many: numbers, or arrays of one shape.
 
     Parameters
     ----------
@@ -35,36 +35,78 @@ class Scales:
     lambda_: float | Reals
     gravity: float | Reals
 
+    @property
+    def uplift(self) -> float | Reals:
+        """The acceleration at uplift [m/s2]."""
+        return self.gravity * self.lambda_
 
-def intensity(measure: str, pga: float | Reals, pgv: float | Reals, scales: Scales) -> Reals:
+
+@dataclass(frozen=True)
+class Measure:
+    """A measure of intensity.
+
+    Parameters
+    ----------
+    name, unit : str
+        Of it; a dimensionless one has no unit.
+    of : str
+        Which quantity of the motion it is of: a field of `sources.Record`, in proportion to the factor on the motion.
+    relative : callable, optional
+        What it makes of that for a structure; without it the measure is that quantity itself.
+    """
+
+    name: str
+    unit: str
+    of: str
+    relative: Callable[[float | Reals, Reference], float | Reals] | None = None
+
+
+PGA, PGV = "PGA", "PGV"
+MEASURES: Mapping[str, Measure] = {
+    each.name: each
+    for each in (
+        Measure(PGA, "g", "pga"),
+        Measure(PGV, "m/s", "pgv"),
+        # The a of a pulse [paper, Eq. 40]: 1 is needed to uplift.
+        Measure("PGA/(g lambda)", "", "pga", lambda pga, of: pga * STANDARD_GRAVITY / of.uplift),
+        Measure("p PGV/(g lambda)", "", "pgv", lambda pgv, of: of.p * pgv / of.uplift),
+    )
+}
+
+
+def intensity(measure: str, motion: Mapping[str, float | Reals], reference: Reference) -> Reals:
     """The intensity of motions for structures.
 
     Parameters
     ----------
     measure : str
         One of `MEASURES`.
-    pga, pgv : float or ndarray
-        Peaks of the motions [standard gravity], [m/s].
-    scales : Scales
+    motion : mapping of str to float or ndarray
+        The quantities that measures are of, such as `pga` [standard gravity] and `pgv` [m/s].
+    reference : Reference
         Of the structures; all arrays have one shape, that of the result.
-
-    Notes
-    -----
-    PGA/(g lambda) is the a of a pulse [paper, Eq. 40]: 1 is needed to uplift. p PGV/(g lambda) is its velocity.
     """
-    least = scales.gravity * scales.lambda_  # m/s2, uplifts
-    if measure == PGA_RATIO:
-        pga = pga * STANDARD_GRAVITY / least
-    if measure == PGV_RATIO:
-        pgv = scales.p * pgv / least
-    return np.asarray(pga if measure in (PGA, PGA_RATIO) else pgv, dtype=np.float64)
+    asked = MEASURES[measure]
+    value = motion[asked.of]
+    return np.asarray(value if asked.relative is None else asked.relative(value, reference), dtype=np.float64)
+
+
+def quantities() -> tuple[str, ...]:
+    """The quantities of a motion that measures are of, each once."""
+    return tuple(dict.fromkeys(each.of for each in MEASURES.values()))
+
+
+def of_the_motion(measure: str) -> bool:
+    """Whether a measure, or the factor on the records, does not ask what is shaken."""
+    return measure not in MEASURES or MEASURES[measure].relative is None
 
 
 def proportional(one: str, other: str) -> bool:
     """Whether two measures are in proportion for one structure: both of the acceleration, or both of the velocity."""
-    return any(one in pair and other in pair for pair in ((PGA, PGA_RATIO), (PGV, PGV_RATIO)))
+    return one in MEASURES and other in MEASURES and MEASURES[one].of == MEASURES[other].of
 
 
 def label(measure: str) -> str:
     """A measure with its unit, for a heading."""
-    return f"{measure} [{UNITS[measure]}]" if UNITS[measure] else measure
+    unit = MEASURES[measure].unit
+    return f"{measure} [{unit}]" if unit else measure

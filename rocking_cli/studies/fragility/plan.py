@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rocking_cli.core import Equivalence
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.studies.fragility.definition import SCALE
-from rocking_cli.studies.fragility.intensity import Scales, intensity
+from rocking_cli.studies.fragility.intensity import Reference, intensity, quantities
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.under_pulses import uplift
 
@@ -125,15 +125,20 @@ class Plan:
         sample, record, eta, level, polarity = np.unravel_index(runs, self.shape)
         return sample, record, eta, level, polarity
 
-    def scales(self, sample: Integers) -> Scales:
+    def reference(self, sample: Integers) -> Reference:
         """What the dimensionless measures refer to, for samples by their places."""
         columns = np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])[sample]
-        return Scales(columns[:, 0], columns[:, 1], columns[:, 2])
+        return Reference(columns[:, 0], columns[:, 1], columns[:, 2])
+
+    def motion(self, record: Integers, factor: float | Reals = 1.0) -> dict[str, Reals]:
+        """The quantities that measures are of, of records by their places, times factors."""
+        return {
+            name: factor * np.array([getattr(each, name) for each in self.records])[record] for name in quantities()
+        }
 
     def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
         """Factors on the records that bring them to the levels, for places of one shape."""
         wanted = np.array(self.levels)[level]
         if self.measure == SCALE:
             return wanted
-        peaks = np.array([(each.pga, each.pgv) for each in self.records])[record]
-        return np.asarray(wanted / intensity(self.measure, peaks[:, 0], peaks[:, 1], self.scales(sample)))
+        return np.asarray(wanted / intensity(self.measure, self.motion(record), self.reference(sample)))

@@ -28,6 +28,7 @@ from rocking_cli.studies.fragility.plan import Plan, Trial
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.fragility.store_file import (
     AT_WORK,
+    CHECKED,
     MARK,
     VERSION,
     damaged,
@@ -224,10 +225,10 @@ class Store:
             store._say = say
             try:
                 if path.exists():
-                    store._take(anew=anew)
+                    store._lock_and_check(anew=anew)
                 yield store
             finally:
-                store._leave()
+                store._let_go()
 
     @classmethod
     @contextmanager
@@ -253,11 +254,11 @@ class Store:
         """Whether nothing has been written yet."""
         return not tables(self._connection)
 
-    def _take(self, *, anew: bool) -> None:
+    def _lock_and_check(self, *, anew: bool) -> None:
         """Lock the store that is there, and make sure that its runs can be relied upon."""
         self._there = True
         try:
-            self._hold(open_locked(self.path))
+            self._go_on_with(open_locked(self.path))
         except sqlite3.DatabaseError as error:
             if not (anew and is_beyond_reading(self.path, error)):
                 raise
@@ -270,20 +271,20 @@ class Store:
             self._check_pages()
             self._check_runs()
             if self.doubts():
-                self._mend()
-            self._sign()
+                self._rebuild()
+            self._name_who_is_at_work()
 
-    def _hold(self, connection: sqlite3.Connection) -> None:
+    def _go_on_with(self, connection: sqlite3.Connection) -> None:
         """Go on with another connection than the one to nothing."""
         self._connection.close()
         self._connection = connection
 
-    def _sign(self) -> None:
+    def _name_who_is_at_work(self) -> None:
         """Tell others who is at work."""
         self._connection.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (AT_WORK, this_process()))
         self.commit()
 
-    def _leave(self) -> None:
+    def _let_go(self) -> None:
         """Keep what is finished, and let others write."""
         try:
             if self._connection.in_transaction:  # not after a full disk, which has undone the last one
@@ -296,7 +297,7 @@ class Store:
             if self._replaced is not None:
                 self._replaced.close()
 
-    def _mend(self) -> None:
+    def _rebuild(self) -> None:
         """Take the sound runs over into a new store that takes the place of this one."""
         plan, facts = self.plan(), self._facts()
         for each in self.doubts():
@@ -311,7 +312,7 @@ class Store:
                 new._insert_runs(rows)
 
         self._connection = _nothing()
-        self._hold(exchange(self.path, old._connection, fill, self._say))
+        self._go_on_with(exchange(self.path, old._connection, fill, self._say))
         self.damaged, self.unreadable, self.checked = [], False, True
         self._check_plan()
 
@@ -347,16 +348,16 @@ class Store:
         if self._replaced is not None:
             old, self._replaced = self._replaced, None
             fill: Callable[[sqlite3.Connection], None] = lambda new: Store(self.path, new)._fill(plan, facts)  # noqa: E731
-            self._hold(exchange(self.path, old, fill, self._say))
+            self._go_on_with(exchange(self.path, old, fill, self._say))
             self._check_plan()
         else:
             if not self._there:
-                self._hold(open_locked(self.path))
+                self._go_on_with(open_locked(self.path))
             if not self.empty:
                 what = "another process has begun this study at the same moment"
                 raise InputError(Problem(what, str(self.path), hint="the same command goes on from there"))
             self._fill(plan, facts)
-        self._sign()
+        self._name_who_is_at_work()
 
     def _fill(self, plan: Plan, facts: Mapping[str, Any]) -> None:
         for statement in TABLES.split(";"):
@@ -386,6 +387,10 @@ class Store:
         """Keep plain data by name, in place of what was there."""
         rows = [(key, json_text(value, sort_keys=True)) for key, value in facts.items()]
         self._connection.executemany("INSERT OR REPLACE INTO study VALUES (?, ?)", rows)
+        self._seal()
+
+    def _seal(self) -> None:
+        """Renew the checksum of all that a store holds but its runs."""
         self._connection.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (SEAL, self._digest()))
 
     def _digest(self) -> str:
@@ -406,7 +411,7 @@ class Store:
             self._connection.execute("BEGIN")  # at one moment: somebody may be at work
         try:
             _, version = header(self._connection)
-            self.checked = version >= VERSION
+            self.checked = version >= CHECKED
             names = {row[1] for row in self._connection.execute("PRAGMA table_info(run)")}
             if ("checksum" in names) != self.checked or not names.issuperset(COLUMNS):
                 raise damaged(self.path, "its tables are not those of a store")
@@ -492,7 +497,7 @@ class Store:
         columns = asdict(record)
         names = ", ".join(f"{name} = ?" for name in columns)
         self._connection.execute(f"UPDATE record SET {names} WHERE id = ?", (*columns.values(), k))
-        self.note({})
+        self._seal()
 
     def finished(self, first: int, stop: int) -> Integers:
         """The numbers of the finished runs from `first` to before `stop`, growing."""

@@ -40,9 +40,7 @@ def blocks(store: Store, plan: Plan) -> Iterator[Mapping[str, Sequence[object]]]
 def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
     sample, record, _, level, polarity = plan.places(rows.id)
     trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
-    pga = rows.scale * np.array([each.pga for each in records])
-    pgv = rows.scale * np.array([each.pgv for each in records])
-    scales = plan.scales(sample)
+    motion, reference = plan.motion(record, rows.scale), plan.reference(sample)
     return {
         "run": rows.id.tolist(),
         "structure": [each.structure for each in trials],
@@ -52,7 +50,7 @@ def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
         "polarity": np.array(plan.polarities)[polarity].tolist(),
         "eta": rows.eta.tolist(),
         "scale": rows.scale.tolist(),
-        **{label(name): intensity(name, pga, pgv, scales).tolist() for name in MEASURES},
+        **{label(name): intensity(name, motion, reference).tolist() for name in MEASURES},
         "outcome": [_outcome(*each) for each in zip(rows.outcome.tolist(), rows.uplift_time.tolist(), strict=True)],
         "fell_to": np.where(np.abs(rows.outcome) == 1, rows.outcome, 0).tolist(),
         "phi/phi_cr": rows.peak_ratio.tolist(),

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.studies.fragility.definition import OVERTURNING, SCALE, Limit
-from rocking_cli.studies.fragility.intensity import PGA, PGV, intensity, proportional
+from rocking_cli.studies.fragility.definition import OVERTURNING, Limit
+from rocking_cli.studies.fragility.intensity import intensity, of_the_motion, proportional
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import FAILED, STANDS, Endings, Store
 from rocking_cli.studies.fragility.study import RESTITUTION
 
-OF_THE_MOTION = (PGA, PGV, SCALE)  # measures that do not ask what is shaken
 Places = NDArray[np.int32]
 Counted = Callable[[int], None]
 """Called with how many numbers of runs have been looked at since the last call."""
@@ -47,7 +46,7 @@ class Tally:
 
     def over(self, *measures: str) -> Cells:
         """The cells of runs that are alike in some measures, without the empty ones."""
-        together = not any(_tells_apart(self.plan, self.samples, measure) for measure in measures)
+        together = not any(_differs_between_samples(self.plan, self.samples, measure) for measure in measures)
         runs = self.runs.sum(axis=0, keepdims=True) if together else self.runs
         there = np.nonzero(runs)
         return Cells(self, there, runs[there], together)
@@ -136,9 +135,8 @@ def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, le
     """The intensity of runs; where the levels are of it, to the last digit."""
     if measure == plan.measure:
         return np.asarray(np.array(plan.levels)[level])
-    peaks = np.array([(each.pga, each.pgv) for each in plan.records])[record]
-    factors = plan.factors(sample, record, level)
-    return intensity(measure, factors * peaks[:, 0], factors * peaks[:, 1], plan.scales(sample))
+    motion = plan.motion(record, plan.factors(sample, record, level))
+    return intensity(measure, motion, plan.reference(sample))
 
 
 def samples_of(plan: Plan, structure: str) -> range:
@@ -178,7 +176,7 @@ def count(
     """
     samples = samples_of(plan, structure)
     _, records, etas, levels, polarities = plan.shape
-    apart = any(_tells_apart(plan, samples, measure) for measure in measures)
+    apart = any(_differs_between_samples(plan, samples, measure) for measure in measures)
     shape = (len(samples) if apart else 1, records, levels)
     runs, exceeding = np.zeros(shape, dtype=np.int64), {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
     there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
@@ -229,9 +227,9 @@ def peaks(store: Store, plan: Plan, structure: str) -> Reals:
     return np.asarray(table[there.all(axis=1)])
 
 
-def _tells_apart(plan: Plan, samples: range, measure: str) -> bool:
+def _differs_between_samples(plan: Plan, samples: range, measure: str) -> bool:
     """Whether samples under one record at one level differ in a measure."""
-    of_motion = measure in OF_THE_MOTION and plan.measure in OF_THE_MOTION
+    of_motion = of_the_motion(measure) and of_the_motion(plan.measure)
     return measure != plan.measure and not of_motion and _drawn_otherwise(plan, samples)
 
 

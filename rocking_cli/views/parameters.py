@@ -1,0 +1,152 @@
+"""The parameters of an equivalent block, one table for all that shows them: a row here is one everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from rocking_cli.core import EquivalentBlock
+
+
+class Parameter(NamedTuple):
+    """A parameter of the equivalent block of one direction.
+
+    Parameters
+    ----------
+    key, unit : str
+        As programs and terminals have them.
+    symbol : str
+        In print; an underscore begins a subscript.
+    short : str
+        What it is, for who knows the paper.
+    meaning : str
+        What it is, for a reader who has never met it.
+    of : callable
+        Its value.
+    """
+
+    key: str
+    unit: str
+    symbol: str
+    short: str
+    meaning: str
+    of: Callable[[EquivalentBlock], float]
+
+    @property
+    def printed_unit(self) -> str:
+        """The unit in print; 1 where there is none."""
+        return self.unit.replace("m2", "m²") or "1"
+
+    @property
+    def of_mass(self) -> bool:
+        """Whether it is per unit mass where a structure has none."""
+        return self.unit.startswith("kg ")
+
+    def unit_of(self, *, mass: bool) -> str:
+        """The unit for a structure with masses, or without."""
+        return self.unit if mass else self.unit.removeprefix("kg ")
+
+
+PARAMETERS = (
+    Parameter(
+        "p",
+        "rad/s",
+        "p",
+        "frequency parameter: small for large structures",
+        "Frequency parameter. Near φ_cr a tilt grows as exp(p t) with time t. Large structures have a small p.",
+        lambda block: block.p,
+    ),
+    Parameter(
+        "phi_cr",
+        "rad",
+        "φ_cr",
+        "critical rotation: unstable equilibrium",
+        "Critical rotation. Tilted so far, the structure is in balance; tilted further, its weight overturns it.",
+        lambda block: block.phi_cr,
+    ),
+    Parameter(
+        "lambda",
+        "g",
+        "λ",
+        "ground acceleration at uplift",
+        "Uplift acceleration. A steady ground acceleration above λ times the structure's gravity g lifts it.",
+        lambda block: block.lambda_,
+    ),
+    Parameter(
+        "lambda_lin",
+        "g",
+        "λ_lin",
+        "the same for the linearised mechanism",
+        "Uplift acceleration of the linearised mechanism. Where it differs much from λ the structure is not slender.",
+        lambda block: block.lambda_lin,
+    ),
+    Parameter(
+        "kappa1",
+        "",
+        "κ₁",
+        "phi/theta that keeps lambda_lin",
+        "Scaling φ = κ₁ θ from the rotation θ of the equivalent block to φ of the structure, chosen to keep λ_lin.",
+        lambda block: block.kappa1,
+    ),
+    Parameter(
+        "kappa2",
+        "",
+        "κ₂",
+        "phi/theta that keeps lambda",
+        "The same scaling, φ = κ₂ θ, chosen to keep λ, the true uplift acceleration.",
+        lambda block: block.kappa2,
+    ),
+    Parameter(
+        "theta_cr1",
+        "rad",
+        "θ_cr,1",
+        "critical rotation of the block, kappa1",
+        "Critical rotation of the equivalent block with κ₁: φ_cr/κ₁.",
+        lambda block: block.theta_cr1,
+    ),
+    Parameter(
+        "theta_cr2",
+        "rad",
+        "θ_cr,2",
+        "critical rotation of the block, kappa2",
+        "Critical rotation of the equivalent block with κ₂: φ_cr/κ₂.",
+        lambda block: block.theta_cr2,
+    ),
+    Parameter(
+        "eta",
+        "",
+        "η",
+        "restitution of an impact ending this direction",
+        "Restitution. Rate of rotation just after an impact ending motion in this direction, over that just before.",
+        lambda block: block.eta,
+    ),
+    Parameter(
+        "I_eq",
+        "kg m2",
+        "I_eq",
+        "linearised inertia",
+        "Moment of inertia of the mechanism at φ_cr.",
+        lambda block: block.I_eq,
+    ),
+    Parameter(
+        "G_eq",
+        "kg m",
+        "G_eq",
+        "linearised restoring moment over g",
+        "How fast the restoring moment over g falls with rotation at φ_cr.",
+        lambda block: block.G_eq,
+    ),
+    Parameter(
+        "B_eq",
+        "kg m",
+        "B_eq",
+        "linearised drive of the ground",
+        "Moment by which the ground drives the mechanism at φ_cr, over its acceleration.",
+        lambda block: block.B_eq,
+    ),
+)
+
+
+def values(block: EquivalentBlock) -> dict[str, float]:
+    """All of one block, by their keys."""
+    return {each.key: each.of(block) for each in PARAMETERS}
