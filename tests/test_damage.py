@@ -14,8 +14,8 @@ import pytest
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
-from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.doubts import Doubt, doubts
+from rocking_cli.excitation.base import Doubt, GroundMotion
+from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records import usc as usc_v1

@@ -18,8 +18,7 @@ from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import FEW
 
 if TYPE_CHECKING:
-    from rocking_cli.excitation.base import GroundMotion
-    from rocking_cli.excitation.doubts import Doubt
+    from rocking_cli.excitation.base import Doubt, GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulses import Pulse
 

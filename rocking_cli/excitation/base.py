@@ -3,17 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError
 
-if TYPE_CHECKING:
-    from rocking_cli.excitation.doubts import Doubt
-
 STANDARD_GRAVITY = 9.80665  # m/s2
+
+
+class Doubt(NamedTuple):
+    """Something to be careful about.
+
+    Parameters
+    ----------
+    kind : str
+        A word for programs: dt, mean_period, pga, offset, start, final_velocity, final_displacement, clipped, spike,
+        dropout or p_dt; of what a reader found in a file, columns, digits, count, header_peak, header_time or
+        header_length.
+    value : float
+        The number that raised it: in s, s, g, g, g, m/s, m, samples, s, s and 1; rows (of free text the line), the
+        line, points, in the unit of the header, s and s.
+    text : str
+        A sentence for people.
+    """
+
+    kind: str
+    value: float
+    text: str
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.measures import Measures
 
 COARSE = 0.1  # s between samples; strong-motion records have 0.02 or less
@@ -25,27 +23,6 @@ STEP = 3  # over the usual step: in a record of few digits a step of one digit i
 NOTICEABLE = 0.001  # of the peak: what is left about a sample is not taken for less
 GROWTH = 0.1  # p dt: how much a motion near overturning grows from one sample to the next
 _AROUND = 18  # samples on either side that must be smooth for one to stand out
-
-
-class Doubt(NamedTuple):
-    """Something to be careful about.
-
-    Parameters
-    ----------
-    kind : str
-        A word for programs: dt, mean_period, pga, offset, start, final_velocity, final_displacement, clipped, spike,
-        dropout or p_dt; of what a reader found in a file, columns, digits, count, header_peak, header_time or
-        header_length.
-    value : float
-        The number that raised it: in s, s, g, g, g, m/s, m, samples, s, s and 1; rows (of free text the line), the
-        line, points, in the unit of the header, s and s.
-    text : str
-        A sentence for people.
-    """
-
-    kind: str
-    value: float
-    text: str
 
 
 def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:

@@ -18,8 +18,8 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.verdict import CLOSE, disagree, governs
 from rocking_cli.errors import InputError, SolverError
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.doubts import Doubt, coarse_for, doubts
+from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
+from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
 from rocking_cli.excitation.pulses import Pulse

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rocking_cli.views.view import ABSENT, Table, number
 
 if TYPE_CHECKING:
-    from rocking_cli.excitation.base import GroundMotion
-    from rocking_cli.excitation.doubts import Doubt
+    from rocking_cli.excitation.base import Doubt, GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulse_fit import PulseFit
 

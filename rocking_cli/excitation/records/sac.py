@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.doubts import Doubt
+from rocking_cli.excitation.base import Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import choose
 from rocking_cli.excitation.records.seismo import channel_of, given_unit, traces, velocity_code
 

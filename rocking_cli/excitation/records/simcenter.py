@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.doubts import Doubt
+from rocking_cli.excitation.base import Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import in_si
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, only_channel, sensible

@@ -7,7 +7,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.excitation.doubts import Doubt
+from rocking_cli.excitation.base import Doubt
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?(\d*)|\.(\d+))(?:[EeDd]([+-]?\d{1,3}))?")
 _PRINTED = 1e-4  # of a value: some print the peak with more digits in the header than among the values

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from rocking_cli.excitation.doubts import Doubt
+from rocking_cli.excitation.base import Doubt
 from rocking_cli.excitation.records.lines import Lines
 
 FEW = 0.1  # of the rows: if more of them leave the columns of the others, there are no columns
