@@ -41,7 +41,9 @@ REACHED, IMPACT, LIMIT, STUCK = range(4)
 HEIGHT, TURN, BALANCE = range(3)
 
 MARGIN = 1e-12  # of the uplift acceleration: by how much it must be passed, so that rounding never lifts a structure
-FAINT = 1e-9  # of the rate of rest: what still counts as motion while the ground is pushing beyond uplift
+# A motion slower than REST after an impact is over; while the ground pushes beyond uplift one goes on until it is
+# slower by this factor.
+FAINT = 1e-9
 CHATTER = 1000  # impacts in one sample interval that count as rest, however elastic: with dt < 1 s below 1e-6 phi_cr
 IDLE = 10_000  # of these intervals without impact: swinging in a hollow beyond phi_cr, for ever
 LOOPS = 10_000  # events in one sample interval, or a piece of it, before giving up
