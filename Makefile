@@ -8,7 +8,7 @@ endif
 STAMP := $(VENV)/.installed
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz lint type contracts check bench validation pictures \
+.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz lint type contracts check bench validation stub pictures \
 	docs clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -68,6 +68,9 @@ soak: setup  ## What takes too long for the tests, some ten minutes: 500 damaged
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py
 
+stub: setup  ## Write rocking_cli/__init__.pyi, which types what the package hands out
+	$(BIN)/python docs/make_stub.py
+
 pictures: setup  ## Write the pictures that the tests compare with anew; look at them before committing
 	$(BIN)/python -m tests.render
 
@@ -78,6 +81,7 @@ $(DOCS_STAMP): $(STAMP)
 docs: $(DOCS_STAMP)  ## The documentation as a site, out/site/index.html; every warning is an error
 	$(BIN)/python docs/make_runs.py
 	$(BIN)/python docs/make_reference.py
+	$(BIN)/python docs/make_python.py
 	$(BIN)/python -m sphinx -W --keep-going -E -q -b html -d out/doctrees docs out/site
 
 clean:

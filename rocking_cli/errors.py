@@ -79,6 +79,10 @@ class InputError(RockingError):
         super().__init__("\n".join(str(p) for p in self.problems))
 
 
+class FieldError(InputError, ValueError):
+    """Fields that a mechanism made in Python does not have, or values that they cannot have; a `ValueError` too."""
+
+
 def renamed(error: InputError, arguments: Mapping[str, str]) -> InputError:
     """The same problems, with other names for the arguments of a function, which stand in backticks: `dt`.
 

@@ -8,7 +8,6 @@ from math import atan, atan2, cos, degrees, hypot, inf, pi, radians, sin, sqrt, 
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from pytest import approx
 
 from mechanisms.arch import Arch
@@ -20,6 +19,7 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.errors import InputError
 from tests.reference_mechanics import derivative, deviation, polygon_moments
 
 CASES = range(25)
@@ -326,7 +326,7 @@ def test_the_mirror_image_of_a_polygon_swaps_its_directions():
 
 
 def test_a_polygon_whose_centroid_is_beside_its_foot_is_refused():
-    with pytest.raises(ValidationError, match="centroid"):
+    with pytest.raises(InputError, match="centroid"):
         RigidBody(polygon=[[0.0, 0.0], [1.0, 0.0], [4.0, 3.0], [3.0, 3.0]])
 
 

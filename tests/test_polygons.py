@@ -82,7 +82,7 @@ def test_ten_thousand_corners_are_a_structure_and_more_are_refused():
     assert RigidBody(polygon=tower(MOST)).uplift(Direction.POSITIVE) == pytest.approx(
         RigidBody(polygon=tower(MOST // 10)).uplift(Direction.POSITIVE), rel=1e-4
     )
-    with pytest.raises(ValueError, match="at most 10000 items"):
+    with pytest.raises(ValueError, match="at most 10000 entries"):
         RigidBody(polygon=tower(MOST + 1))
 
 

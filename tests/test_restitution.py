@@ -10,7 +10,6 @@ from math import atan, cos, radians, sin
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from pytest import approx
 
 from mechanisms.arch import Arch
@@ -24,6 +23,7 @@ from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.mechanism import DirectionalRestitution
 from rocking_cli.core.restitution import why_none
+from rocking_cli.errors import InputError
 from tests.reference_mechanics import cross, link_rates, polygon_moments, sector_moments
 from tests.test_cli import run, run_json
 
@@ -313,9 +313,9 @@ def test_given_numbers_for_each_impact_win_and_are_not_swapped(as_mapping):
 
 @pytest.mark.parametrize("eta", [0.0, -0.2, 1.01, float("nan")])
 def test_a_restitution_outside_0_to_1_is_refused(eta):
-    with pytest.raises(ValidationError, match="restitution"):
+    with pytest.raises(InputError, match="restitution"):
         Block(width=0.7, height=2.8, restitution=eta)
-    with pytest.raises(ValidationError, match="positive_to_negative"):
+    with pytest.raises(ValueError, match="positive_to_negative"):
         DirectionalRestitution(positive_to_negative=eta, negative_to_positive=0.9)
 
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 MODELS = ("linear2", "linear1", "nonlinear")
 PLANE, CURVE = 256, 60  # points, of each side of a map and of a curve
 ETA = 0.9
-OMEGAS, AMPLITUDES = (0.5, 10.0), (0.5, 10.0)  # shown unless asked otherwise
-SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
 
 
 @dataclass(frozen=True)
@@ -226,35 +224,21 @@ def _plane(subject: PulsedModel, plane: Plane, *, dimensionless: bool) -> tuple[
     import numpy as np
 
     from rocking_cli.excitation.base import STANDARD_GRAVITY
+    from rocking_cli.studies import overturning as study
 
     points = plane.points or PLANE
     if dimensionless:
-        return np.linspace(*(plane.omega or OMEGAS), points), np.linspace(*(plane.a or AMPLITUDES), points)
-    spread = np.linspace(*(plane.period or _usual_periods([subject])), points)
-    unit = subject.unit / STANDARD_GRAVITY
-    low, high = plane.ag or (_round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit))
-    amplitudes = np.linspace(low, high, points)
-    return subject.period(spread), amplitudes / unit
+        return np.linspace(*(plane.omega or study.OMEGAS), points), np.linspace(*(plane.a or study.AMPLITUDES), points)
+    spread = np.linspace(*(plane.period or study.usual_periods([subject])), points)
+    amplitudes = np.linspace(*(plane.ag or study.usual_amplitudes([subject])), points)
+    return subject.period(spread), amplitudes * STANDARD_GRAVITY / subject.unit
 
 
 def _curves(subjects: list[PulsedModel], plane: Plane) -> tuple[Reals, float]:
     """Periods [s], and the largest amplitude to try [g]."""
     import numpy as np
 
-    from rocking_cli.excitation.base import STANDARD_GRAVITY
+    from rocking_cli.studies import overturning as study
 
-    strongest = max(each.unit for each in subjects) / STANDARD_GRAVITY
-    top = plane.ag[1] if plane.ag else _round(AMPLITUDES[1] * strongest)
-    return np.geomspace(*(plane.period or _usual_periods(subjects)), plane.points or CURVE), top
-
-
-def _usual_periods(subjects: list[PulsedModel]) -> tuple[float, float]:
-    """From the shortest at the largest p to the longest at the smallest [s]."""
-    from math import pi
-
-    p = [each.p for each in subjects]
-    return _round(2 * pi / (OMEGAS[1] * max(p))), _round(2 * pi / (SLOWEST * min(p)))
-
-
-def _round(value: float) -> float:
-    return float(f"{value:.2g}")
+    _, top = plane.ag or study.usual_amplitudes(subjects)
+    return np.geomspace(*(plane.period or study.usual_periods(subjects)), plane.points or CURVE), top

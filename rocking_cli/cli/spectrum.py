@@ -24,9 +24,7 @@ if TYPE_CHECKING:
 
 MODELS = ("nonlinear", "linear1", "linear2")
 SIZES, MOST = 60, 2000  # of a curve, unless asked otherwise and at most
-AROUND = 10.0  # scale up to which, and one over which down to, a structure is shown
 RIGHT = "no angle in rad between 0 and pi/2: alpha = atan(b/h) of a block 2b wide, 2h high"
-BLOCKS = (1.0, 10.0)  # 2 pi/p of blocks [s]: R from 0.19 to 19 m
 
 
 def _slenderness(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[float, ...]:
@@ -198,6 +196,6 @@ def _sizes(shapes: list[Shape], asked: tuple[float, float, int] | None) -> Reals
     """2 pi/p of the sizes [s], at equal ratios."""
     import numpy as np
 
-    own = [each.period for each in shapes if each.slenderness is None]
-    low, high = (min(own) / AROUND**0.5, max(own) * AROUND**0.5) if own else BLOCKS
-    return np.geomspace(*(asked or (low, high, SIZES)))
+    from rocking_cli.studies.spectrum import usual_sizes
+
+    return np.geomspace(*(asked or (*usual_sizes(shapes), SIZES)))

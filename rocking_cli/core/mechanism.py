@@ -18,6 +18,7 @@ from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Sketch
+from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
 from rocking_cli.text import cut, is_one_line
 from rocking_cli.units import UnitError, read, split
@@ -165,6 +166,17 @@ class Mechanism(BaseModel, ABC):
     restitution: Restitution | DirectionalRestitution | None = Field(
         None, description="coefficient of restitution eta; absent: from kinematics"
     )
+
+    def __init__(self, /, **fields: Any) -> None:
+        try:
+            super().__init__(**fields)
+        except ValidationError as error:
+            from rocking_cli.io.field_problems import of_arguments
+
+            raise FieldError(*of_arguments(type(self), error.errors(include_url=False), type(self).mechanism)) from None
+
+    # As pydantic marks its own: files and copies are validated without it, and place their errors themselves.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     @property
     def has_mass(self) -> bool:

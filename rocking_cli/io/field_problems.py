@@ -46,6 +46,19 @@ def problems(
     return list(found.values())
 
 
+def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: str) -> list[Problem]:
+    """The errors of a validation of arguments in Python, each with the name of its argument."""
+    found: dict[Place, Problem] = {}
+    for error in errors:
+        place: Place = tuple(part for part in error["loc"] if part in model.model_fields or isinstance(part, int))
+        place = place or tuple(error["loc"][:1])
+        if error["type"] == "geometry":
+            place = (*place, error["ctx"]["field"])
+        message, hint = say(model, place or (owner,), error, owner, f"`rocking mechanisms {owner}` lists the fields")
+        found.setdefault(place, Problem(message, field=spell(place) if place else None, hint=hint))
+    return list(found.values())
+
+
 def place_of(data: Any, error: ErrorDetails) -> Place:
     """The path of an error in the user's data: pydantic adds the branches of unions to it."""
     path: list[str | int] = []

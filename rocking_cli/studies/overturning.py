@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from itertools import count
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,8 @@ BELOW = 4  # from this part of the least a - 1 on they are tried anew: islands c
 HALVINGS = 25  # of the interval that the scan leaves, some thousandths of a - 1
 PASSES = 2  # of the scan, in most cases
 TIE = 1e-6  # relative difference of least amplitudes below which structures go together
+OMEGAS, AMPLITUDES = (0.5, 10.0), (0.5, 10.0)  # omega_g/p and a shown unless asked otherwise
+SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
 LARGEST = 1e6  # a or omega, and 1/omega: slower pulses would be followed for ever
 
 
@@ -160,6 +163,22 @@ def overturning_map(
         a,
         Outcome(**{name: getattr(found, name).reshape(plane) for name in OUTCOME}),
     )
+
+
+def usual_periods(structures: Sequence[PulsedModel]) -> tuple[float, float]:
+    """Of pulses, from the shortest at the largest p to the longest at the smallest [s]."""
+    p = [each.p for each in structures]
+    return _round(2 * pi / (OMEGAS[1] * max(p))), _round(2 * pi / (SLOWEST * min(p)))
+
+
+def usual_amplitudes(structures: Sequence[PulsedModel]) -> tuple[float, float]:
+    """Of pulses, from below uplift to far above that of the strongest [standard gravity]."""
+    unit = max(each.unit for each in structures) / STANDARD_GRAVITY
+    return _round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit)
+
+
+def _round(value: float) -> float:
+    return float(f"{value:.2g}")
 
 
 def _check_range(structure: PulsedModel, periods: Reals, a: float) -> None:

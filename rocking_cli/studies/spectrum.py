@@ -19,6 +19,8 @@ from rocking_cli.studies.sizes import Sizes
 from rocking_cli.studies.under_pulses import Integers, Progress, PulsedModel, Reals, parse_shape, pulsed_model, uplift
 
 SAME = 1e-9  # relative difference below which a size is that of the structure as given
+AROUND = 10.0  # scale up to which, and one over which down to, a structure is shown
+BLOCKS = (1.0, 10.0)  # 2 pi/p of blocks [s]: R from 0.19 to 19 m
 TOGETHER = 50  # sizes of their own in one call: their tables are in memory at once
 
 
@@ -102,6 +104,12 @@ def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) ->
         message = f"blocks of {name}: the kinematics give {own:.3g} for an impact: too stocky to rock the other way"
         raise InputError(Problem(message, hint="give a measured eta in (0, 1], or a smaller slenderness"))
     return Shape(shape_of(block, model, eta).structure, slenderness)
+
+
+def usual_sizes(shapes: Sequence[Shape]) -> tuple[float, float]:
+    """The smallest and the largest size to show, as 2 pi/p [s]."""
+    own = [each.period for each in shapes if each.slenderness is None]
+    return (min(own) / AROUND**0.5, max(own) * AROUND**0.5) if own else BLOCKS
 
 
 @dataclass(frozen=True, eq=False)

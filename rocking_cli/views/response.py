@@ -211,6 +211,11 @@ def view(
     return View({**data, "notes": [*doubts, *notes]}, [*parts, restitution_used(mechanism, blocks), *notes])
 
 
+def runs_view(title: str, runs: Runs) -> View:
+    """Responses alone, under one polarity or both."""
+    return View(lambda: runs_data(runs, {}, None), _tables(title, runs, {}, None))
+
+
 def _tables(
     title: str, runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None
 ) -> list[Table | str]:  # fmt: skip

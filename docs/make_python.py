@@ -1,0 +1,37 @@
+"""Runs what docs/python.md shows, line by line, in a folder of its own with the examples in it.
+
+python docs/make_python.py            # part of make docs
+"""
+
+from __future__ import annotations
+
+import doctest
+import shutil
+import sys
+from contextlib import chdir
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+PAGE = Path(__file__).resolve().parent / "python.md"
+
+
+def run(folder: Path) -> int:
+    """How many lines of the page do something else than it says; pictures and files are left in the folder."""
+    shutil.copytree(PAGE.parents[1] / "examples", folder / "examples")
+    with chdir(folder):
+        return doctest.testfile(str(PAGE), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE).failed
+
+
+def script() -> str:
+    """The lines of the page without what they print, for a type checker."""
+    return doctest.script_from_examples(PAGE.read_text(encoding="utf-8"))
+
+
+def main() -> None:
+    """Run it; the exit code tells whether all is as shown."""
+    with TemporaryDirectory() as folder:
+        sys.exit(bool(run(Path(folder))))
+
+
+if __name__ == "__main__":
+    main()

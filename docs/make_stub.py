@@ -1,0 +1,34 @@
+"""Writes rocking_cli/__init__.pyi, which tells type checkers what the package hands out when it is asked for.
+
+    python docs/make_stub.py              # part of make stub
+
+The package imports nothing until a name is used, and no mechanism by name; the stub says where each is.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import distribution
+from pathlib import Path
+
+import rocking_cli
+
+STUB = Path(rocking_cli.__file__).with_suffix(".pyi")
+
+
+def stub() -> str:
+    """The text of the stub."""
+    lines = ['"""Written by `make stub`: do not edit."""', ""]
+    own = distribution("rocking-cli").entry_points.select(group="rocking.mechanisms")
+    found = [(point.module, point.attr) for point in own]
+    found += [(f"rocking_cli.{home}", name) for home, names in rocking_cli._HOME.items() for name in names]
+    lines += [f"from {module} import {name} as {name}" for module, name in sorted(found)]
+    return "\n".join([*lines, "", "__version__: str", "mechanisms: Registry", ""])
+
+
+def main() -> None:
+    """Write it."""
+    STUB.write_text(stub(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,61 @@
+"""Written by `make stub`: do not edit."""
+
+from mechanisms.arch import Arch as Arch
+from mechanisms.asymmetric_frame import AsymmetricFrame as AsymmetricFrame
+from mechanisms.block import Block as Block
+from mechanisms.cone import Cone as Cone
+from mechanisms.point_mass import PointMass as PointMass
+from mechanisms.rigid_body import RigidBody as RigidBody
+from mechanisms.symmetric_frame import SymmetricFrame as SymmetricFrame
+from mechanisms.wall import Wall as Wall
+from rocking_cli.api.answer import Answer as Answer
+from rocking_cli.api.answer import MappingAnswer as MappingAnswer
+from rocking_cli.api.verbs import draw as draw
+from rocking_cli.api.verbs import equiv as equiv
+from rocking_cli.api.verbs import equivalent as equivalent
+from rocking_cli.api.verbs import fragility as fragility
+from rocking_cli.api.verbs import linearisation as linearisation
+from rocking_cli.api.verbs import margin as margin
+from rocking_cli.api.verbs import overturning_curves as overturning_curves
+from rocking_cli.api.verbs import overturning_map as overturning_map
+from rocking_cli.api.verbs import record as record
+from rocking_cli.api.verbs import report as report
+from rocking_cli.api.verbs import respond as respond
+from rocking_cli.api.verbs import respond_each as respond_each
+from rocking_cli.api.verbs import spectrum as spectrum
+from rocking_cli.core import Body as Body
+from rocking_cli.core import Direction as Direction
+from rocking_cli.core import Equivalence as Equivalence
+from rocking_cli.core import EquivalentBlock as EquivalentBlock
+from rocking_cli.core import Mechanism as Mechanism
+from rocking_cli.core import RigidMotion as RigidMotion
+from rocking_cli.core import equivalent_block as equivalent_block
+from rocking_cli.core.registry import Registry as Registry
+from rocking_cli.dynamics.batch import Runs as Runs
+from rocking_cli.dynamics.batch import respond_many as respond_many
+from rocking_cli.dynamics.exact import ExactResponse as ExactResponse
+from rocking_cli.dynamics.exact import exact_response as exact_response
+from rocking_cli.dynamics.exact_batch import exact_many as exact_many
+from rocking_cli.dynamics.history import History as History
+from rocking_cli.dynamics.model import Model as Model
+from rocking_cli.dynamics.model import build_models as build_models
+from rocking_cli.dynamics.outcome import Outcome as Outcome
+from rocking_cli.dynamics.pulse_response import closed_form as closed_form
+from rocking_cli.dynamics.pulse_response import exact_pulse as exact_pulse
+from rocking_cli.errors import InputError as InputError
+from rocking_cli.errors import MechanismError as MechanismError
+from rocking_cli.errors import Problem as Problem
+from rocking_cli.errors import RockingError as RockingError
+from rocking_cli.errors import SolverError as SolverError
+from rocking_cli.excitation.base import GroundMotion as GroundMotion
+from rocking_cli.excitation.measures import Measures as Measures
+from rocking_cli.excitation.measures import measure as measure
+from rocking_cli.excitation.pulse_fit import PulseFit as PulseFit
+from rocking_cli.excitation.pulse_fit import fit_pulse as fit_pulse
+from rocking_cli.excitation.pulses import Pulse as Pulse
+from rocking_cli.excitation.pulses import parse_pulse as parse_pulse
+from rocking_cli.excitation.records import read_record as read_record
+from rocking_cli.structure import load_structure as load_structure
+
+__version__: str
+mechanisms: Registry

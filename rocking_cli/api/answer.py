@@ -1,0 +1,137 @@
+"""An answer that shows itself: in a sentence, as tables of a notebook, as a frame, as a picture."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from html import escape
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.json_text import json_text
+from rocking_cli.io.tables import Columns
+from rocking_cli.views.view import Table, View
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+R = TypeVar("R")
+K = TypeVar("K")
+V = TypeVar("V")
+SHORT = 100  # characters of a repr's sentence
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Answer(Generic[R]):
+    """What a question gave. Attributes of the result itself can be asked of the answer too.
+
+    Parameters
+    ----------
+    question : str
+        What was asked, in a word or two.
+    result : object
+        What the study found: numbers and arrays.
+    view : View
+        What that looks like.
+    columns : callable
+        Makes it a table, a name and a column each.
+    figure : callable
+        Draws it.
+    """
+
+    question: str
+    result: R
+    view: View
+    columns: Callable[[], Columns]
+    figure: Callable[[], Figure]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name == "result":
+            raise AttributeError(name)
+        return getattr(self.result, name)
+
+    @property
+    def sentences(self) -> list[str]:
+        """What it says in words."""
+        return [part for part in self.view.parts if isinstance(part, str) and part]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, the same as the JSON of the command line."""
+        data = self.view.data() if callable(self.view.data) else self.view.data
+        found: dict[str, Any] = json.loads(json_text(data))
+        return found
+
+    def to_frame(self) -> pandas.DataFrame:
+        """As a table of pandas, which must be installed.
+
+        Raises
+        ------
+        InputError
+            If pandas is not installed.
+        """
+        if find_spec("pandas") is None:
+            raise InputError(Problem("a frame needs the package pandas", hint="pip install pandas"))
+        from pandas import DataFrame
+
+        return DataFrame(dict(self.columns()))
+
+    def plot(self, file: str | Path | None = None) -> Figure:
+        """Draw it.
+
+        Parameters
+        ----------
+        file : str or Path, optional
+            Where to write the picture too: .png, .svg or .pdf.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            To be changed, or shown by a notebook.
+        """
+        figure = self.figure()
+        if file is not None:
+            from rocking_cli.io.files import check_writable, write_whole
+            from rocking_cli.plotting.style import save
+
+            path = Path(file)
+            if path.suffix.lower() not in (".png", ".svg", ".pdf"):
+                raise InputError(Problem("a picture ends in .png, .svg or .pdf", str(file)))
+            check_writable(path)
+            write_whole(path, lambda stream: save(figure, stream, format=path.suffix[1:].lower()))
+        return figure
+
+    def __repr__(self) -> str:
+        said = " ".join(self.sentences)
+        return f"<{self.question}: {said if len(said) <= SHORT else said[: SHORT - 3].rstrip() + '...'}>"
+
+    def _repr_html_(self) -> str:
+        return "\n".join(_html(part) for part in self.view.parts if part)
+
+
+class MappingAnswer(Answer[Mapping[K, V]], Mapping[K, V]):
+    """An answer that is found by key, as a mapping."""
+
+    def __getitem__(self, key: K) -> V:
+        return self.result[key]
+
+    def __iter__(self) -> Iterator[K]:
+        return iter(self.result)
+
+    def __len__(self) -> int:
+        return len(self.result)
+
+
+def _html(part: Table | str) -> str:
+    if isinstance(part, str):
+        return f"<p>{escape(part)}</p>"
+
+    def row(cells: Any, tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{escape(str(each))}</{tag}>" for each in cells) + "</tr>"
+
+    body = "".join(row(each, "td") for each in part.rows)
+    title = f"<caption>{escape(part.title)}</caption>" if part.title else ""
+    return f"<table>{title}<thead>{row(part.columns, 'th')}</thead><tbody>{body}</tbody></table>"

@@ -1,0 +1,705 @@
+"""The verbs: structures and motions in, as objects or as files; an answer out that shows itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking_cli.api.answer import Answer, MappingAnswer
+from rocking_cli.core import Equivalence, Mechanism
+from rocking_cli.dynamics import history as histories
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.history import RTOL, TAIL, History
+from rocking_cli.dynamics.model import MODELS, ModelName
+from rocking_cli.dynamics.outcome import OUTCOME, Outcome, Outcomes
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.measures import Measures
+from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
+from rocking_cli.excitation.records import read_record
+from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.structure import load_structure
+from rocking_cli.views.view import View, heading
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.io.tables import Columns
+    from rocking_cli.studies.equivalent import EquivalentResponses
+    from rocking_cli.studies.fragility.assess import Fragility
+    from rocking_cli.studies.linearisation import Linearisation
+    from rocking_cli.studies.margin import Margin
+    from rocking_cli.studies.overturning import Comparison, OverturningMap
+    from rocking_cli.studies.picture import Picture
+    from rocking_cli.studies.spectrum import Spectrum
+
+Structure = Mechanism | str | Path
+"""A mechanism, or the YAML file that it stands in."""
+Motion = GroundMotion | Pulse | str | Path
+"""A ground motion or a pulse, a record's file, or a pulse as text such as `sine:0.6g:0.8s`."""
+
+
+def _structure(given: Structure) -> Prepared:
+    if isinstance(given, Mechanism):
+        return Prepared(given if given.name else given.model_copy(update={"name": given.mechanism}))
+    return Prepared(load_structure(given), str(given))
+
+
+def _motion(given: Motion) -> GroundMotion:
+    if isinstance(given, GroundMotion):
+        return given
+    if isinstance(given, str) and given.partition(":")[0] in PulseShapes() and not Path(given).exists():
+        given = parse_pulse(given)
+    return given.sampled() if isinstance(given, Pulse) else read_record(given)
+
+
+def _each(given: Any) -> list[Any]:
+    return list(given) if isinstance(given, list | tuple) else [given]
+
+
+def _models(given: str | Sequence[str] | None) -> tuple[ModelName, ...]:
+    chosen = MODELS if given is None else (given,) if isinstance(given, str) else tuple(given)
+    if unknown := [name for name in chosen if name not in MODELS]:
+        raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown)}")
+    return chosen  # type: ignore[return-value]
+
+
+def equiv(structure: Structure) -> Answer[Equivalence]:
+    """The equivalent single rocking block of a structure, in both directions.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+
+    Returns
+    -------
+    Answer of Equivalence
+        `positive` and `negative` are the blocks; see `equivalent_block`.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> answer = rk.equiv(rk.Block(width=1.0, height=4.0))
+    >>> round(answer.positive.lambda_, 6)
+    0.25
+    """
+    from rocking_cli.views import equiv as views
+
+    ready = _structure(structure)
+    mechanism, found = ready.mechanism, ready.equivalence
+
+    def draw() -> Figure:
+        from rocking_cli.plotting.structure import draw_structure
+        from rocking_cli.studies.picture import picture
+
+        return draw_structure(picture(mechanism), heading(mechanism))
+
+    return Answer(
+        "equivalent block", found, views.view(mechanism, found), lambda: views.table([(mechanism, found)]), draw
+    )
+
+
+def draw(structure: Structure, *, at: float = 1.0) -> Answer[Picture]:
+    """A structure at rest with its dimensions, and displaced in both directions.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    at : float
+        How far it is displaced, as a multiple of phi_cr; at most as far as the mechanism goes.
+    """
+    from rocking_cli.studies.picture import picture
+    from rocking_cli.views.draw import view
+
+    mechanism = _structure(structure).mechanism
+    found = picture(mechanism)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.structure import draw_structure
+
+        return draw_structure(found, heading(mechanism), min(at, found.furthest))
+
+    def columns() -> Columns:
+        said = [each.text for each in found.sketch.lengths]
+        return {"length": said}
+
+    return Answer("drawing", found, view(found), columns, figure)
+
+
+def record(motion: Motion, *, scale: float = 1.0) -> Answer[Measures]:
+    """How strong a ground motion is, and what is doubtful about it.
+
+    Parameters
+    ----------
+    motion : GroundMotion, Pulse, str or Path
+        The motion, its file, or a pulse as text.
+    scale : float
+        Factor on it.
+    """
+    from rocking_cli.excitation.doubts import doubts
+    from rocking_cli.excitation.measures import measure
+    from rocking_cli.views.record import Examined, data, parts
+
+    read = _motion(motion)
+    scaled = read.scaled(scale)
+    found = measure(scaled)
+    seen = Examined(read.name, read.name, read, scale, found, doubts(read, measure(read)), None, [])
+
+    def columns() -> Columns:
+        time = np.arange(scaled.npts) * scaled.dt
+        return {"t [s]": time, "a_g [g]": scaled.acceleration / STANDARD_GRAVITY}
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.record import draw_record
+
+        return draw_record(scaled, found)
+
+    said = f"{read.name}: PGA {found.pga:.3g} g, PGV {found.pgv:.3g} m/s."
+    return Answer("record", found, View(lambda: data(seen), [*parts([seen], 100), said]), columns, figure)
+
+
+def respond(
+    structure: Structure,
+    motion: Motion | None = None,
+    *,
+    models: str | Sequence[str] | None = None,
+    scale: float = 1.0,
+    release: float | None = None,
+    tail: float = TAIL,
+    rtol: float = RTOL,
+) -> MappingAnswer[ModelName, History]:
+    """The response of a structure to a ground motion, a release from a tilt, or both; see `respond_each` for many.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    motion : GroundMotion, Pulse, str or Path, optional
+        The motion, its file, or a pulse as text.
+    models : str or sequence of str, optional
+        Of "nonlinear", "linear1" and "linear2"; all, unless given.
+    scale : float
+        Factor on the motion; a negative one reverses it.
+    release : float, optional
+        Start at rest from this fraction of phi_cr, between -1 and 1.
+    tail : float
+        How long the samples go on after the record [s].
+    rtol : float
+        Relative local error of a step of the nonlinear motion.
+
+    Returns
+    -------
+    MappingAnswer of str to History
+        By the model.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    SolverError
+        If the motion cannot be followed to its end.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> answer = rk.respond(rk.Block(width=0.7, height=2.8), "sine:0.3g:0.8s", models="nonlinear")
+    >>> answer["nonlinear"].words
+    'rocks'
+    """
+    from rocking_cli.views import history_table
+    from rocking_cli.views.response import runs_view
+
+    ready = _structure(structure)
+    shaking = _motion(motion).scaled(scale) if motion is not None else None
+    found = histories.respond(ready.mechanism, shaking, models=_models(models), release=release, tail=tail, rtol=rtol)
+    title = heading(ready.mechanism) + (f", {shaking.name}" if shaking is not None else "")
+
+    def columns() -> Columns:
+        blocks = list(history_table.blocks({str(name): run for name, run in found.items()}, shaking))
+        return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.history import draw_history
+
+        return draw_history(found, shaking, title)
+
+    return MappingAnswer("response", found, runs_view(title, {1: found}), columns, figure)
+
+
+def respond_each(
+    structures: Structure | Sequence[Structure],
+    motions: Motion | Sequence[Motion],
+    *,
+    models: str | Sequence[str] | None = None,
+    scales: ArrayLike = 1.0,
+    threads: int | None = None,
+) -> MappingAnswer[ModelName, Outcomes]:
+    """What becomes of every structure under every motion with every factor on it.
+
+    Parameters
+    ----------
+    structures, motions
+        One or several, as for `respond`.
+    models : str or sequence of str, optional
+        Of "nonlinear", "linear1" and "linear2"; all, unless given.
+    scales : array_like
+        Factors on the motions; negative ones reverse them.
+    threads : int, optional
+        Histories at a time; without it, one for each processor.
+
+    Returns
+    -------
+    MappingAnswer of str to Outcome
+        By the model, arrays of shape (structures, motions, scales).
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> blocks = [rk.Block(width=0.7, height=2.8), rk.Block(width=0.5, height=2.8)]
+    >>> answer = rk.respond_each(blocks, "sine:0.4g:0.8s", models="nonlinear", scales=[0.5, 1.0, 2.0])
+    >>> answer["nonlinear"].overturned.shape
+    (2, 1, 3)
+    """
+    ready = [_structure(each) for each in _each(structures)]
+    shaking = [_motion(each) for each in _each(motions)]
+    factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
+    shape = len(ready), len(shaking), factors.size
+    chosen = _models(models)
+    found: dict[ModelName, Outcomes] = {}
+    for name in chosen:
+        runs = Runs.every(len(ready), len(shaking), scales=factors.tolist())
+        many = respond_many([each.model(name) for each in ready], shaking, runs, threads=threads)
+        found[name] = Outcome(**{column: getattr(many, column).reshape(shape) for column in OUTCOME})
+
+    def columns() -> Columns:
+        places = [axis.ravel() for axis in np.indices(shape)]
+        table: dict[str, Any] = {
+            "structure": [ready[k].name for k in places[0]],
+            "motion": [shaking[k].name for k in places[1]],
+            "scale": factors[places[2]],
+        }
+        for name, outcome in found.items():
+            for column in ("overturned", "peak_ratio", "uplift_time", "overturning_time", "impact_count"):
+                table[f"{name} {column}"] = getattr(outcome, column).ravel()
+        return table
+
+    def figure() -> Figure:
+        raise InputError("many responses have no picture of their own: draw a spectrum, a map or a margin")
+
+    first = found[chosen[0]]
+    said = f"By the {chosen[0]} model {int(first.overturned.sum())} of {first.overturned.size} motions overturn."
+    data: dict[str, Any] = {name: {column: getattr(each, column) for column in OUTCOME} for name, each in found.items()}
+    return MappingAnswer("responses", found, View(data, [said]), columns, figure)
+
+
+def spectrum(
+    structures: Structure | Sequence[Structure] = (),
+    motions: Motion | Sequence[Motion] = (),
+    *,
+    slenderness: Sequence[float] = (),
+    sizes: tuple[float, float] | None = None,
+    count: int = 60,
+    model: ModelName = "nonlinear",
+    eta: float | None = None,
+    polarities: Sequence[int] = (1,),
+    fractiles: Sequence[float] = (0.16, 0.84),
+) -> Answer[list[Spectrum]]:
+    """Peak rotation and overturning over the size of structures, and of blocks of given slenderness.
+
+    Parameters
+    ----------
+    structures, motions
+        One or several, as for `respond`.
+    slenderness : sequence of float
+        alpha of rectangular blocks [rad].
+    sizes : (float, float), optional
+        The smallest and the largest, as 2 pi/p [s].
+    count : int
+        Sizes between them, at equal ratios.
+    model : {"nonlinear", "linear1", "linear2"}
+        The equation of motion.
+    eta : float, optional
+        Restitution; without it that of the structures.
+    polarities : sequence of int
+        Of 1 and -1; with both, the worse counts.
+    fractiles : sequence of float
+        Beside the median, of several motions.
+    """
+    from rocking_cli.studies import spectrum as study
+    from rocking_cli.views import spectrum as views
+
+    shapes = [study.shape_of(_structure(each).mechanism, model, eta) for each in _each(structures)]
+    shapes += [study.blocks_of(alpha, model, eta) for alpha in slenderness]
+    shaking = [_motion(each) for each in _each(motions)]
+    if not shapes:
+        raise InputError("a spectrum is of structures, or of blocks of some slenderness: none is given")
+    periods = np.geomspace(*(sizes or study.usual_sizes(shapes)), count)
+    found = study.spectra(shapes, periods, shaking, polarities=polarities)
+    polarity = "both" if len(polarities) > 1 else str(polarities[0])
+    results = views.Results(found, [Scaled(each, 1.0) for each in shaking], tuple(sorted({*fractiles, 0.5})), polarity)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.spectrum import draw_spectra
+
+        return draw_spectra(found, results.fractiles, views.title(results))
+
+    return Answer("spectrum", found, views.view(results), lambda: views.table(results), figure)
+
+
+def overturning_map(
+    structure: Structure | None = None,
+    *,
+    shape: str = "sine",
+    model: ModelName = "linear2",
+    eta: float | None = None,
+    period: tuple[float, float] | None = None,
+    ag: tuple[float, float] | None = None,
+    omega: tuple[float, float] | None = None,
+    a: tuple[float, float] | None = None,
+    polarities: Sequence[int] = (1,),
+    points: int = 128,
+) -> Answer[OverturningMap]:
+    """What pulses of every period and amplitude do to a structure, or to the dimensionless linear block.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path, optional
+        Without it the linear block, over omega = omega_g/p and a = a_g/(g lambda).
+    shape : str
+        Of the pulses.
+    model : {"linear2", "linear1", "nonlinear"}
+        The equation of motion of a structure.
+    eta : float, optional
+        Restitution; without it that of the structure, or 0.9.
+    period, ag : (float, float), optional
+        Least and largest period [s] and amplitude [standard gravity], of a structure.
+    omega, a : (float, float), optional
+        The same in dimensionless terms, of the linear block.
+    polarities : sequence of int
+        Of 1 and -1; with both, the worse counts.
+    points : int
+        Of each side.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> found = rk.overturning_map(points=24)
+    >>> found.outcome.overturned.shape
+    (24, 24)
+    """
+    from rocking_cli.studies import overturning as study
+    from rocking_cli.studies.under_pulses import linear_block, parse_shape, pulsed_model
+    from rocking_cli.views import overturning as views
+
+    form = parse_shape(shape)
+    mechanism = None
+    if structure is None:
+        subject = linear_block(0.9 if eta is None else eta)
+        columns, rows = np.linspace(*(omega or study.OMEGAS), points), np.linspace(*(a or study.AMPLITUDES), points)
+    else:
+        ready = _structure(structure)
+        mechanism, subject = ready.mechanism, pulsed_model(ready, model, form, polarities, eta)
+        columns = subject.period(np.linspace(*(period or study.usual_periods([subject])), points))
+        rows = np.linspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit
+    found = study.overturning_map(subject, form, columns, rows, polarities=polarities)
+    bare = mechanism is None
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.overturning import draw_map
+
+        return draw_map(found, views.map_title(found), dimensionless=bare)
+
+    view = views.map_view(found, mechanism, dimensionless=bare)
+    return Answer("overturning map", found, view, lambda: views.map_table(found, mechanism), figure)
+
+
+def overturning_curves(
+    structures: Sequence[Structure],
+    *,
+    shape: str = "sine",
+    model: ModelName = "nonlinear",
+    period: tuple[float, float] | None = None,
+    top: float | None = None,
+    polarities: Sequence[int] = (1,),
+    points: int = 60,
+) -> Answer[Comparison]:
+    """The least amplitude that overturns each structure, over the period of a pulse: which goes first.
+
+    Parameters
+    ----------
+    structures : sequence of Mechanism, str or Path
+        What is compared.
+    shape, model, polarities
+        As for `overturning_map`.
+    period : (float, float), optional
+        Least and largest [s].
+    top : float, optional
+        The largest amplitude to try [standard gravity].
+    points : int
+        Periods between them, at equal ratios.
+    """
+    from rocking_cli.studies import overturning as study
+    from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
+    from rocking_cli.views import overturning as views
+
+    form, ready = parse_shape(shape), [_structure(each) for each in structures]
+    subjects = [pulsed_model(each, model, form, polarities) for each in ready]
+    periods = np.geomspace(*(period or study.usual_periods(subjects)), points)
+    found = study.compare(subjects, form, periods, top or study.usual_amplitudes(subjects)[1], polarities=polarities)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.overturning import draw_comparison
+
+        return draw_comparison(found, views.comparison_title(found))
+
+    view = views.comparison_view(found, [each.mechanism for each in ready])
+    return Answer("overturning curves", found, view, lambda: views.comparison_table(found), figure)
+
+
+def margin(
+    structure: Structure, motions: Motion | Sequence[Motion], *, polarities: Sequence[int] = (1, -1)
+) -> MappingAnswer[str, Margin]:
+    """How much stronger or weaker motions would have to be to lift a structure, and to overturn it.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    motions
+        One or several, as for `respond`.
+    polarities : sequence of int
+        Of 1 and -1; with both, the worse counts.
+
+    Returns
+    -------
+    MappingAnswer of str to Margin
+        By the name of the motion.
+    """
+    from rocking_cli.studies import margin as study
+    from rocking_cli.studies.neighbours import Around
+    from rocking_cli.views import margin as views
+
+    ready, around = _structure(structure), Around()
+    shaking = [_motion(each) for each in _each(motions)]
+    found = {each.name: study.margin(ready.model("nonlinear"), each, polarities, around=around) for each in shaking}
+    rows = [views.Row(each.name, 1.0, each.pga, found[each.name]) for each in shaking]
+    polarity = "both" if len(polarities) > 1 else str(polarities[0])
+
+    def columns() -> Columns:
+        return {
+            "motion": [name for name, each in found.items() for _ in each.factors],
+            "factor": np.concatenate([each.factors for each in found.values()]),
+            "overturned": np.concatenate([each.overturned for each in found.values()]),
+        }
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.margin import draw_margins
+
+        return draw_margins(found, heading(ready.mechanism))
+
+    return MappingAnswer("margin", found, views.view(ready.mechanism, rows, polarity, around), columns, figure)
+
+
+def linearisation(
+    structure: Structure, *, at: Sequence[float] = (0.5,), a: Sequence[float] = (2.0,)
+) -> Answer[list[Linearisation]]:
+    """How far to trust the equivalent block of a structure; see `rocking error`.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    at : sequence of float
+        Amplitudes phi/phi_cr of the free period.
+    a : sequence of float
+        Constant accelerations over that at uplift, of the overturning time.
+    """
+    from rocking_cli.studies.linearisation import compare
+    from rocking_cli.views import error as views
+
+    ready = _structure(structure)
+    curves, asked = compare(ready.mechanism, ready.equivalence, at, a)
+
+    def columns() -> Columns:
+        return {
+            "direction": [each.direction.label for each in asked for _ in at],
+            "phi/phi_cr": [value for _ in asked for value in at],
+            "period [s]": np.concatenate([each.period for each in asked]),
+            "period_ratio": np.concatenate([each.period_ratio for each in asked]),
+        }
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.linearisation import draw_linearisation
+
+        return draw_linearisation(curves, asked, heading(ready.mechanism))
+
+    view = views.view(ready.mechanism, ready.equivalence, curves, asked)
+    return Answer("linearisation", list(asked), view, columns, figure)
+
+
+def equivalent(
+    structures: Sequence[Structure], pulse: Pulse | str, *, polarity: int = 1
+) -> Answer[EquivalentResponses]:
+    """Pulses to which structures are equivalently vulnerable; the one given is for the first.
+
+    Parameters
+    ----------
+    structures : sequence of Mechanism, str or Path
+        Two or more.
+    pulse : Pulse or str
+        Such as `sine:0.6g:0.8s`.
+    polarity : {1, -1}
+        -1 reverses it.
+    """
+    from rocking_cli.studies import equivalent as study
+    from rocking_cli.views import equivalent as views
+
+    given = parse_pulse(pulse) if isinstance(pulse, str) else pulse
+    found = study.equivalent([_structure(each).mechanism for each in structures], given, polarity=polarity)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.equivalent import draw_equivalent
+
+        return draw_equivalent(found, views.title(found))
+
+    view = views.view(found, " ".join(study.judge(found)))
+    return Answer("equivalent pulses", found, view, lambda: views.table(found), figure)
+
+
+def fragility(
+    study: str | Path, *, store: str | Path | None = None, threads: int | None = None
+) -> Answer[list[Fragility]]:
+    """Run a fragility study, or go on with it, and fit its curves.
+
+    Parameters
+    ----------
+    study : str or Path
+        Its YAML file; docs/fragility.md has the fields.
+    store : str or Path, optional
+        Where the runs are kept; beside the study, unless given.
+    threads : int, optional
+        Histories at a time; without it, one for each processor.
+
+    Returns
+    -------
+    Answer of list of Fragility
+        A curve each: structure, limit state, measure, what was fitted.
+    """
+    from rocking_cli.studies.fragility import assess, campaign, engines, table
+    from rocking_cli.studies.fragility.definition import Definition
+    from rocking_cli.studies.fragility.hazard import HazardCurve
+    from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.studies.fragility.store import Store
+    from rocking_cli.studies.fragility.study import load_study
+    from rocking_cli.views.fragility import limit_name, view
+
+    asked = load_study(study)
+    place = Path(store) if store is not None else Path(study).with_suffix(".db")
+    with Store.writing(place, anew=False, say=lambda text: None) as kept:
+        prepared = campaign.prepare(asked, kept)
+        with engines.threads(threads) as engine:
+            campaign.run(prepared, kept, engine)
+    with Store.reading(place) as kept:
+        plan, definition = kept.plan(), Definition.model_validate(kept.fact("definition"))
+        points = kept.fact("hazard")
+        hazard = HazardCurve(*np.array(points)) if points is not None else None
+        counted = assess.counted(kept, plan, definition, lambda count: None)
+        curves, surfaces = assess.fitted(counted, definition, hazard, lambda count: None)
+        shown = view(kept, plan, definition, *kept.count(), curves, surfaces)
+        blocks = list(table.blocks(kept, plan))
+
+    def columns() -> Columns:
+        return {name: [value for block in blocks for value in block[name]] for name in blocks[0]}
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.fragility import LabelledCurve, draw_curves
+
+        measure = definition.fitted_measures[0]
+        lines = [
+            LabelledCurve(f"{each.structure}, {limit_name(each.limit)}", each.curve, each.seen)
+            for each in curves
+            if each.measure == measure
+        ]
+        return draw_curves(lines, label(measure), "")
+
+    return Answer("fragility", curves, shown, columns, figure)
+
+
+def report(
+    structure: Structure,
+    motions: Motion | Sequence[Motion] = (),
+    file: str | Path = "report.html",
+    *,
+    polarities: Sequence[int] = (1, -1),
+) -> Answer[Any]:
+    """Write a report: one HTML file that opens in any browser and prints.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    motions
+        None, one or several, as for `respond`.
+    file : str or Path
+        Where to.
+    polarities : sequence of int
+        Of 1 and -1.
+    """
+    from datetime import UTC, datetime
+
+    from rocking_cli.io.files import check_writable, write_whole
+    from rocking_cli.report.page import render
+    from rocking_cli.studies.assessment import File, gather
+    from rocking_cli.views.assessment import view
+
+    check_writable(Path(file))
+    ready = _structure(structure)
+    text = Path(ready.file).read_bytes() if ready.file is not None else _yaml(ready.mechanism).encode()
+    given = [_scaled(each) for each in _each(motions)]
+    found = gather(
+        ready,
+        File(ready.file or ready.name, text),
+        given,
+        polarities,
+        command="rocking_cli.report(...)",
+        date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"),
+    )
+    page = render(found).encode()
+    write_whole(Path(file), lambda stream: stream.write(page))
+
+    def columns() -> Columns:
+        runs = [(each.given.motion.name, each.histories["nonlinear"]) for each in found.results]
+        return {
+            "motion": [name for name, _ in runs],
+            "peak_ratio": [run.peak_ratio for _, run in runs],
+            "overturned": [run.overturned for _, run in runs],
+        }
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.structure import draw_structure
+
+        return draw_structure(found.picture, heading(ready.mechanism))
+
+    return Answer("report", found, view(found), columns, figure)
+
+
+def _scaled(given: Motion) -> Scaled:
+    if isinstance(given, str) and given.partition(":")[0] in PulseShapes() and not Path(given).exists():
+        given = parse_pulse(given)
+    if isinstance(given, Pulse):
+        return Scaled(given.sampled(), 1.0, pulse=given)
+    return Scaled(_motion(given), 1.0, file=None if isinstance(given, GroundMotion) else Path(given))
+
+
+def _yaml(mechanism: Mechanism) -> str:
+    """A mechanism made in Python as the file that gives it again."""
+    fields: Mapping[str, object] = mechanism.model_dump(exclude_unset=True)
+    lines = [f"mechanism: {mechanism.mechanism}", *(f"{key}: {value}" for key, value in fields.items())]
+    return "\n".join(lines) + "\n"

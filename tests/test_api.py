@@ -1,0 +1,200 @@
+"""The package as Python users have it: classes to import, verbs, answers that show themselves, a page that runs."""
+
+import doctest
+import json
+from importlib import import_module
+
+import numpy as np
+import pytest
+from mypy import api as mypy
+from pydantic import ValidationError
+
+import rocking_cli as rk
+from rocking_cli.core.registry import Registry
+from rocking_cli.dynamics import history
+from tests.conftest import EXAMPLES, PROJECT
+from tests.test_cli import run_json
+
+ACCEL = str(EXAMPLES / "accel.csv")
+DOCS = PROJECT / "docs"
+
+
+@pytest.fixture(scope="module")
+def maker():
+    def load(name):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.syspath_prepend(DOCS)
+            return import_module(name)
+
+    return load
+
+
+@pytest.fixture(scope="module")
+def wall():
+    return rk.Wall(thickness=0.3, height=3.0)
+
+
+# --- classes
+
+
+@pytest.mark.parametrize("name", [name for name in Registry() if "rocking-cli " in Registry().package_of(name)])
+def test_every_mechanism_can_be_imported_by_the_name_of_its_class(name):
+    cls = Registry()[name]
+    assert getattr(rk, cls.__name__) is cls
+    assert cls.__name__ in dir(rk)
+    assert rk.mechanisms[name] is cls
+
+
+def test_what_is_not_there_is_no_attribute():
+    with pytest.raises(AttributeError, match="has no attribute 'Steeple'"):
+        _ = rk.Steeple
+    assert not hasattr(rk, "_own")
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"thickness": -0.3, "height": 3.0}, "thickness: must be more than 0 m, got -0.3"),
+        ({"thickness": 0.3}, "height: is missing"),
+        ({"thicknes": 0.3, "thickness": 0.3, "height": 3.0}, "did you mean thickness?"),
+        ({"thickness": "30 kg", "height": 3.0}, "30 kg is a mass, not a length"),
+    ],
+)
+def test_wrong_fields_are_an_input_error_that_names_them(fields, words):
+    with pytest.raises(rk.InputError) as caught:
+        rk.Wall(**fields)
+    assert words in str(caught.value)
+    assert not isinstance(caught.value, ValidationError)
+
+
+def test_files_place_their_errors_themselves(tmp_path):
+    (tmp_path / "w.yaml").write_text("mechanism: wall\nthickness: -1\nheight: 3\n", encoding="utf-8")
+    with pytest.raises(rk.InputError, match=r"w\.yaml:2:12: thickness: must be more than 0"):
+        rk.load_structure(tmp_path / "w.yaml")
+
+
+def test_the_stub_is_not_stale(maker):
+    stub = maker("make_stub")
+    assert stub.STUB.read_text(encoding="utf-8") == stub.stub(), "run make stub"
+
+
+# --- answers
+
+
+def test_a_response_is_the_histories_and_the_json_of_the_command(wall):
+    answer = rk.respond(wall, ACCEL)
+    alone = history.respond(wall, rk.read_record(ACCEL))
+    assert list(answer) == list(alone)
+    for name, run in alone.items():
+        assert answer[name].peak_ratio == run.peak_ratio
+    said = run_json("respond", EXAMPLES / "wall.yaml", "--record", ACCEL, "--neighbours", 0)
+    assert rk.respond(EXAMPLES / "wall.yaml", ACCEL).to_dict()["responses"] == said["responses"]
+    assert json.dumps(answer.to_dict())
+
+
+def test_a_model_may_be_one_name_and_an_unknown_one_is_told(wall):
+    assert list(rk.respond(wall, "sine:0.2g:1s", models="linear2")) == ["linear2"]
+    with pytest.raises(rk.InputError, match="models must be of nonlinear, linear1, linear2, got linear3"):
+        rk.respond(wall, "sine:0.2g:1s", models="linear3")
+
+
+def test_a_motion_may_be_a_file_a_pulse_its_text_or_samples(wall):
+    pulse = rk.parse_pulse("sine:0.4g:0.8s")
+    ways = [pulse, "sine:0.4g:0.8s", pulse.sampled()]
+    peaks = {rk.respond(wall, each, models="nonlinear")["nonlinear"].peak_ratio for each in ways}
+    assert len(peaks) == 1
+    assert rk.respond(wall, ACCEL, scale=-1.0, models="nonlinear")["nonlinear"].peak_ratio > 0
+    with pytest.raises(rk.InputError, match="no such file"):
+        rk.respond(wall, "nowhere.csv")
+
+
+def test_every_structure_under_every_motion_with_every_factor(wall):
+    block = rk.Block(width=0.7, height=2.8)
+    answer = rk.respond_each([block, wall], ["sine:0.4g:0.8s", ACCEL], models="nonlinear", scales=[0.5, -1.0, 2.0])
+    found = answer["nonlinear"]
+    assert found.peak_ratio.shape == (2, 2, 3)
+    one = rk.respond(wall, ACCEL, scale=-1.0, models="nonlinear", tail=0.0)["nonlinear"]
+    assert found.peak_ratio[1, 1, 1] == one.peak_ratio and found.fell_to[1, 1, 1] == one.fell_to
+    frame = answer.to_frame()
+    assert len(frame) == 12 and frame["nonlinear peak_ratio"][10] == one.peak_ratio
+    assert frame.loc[10, ["structure", "motion", "scale"]].tolist() == ["wall", "accel.csv", -1.0]
+
+
+ANSWERS = {
+    "equiv": lambda: rk.equiv(rk.Block(width=0.7, height=2.8)),
+    "draw": lambda: rk.draw(rk.Block(width=0.7, height=2.8), at=0.5),
+    "record": lambda: rk.record("sine:0.6g:0.5s"),
+    "respond": lambda: rk.respond(rk.Block(width=0.7, height=2.8), ACCEL),
+    "spectrum": lambda: rk.spectrum(rk.Block(width=0.7, height=2.8), ACCEL, slenderness=[0.2], count=5),
+    "map": lambda: rk.overturning_map(points=16),
+    "curves": lambda: rk.overturning_curves(
+        [EXAMPLES / "block.yaml", EXAMPLES / "wall.yaml"], model="linear2", points=5
+    ),
+    "margin": lambda: rk.margin(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", polarities=(1,)),
+    "linearisation": lambda: rk.linearisation(rk.Wall(thickness=0.3, height=3.0), at=(0.2, 0.5)),
+    "equivalent": lambda: rk.equivalent([EXAMPLES / "block.yaml", EXAMPLES / "wall.yaml"], "sine:0.6g:0.5s"),
+}
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_an_answer_shows_itself(name, tmp_path):
+    answer = ANSWERS[name]()
+    text = repr(answer)
+    assert text.startswith("<") and text.endswith(">") and "\n" not in text and len(text) < 160
+    page = answer._repr_html_()
+    assert "<p>" in page and page.count("<table") == page.count("</table>")
+    assert len(answer.to_frame()) > 0
+    json.dumps(answer.to_dict(), allow_nan=False)
+    answer.plot(tmp_path / "a.svg")
+    assert (tmp_path / "a.svg").stat().st_size > 1000
+
+
+def test_names_of_others_are_text_in_a_notebook():
+    answer = rk.equiv(rk.Block(name="<img src=x>", width=0.7, height=2.8))
+    assert "<img" not in answer._repr_html_() and "&lt;img" in answer._repr_html_()
+
+
+def test_a_picture_has_a_known_ending(wall):
+    with pytest.raises(rk.InputError, match=r"a picture ends in \.png, \.svg or \.pdf"):
+        rk.equiv(wall).plot("a.jpeg2")
+
+
+def test_a_map_of_a_structure_is_that_of_the_command():
+    pulses = {"period": (0.3, 2.0), "ag": (0.1, 1.0), "points": 9}
+    answer = rk.overturning_map(EXAMPLES / "block.yaml", **pulses)
+    said = run_json("overturning", EXAMPLES / "block.yaml", "--period", "0.3:2", "--ag", "0.1g:1g", "--points", 9)
+    assert answer.to_dict() == said
+    assert np.isnan(answer.outcome.peak_ratio[answer.outcome.overturned]).all()
+
+
+def test_a_report_is_written_with_what_gives_the_structure_again(tmp_path):
+    answer = rk.report(rk.Block(name="made here", width=0.7, height=2.8), (), tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "made here" in page and "width: 0.7" in page
+    assert "made here" in repr(answer)
+
+
+# --- what the documentation shows
+
+
+def test_the_page_on_python_does_what_it_shows(maker, tmp_path):
+    assert maker("make_python").run(tmp_path) == 0
+    assert {path.name for path in tmp_path.glob("*.png")} == {"response.png", "spectrum.png", "fragility.png"}
+
+
+def test_a_type_checker_accepts_the_page(maker, tmp_path):
+    file = tmp_path / "page.py"
+    file.write_text(maker("make_python").script(), encoding="utf-8")
+    options = ["--config-file", str(PROJECT / "pyproject.toml"), "--disable-error-code", "no-untyped-call"]
+    out, err, code = mypy.run([*options, "--cache-dir", str(PROJECT / ".mypy_cache"), str(file)])
+    wrong = [line for line in out.splitlines() if "page.py" in line and "Wall" not in line]
+    assert not wrong and code in (0, 1), out + err
+
+
+MODULES = ("", ".api.verbs", ".dynamics.batch", ".dynamics.exact", ".names", ".units")
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_in_docstrings_run(name):
+    found = doctest.testmod(import_module(f"rocking_cli{name}"))
+    assert found.attempted > 0 and found.failed == 0
