@@ -174,6 +174,24 @@ def test_a_report_is_written_with_what_gives_the_structure_again(tmp_path):
     assert "made here" in repr(answer)
 
 
+def test_a_study_given_in_python_is_that_of_the_files_it_writes(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = {
+        "structures": [rk.Block(name="pillar", width=0.6, height=2.6, restitution=0.9), EXAMPLES / "wall.yaml"],
+        "records": [{"pulse": "sine:1g:0.6s"}, {"pulse": "ricker:1g:1s"}],
+        "method": "stripes",
+        "levels": {"measure": "PGA", "least": 0.2, "most": 1.6, "count": 6},
+        "limit_states": ["overturning"],
+    }
+    first = rk.fragility(study, store="pillar.db")
+    again = rk.fragility("pillar.yaml", store="other.db")
+    assert first.result[0].structure == "pillar" and len(first.result) == 2
+    assert first.to_frame().equals(again.to_frame())
+    assert rk.load_structure("pillar-1.yaml").restitution == 0.9
+    with pytest.raises(rk.InputError, match=r"bad\.yaml.*levels"):
+        rk.fragility({**study, "levels": 3}, store="bad.db")
+
+
 # --- what the documentation shows
 
 

@@ -23,6 +23,7 @@ from rocking_cli.excitation.measures import Measures
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.io.json_text import json_text
 from rocking_cli.structure import load_structure
 from rocking_cli.views.view import View, heading
 
@@ -574,16 +575,17 @@ def equivalent(
 
 
 def fragility(
-    study: str | Path, *, store: str | Path | None = None, threads: int | None = None
+    study: str | Path | Mapping[str, Any], *, store: str | Path | None = None, threads: int | None = None
 ) -> Answer[list[Fragility]]:
     """Run a fragility study, or go on with it, and fit its curves.
 
     Parameters
     ----------
-    study : str or Path
-        Its YAML file; docs/fragility.md has the fields.
+    study : str, Path or mapping
+        Its YAML file, or the same in Python, with mechanisms among the structures if you like; docs/fragility.md has
+        the fields. What is given in Python is written as files beside the store, so that it can be run again.
     store : str or Path, optional
-        Where the runs are kept; beside the study, unless given.
+        Where the runs are kept; beside the study, unless given; of one given in Python study.db in this folder.
     threads : int, optional
         Histories at a time; without it, one for each processor.
 
@@ -600,8 +602,12 @@ def fragility(
     from rocking_cli.studies.fragility.study import load_study
     from rocking_cli.views.fragility import limit_name, view
 
+    if isinstance(study, Mapping):
+        place = Path(store or "study.db")
+        study = _written(study, place)
+    else:
+        place = Path(store) if store is not None else Path(study).with_suffix(".db")
     asked = load_study(study)
-    place = Path(store) if store is not None else Path(study).with_suffix(".db")
     with Store.writing(place, anew=False, say=lambda text: None) as kept:
         prepared = campaign.prepare(asked, kept)
         with engines.threads(threads) as engine:
@@ -700,6 +706,25 @@ def _scaled(given: Motion) -> Scaled:
 
 def _yaml(mechanism: Mechanism) -> str:
     """A mechanism made in Python as the file that gives it again."""
-    fields: Mapping[str, object] = mechanism.model_dump(exclude_unset=True)
-    lines = [f"mechanism: {mechanism.mechanism}", *(f"{key}: {value}" for key, value in fields.items())]
-    return "\n".join(lines) + "\n"
+    fields = {"mechanism": mechanism.mechanism, **mechanism.model_dump(exclude_unset=True)}
+    return "".join(f"{key}: {json_text(value)}\n" for key, value in fields.items())
+
+
+def _written(study: Mapping[str, Any], store: Path) -> Path:
+    """The file of a study given in Python, and those of its mechanisms: beside the store, with its name."""
+    from rocking_cli.io.files import write_whole
+
+    def write(path: Path, text: str) -> Path:
+        write_whole(path, lambda stream: stream.write(text.encode()))
+        return path
+
+    structures: list[object] = []
+    for k, each in enumerate(study.get("structures", []), start=1):
+        if isinstance(each, Mechanism):
+            file = write(store.with_name(f"{store.stem}-{k}.yaml"), _yaml(each))
+            structures.append({"file": file.name, "name": each.name or each.mechanism})
+        else:
+            structures.append(str(each) if isinstance(each, Path) else each)
+    records = [str(each) if isinstance(each, Path) else each for each in study.get("records", [])]
+    text = json_text({**study, "structures": structures, "records": records})
+    return write(store.with_suffix(".yaml"), text + "\n")

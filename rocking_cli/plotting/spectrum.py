@@ -20,6 +20,7 @@ from rocking_cli.studies.under_pulses import Reals
 NAME = 40  # characters of a structure's name in the legend
 SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks
 SHADED = 2  # curves up to which the spread of the motions is drawn: more shades cannot be told apart
+CLEAR = 20  # motions up to which the line of each is opaque
 ROW = 0.06  # height of the row of marks where a curve overturns, over that of the peaks
 
 
@@ -99,7 +100,8 @@ def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float]
     axes.fill_between(each.periods, lower, upper, color=style.distinct(k)["color"], alpha=0.15, linewidth=0)
     if every:
         curves = np.where(np.isfinite(each.peak_ratio), each.peak_ratio, np.nan) * _within(each)
-        axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=style.THIN)
+        clear = min(1.0, CLEAR / len(curves))  # of many the fractiles must still be seen
+        axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=style.THIN, alpha=max(clear, 0.1))
 
 
 def _draw_line(axes: Axes, each: Spectrum, k: int, values: Reals, row: float = np.nan) -> None:
