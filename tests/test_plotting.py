@@ -132,3 +132,14 @@ class TestThinning:
         assert end < 10
         np.testing.assert_allclose(above.get_lines()[0].get_ydata()[:81], long.acceleration[:81] / STANDARD_GRAVITY)
         assert above.get_lines()[0].get_xdata()[-1] >= end
+
+
+def test_where_nothing_lifts_the_picture_says_so_and_what_would():
+    quiet = PULSE.scaled(1e-3)
+    figure = draw_history(respond(BLOCK, quiet), quiet, "a block", uplift=(0.25, 0.2))
+    ground, rotation = figure.axes
+    assert [line.get_ydata()[0] for line in ground.lines[-2:]] == [-0.25, 0.2]
+    assert "0.2 g and -0.25 g would lift it" in " ".join(text.get_text() for text in ground.texts)
+    assert "does not uplift" in [text.get_text() for text in rotation.texts]
+    rocks = draw_history(respond(BLOCK, PULSE.scaled(3.0)), PULSE, "a block", uplift=(0.25, 0.25))
+    assert "does not uplift" not in [text.get_text() for each in rocks.axes for text in each.texts]

@@ -229,7 +229,7 @@ def respond(
     def figure() -> Figure:
         from rocking_cli.plotting.history import draw_history
 
-        return draw_history(found, shaking, title)
+        return draw_history(found, shaking, title, uplift=ready.uplift)
 
     return MappingAnswer("response", found, runs_view(title, {1: found}), columns, figure)
 

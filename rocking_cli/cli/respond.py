@@ -248,7 +248,7 @@ class _Job:
             title = f"{title}, under {given.motion.name}"
             self._table.add(found)
         _say_which_pulse(found.fit)
-        _write(found, out, plot, title)
+        _write(found, out, plot, title, self._structure.uplift)
         doubts = structures.doubts(mechanism)
         one = view(
             found, mechanism, self._structure.equivalence, self._asked, self._polarity, title, doubts,
@@ -277,7 +277,9 @@ def _say_which_pulse(fit: PulseFit | None) -> None:
         )
 
 
-def _write(found: Answer, out: Path | None, plot: Path | None, title: str) -> None:
+def _write(
+    found: Answer, out: Path | None, plot: Path | None, title: str, uplift: tuple[float, float]
+) -> None:  # fmt: skip
     """Write the histories and their picture to the files asked for.
 
     In a table those of the second polarity, or to the pulse alone, stand last, under names that say so.
@@ -296,6 +298,6 @@ def _write(found: Answer, out: Path | None, plot: Path | None, title: str) -> No
         from rocking_cli.plotting.history import draw_history
 
         pulse = (found.fit, found.to_pulse) if found.fit is not None and found.to_pulse is not None else None
-        return draw_history(first, found.first, title, others[0] if others else None, pulse)
+        return draw_history(first, found.first, title, others[0] if others else None, pulse, uplift)
 
     Output(out, plot, as_json=False).write(table, draw)

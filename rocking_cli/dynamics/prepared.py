@@ -10,6 +10,7 @@ from functools import cached_property
 from rocking_cli.core import Equivalence, Mechanism, equivalent_block
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,12 @@ class Prepared:
     def p(self) -> float:
         """Frequency parameter [rad/s], of two different directions the larger."""
         return max(self.equivalence.positive.p, self.equivalence.negative.p)
+
+    @property
+    def uplift(self) -> tuple[float, float]:
+        """The ground acceleration that lifts it to the positive and the negative direction [standard gravity]."""
+        unit = self.mechanism.gravity / STANDARD_GRAVITY
+        return self.equivalence.positive.lambda_ * unit, self.equivalence.negative.lambda_ * unit
 
     def model(self, name: ModelName) -> Model:
         """One of its models. Raises `InputError` or `MechanismError` if it cannot be built."""

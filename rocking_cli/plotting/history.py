@@ -31,6 +31,7 @@ def draw_history(
     title: str,
     reversed_histories: Mapping[ModelName, History] | None = None,
     pulse: tuple[PulseFit, Mapping[ModelName, History]] | None = None,
+    uplift: tuple[float, float] | None = None,
 ) -> Figure:
     """Draw histories over time.
 
@@ -46,6 +47,10 @@ def draw_history(
         The responses to the reversed motion, drawn in a panel of their own.
     pulse : PulseFit and mapping of str to History, optional
         The pulse in the motion, drawn bold over it, and the responses to it alone, in a panel of their own.
+
+    uplift : (float, float), optional
+        The ground acceleration that lifts the structure to the positive and to the negative direction [standard
+        gravity], drawn over the motion where nothing lifts it.
 
     Returns
     -------
@@ -68,6 +73,8 @@ def draw_history(
     end = max(SHORTEST, *(1.1 * run.end_time if run.overturned else float(run.time[-1]) for run in runs))
     if motion is not None:
         _draw_motion(panels[0], motion, end, pulse[0] if pulse is not None else None)
+        if uplift is not None and motion.vertical is None and not any(run.lifted for run in runs):
+            _draw_uplift(panels[0], uplift)
     reach = max(float(np.nanmax(np.abs(run.ratio))) for run in runs)
     tall = min(max(1.1 * reach, 1e-3), TALLEST)
     for axes, (what, each) in zip(panels[shaken:], responses.items(), strict=True):
@@ -76,6 +83,15 @@ def draw_history(
     panels[-1].set_xlabel("time [s]", fontsize=style.LABEL)
     figure.align_ylabels()
     return figure
+
+
+def _draw_uplift(axes: Axes, uplift: tuple[float, float]) -> None:
+    """Mark what the ground would have to reach: a push to the left lifts to the right, which is positive."""
+    positive, negative = uplift
+    for level in (-positive, negative):
+        axes.axhline(level, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
+    axes.set_ylim(-1.5 * positive, 1.5 * negative)  # room for the notes
+    style.note(axes, f"dotted: {negative:.3g} g and {-positive:.3g} g would lift it", height=0.14)
 
 
 def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit | None) -> None:
@@ -114,6 +130,8 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
     axes.annotate(
         "impacts, in the order of the legend", place, xycoords="axes fraction", fontsize=style.SMALL, color=style.FAINT
     )
+    if not any(run.lifted for run in histories.values()):
+        axes.text(0.5, 0.6, names.NO_UPLIFT, transform=axes.transAxes, ha="center", fontsize=style.LABEL)
     falls_up = any(run.fell_to == Direction.POSITIVE for run in histories.values())  # into the right corner
     axes.legend(
         loc="upper left" if falls_up else "upper right",
