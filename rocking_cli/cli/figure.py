@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import options, terminal
+from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import Reading
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def _motion(record: str | None, reading: Reading) -> GroundMotion:
     from rocking_cli.excitation.records import read_record
 
     if record is not None:
-        return read_record(record, **vars(reading))
+        return motion_files.read(record, *reading.reading)
     package = Path(__file__).parents[1]
     shipped = package / "data" / "accel.csv"
     return read_record(shipped if shipped.exists() else package.parent / "examples" / "accel.csv")

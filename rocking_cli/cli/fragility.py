@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import endings, options, terminal
+from rocking_cli.cli.defaults import from_default
 from rocking_cli.errors import INCOMPLETE
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ class Running:
     restart: bool
 
     def __post_init__(self) -> None:
-        if self.scheduler is not None and self.jobs is not None:
+        if self.scheduler is not None and self.jobs is not None and not from_default("jobs"):
             raise click.UsageError("--jobs is for this machine: a cluster has as many workers as it has.")
 
     def engine(self) -> AbstractContextManager[Engine]:

@@ -58,7 +58,7 @@ def _all(registry: Registry, as_json: bool) -> None:
             title: str | None = registry[name].title
         except MechanismError as error:  # one broken plugin must not hide the others
             terminal.warning(str(error))
-            terminal.plugin_traceback(error)
+            terminal.debug_traceback(error)
             title = None
         found.append(Installed(name, title, registry.package_of(name)))
     terminal.show(installed(found), as_json=as_json)

@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from textwrap import shorten
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rocking_cli.cli import terminal
+from rocking_cli.cli.defaults import from_default
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import FEW
@@ -72,6 +74,18 @@ def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
     """Say on standard error what makes a motion doubtful."""
     for doubt in found:
         terminal.warning(f"{motion.name}: {doubt.text}")
+
+
+def read(file: str | Path, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
+    """Read a record; what of its reading is a default, and was not typed, holds only where the file does not say."""
+    from rocking_cli.excitation.records import read_record
+
+    given: dict[str, Any] = {"dt": dt, "units": units, "channel": channel}
+    typed = {name: None if from_default(name) else value for name, value in given.items()}
+    if typed != given:
+        with suppress(InputError):
+            return read_record(file, **typed)
+    return read_record(file, **given)
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
@@ -140,7 +154,6 @@ def gather(
     from rocking_cli.excitation.doubts import coarse_for, doubts
     from rocking_cli.excitation.measures import measure
     from rocking_cli.excitation.pulses import parse_pulse
-    from rocking_cli.excitation.records import read_record
 
     sources: list[Path | Pulse] = [*paths, *dict.fromkeys(parse_pulse(text) for text in pulses)]
     dt, units, channel = reading
@@ -149,7 +162,7 @@ def gather(
     for source in sources:
         try:
             if isinstance(source, Path):
-                each = Scaled(read_record(source, dt=dt, units=units, channel=channel), 1.0, file=source)
+                each = Scaled(read(source, dt, units, channel), 1.0, file=source)
             else:
                 each = Scaled(source.sampled(), 1.0, pulse=source)
             motion = each.motion
@@ -157,7 +170,7 @@ def gather(
             each = each._replace(factor=factor(motion, measured, *asked))
         except InputError as error:
             terminal.error(str(error))
-            terminal.plugin_traceback(error)
+            terminal.debug_traceback(error)
             continue
         if isinstance(source, Path):
             if any(motion.name == other.motion.name for other in found):

@@ -34,7 +34,7 @@ def command(name: str, as_json: bool) -> None:
             f"the examples of the mechanism {name} make no structure, and this file does not work as it is"
         )
         terminal.note(str(error))
-        terminal.plugin_traceback(error)
+        terminal.debug_traceback(error)
     if as_json:
         terminal.print_json({"mechanism": name, "yaml": text})
     else:

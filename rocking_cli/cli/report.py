@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import inputs, motion_files, options, terminal
+from rocking_cli.cli import defaults, inputs, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Near
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -96,15 +96,19 @@ def _file(structure: Prepared) -> File:
 
 
 def _command_line(ctx: click.Context) -> str:
-    """The command as it was given, for a POSIX shell."""
+    """The command as it was given, for a POSIX shell, with the user's defaults, which hold nowhere else."""
     from click.core import ParameterSource
 
     said = ["rocking", "report"]
+    taken = defaults.of_run(ctx)
     for param in ctx.command.params:
         value = ctx.params.get(param.name or "")
+        if default := taken.get(param.name or ""):
+            said += [f"--{default.option}", default.value]
         if ctx.get_parameter_source(param.name or "") is not ParameterSource.COMMANDLINE:
             continue
         for each in value if isinstance(value, tuple) else (value,):
             said += [] if isinstance(param, click.Argument) else [param.opts[0]]
             said += [] if each is True else [str(each)]
-    return shlex.join(said)
+    places = ", ".join(f"--{each.option} from {each.place}" for each in taken.values())
+    return shlex.join(said) + (f"  # {places}" if places else "")

@@ -33,6 +33,8 @@ def load(files: Sequence[str]) -> list[Mechanism]:
     for file in files or [""]:
         try:
             found.append(load_structure(file) if files else _unnamed())
+            if files:
+                terminal.detail(f"structure: {found[-1].name} ({found[-1].mechanism}), of {Path(file).resolve()}")
         except InputError as error:
             problems += error.problems
         except MechanismError as error:

@@ -5,7 +5,6 @@ What it is given may quote files and their names: nothing in it commands the ter
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -80,12 +79,26 @@ def error(text: str) -> None:
     click.echo(click.style("error: ", fg="red", bold=True) + printable(as_typed(text)), err=True)
 
 
-def plugin_traceback(error: BaseException | None) -> None:
-    """The traceback of what a plugin itself raised, for who develops it: if ROCKING_DEBUG is set to 1."""
+def asked(switch: str) -> bool:
+    """Whether a switch of `rocking` itself is on: `debug` or `verbose`."""
+    context = click.get_current_context(silent=True)
+    return bool(context is not None and context.find_root().params.get(switch))
+
+
+def detail(text: str) -> None:
+    """Something that only some want to know: with --verbose."""
+    if asked("verbose"):
+        note(text)
+
+
+def debug_traceback(error: BaseException | None) -> None:
+    """The traceback of an error, with --debug; of what a plugin itself raised, if that is at the bottom of it."""
     from rocking_cli.plugins.errors import own_traceback
 
-    if os.environ.get("ROCKING_DEBUG") == "1" and (told := own_traceback(error)):
-        note(told)
+    if error is not None and asked("debug"):
+        from traceback import format_exception
+
+        note(own_traceback(error) or "".join(format_exception(error)).rstrip("\n"))
 
 
 def width() -> int:

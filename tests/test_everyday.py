@@ -1,0 +1,148 @@
+"""What makes a tool pleasant every day: how it is called, what it takes for granted, what it says of itself."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import click
+import pytest
+
+from rocking_cli.cli import defaults
+from rocking_cli.cli.main import COMMANDS
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
+PULSE = ("respond", BLOCK, "--model", "linear2", "--pulse", "sine:0.5g:1s", "--neighbours", "0")
+
+
+def test_the_package_runs_as_the_command_does():
+    module = [sys.executable, "-m", "rocking_cli", "equiv", BLOCK, "--json"]
+    ran = subprocess.run(module, capture_output=True, text=True, check=True)
+    assert ran.stdout == run("equiv", BLOCK, "--json").stdout
+    wrong = subprocess.run([*module, "--no"], capture_output=True, text=True)
+    assert wrong.returncode == 2 and "Usage: rocking equiv" in wrong.stderr
+
+
+class TestSwitchesOfTheProgram:
+    def debugged(self, *arguments):
+        from click.testing import CliRunner
+
+        from rocking_cli.cli.main import main
+
+        return CliRunner().invoke(main, list(arguments))
+
+    @pytest.mark.parametrize("wrong", [("equiv", "none.yaml"), ("equiv", "--none"), ("respond", BLOCK)])
+    def test_debug_shows_the_traceback_of_any_error(self, wrong, monkeypatch):
+        plain = run(*wrong, code=2).stderr
+        assert "Traceback" not in plain
+        asked = self.debugged("--debug", *wrong)
+        assert asked.exit_code == 2 and "Traceback" in asked.stderr and asked.stdout == ""
+        monkeypatch.setenv("ROCKING_DEBUG", "1")
+        assert "Traceback" in self.debugged(*wrong).stderr
+
+    def test_verbose_says_which_file_and_how_long(self):
+        said = run("-v", "equiv", BLOCK)
+        assert f"structure: pedestal (block), of {BLOCK}" in said.stderr.replace("\n", "")
+        assert re.search(r"took \d+\.\d\d s", said.stderr)
+        assert said.stdout == run("equiv", BLOCK).stdout and run("equiv", BLOCK).stderr == ""
+
+
+class TestDefaults:
+    @pytest.fixture
+    def user(self, _no_defaults_of_a_user):
+        _no_defaults_of_a_user.parent.mkdir(exist_ok=True)
+        return _no_defaults_of_a_user
+
+    def neighbours(self, *more):
+        return run_json("respond", BLOCK, "--model", "linear2", "--pulse", "sine:0.5g:1s", *more)["neighbours"]["count"]
+
+    def test_each_place_goes_before_the_next(self, tmp_path, user, monkeypatch):
+        user.write_text("neighbours = 11\n", encoding="utf-8")
+        assert self.neighbours() == 11
+        here = tmp_path / "rocking.toml"
+        here.write_text("neighbours = 12\n", encoding="utf-8")
+        assert self.neighbours() == 12
+        here.write_text("neighbours = 12\n[respond]\nneighbours = 13\n[margin]\nneighbours = 14\n", encoding="utf-8")
+        assert self.neighbours() == 13
+        monkeypatch.setenv("ROCKING_NEIGHBOURS", "15")
+        assert self.neighbours() == 15
+        assert self.neighbours("--neighbours", "16") == 16
+
+    def test_what_was_taken_is_said_once_and_only_where_it_changes_something(self, tmp_path, monkeypatch):
+        (tmp_path / "rocking.toml").write_text("tail = 5\nfps = 3\n", encoding="utf-8")
+        monkeypatch.setenv("ROCKING_WITHIN_AMPLITUDE", "3%")
+        said = run(*PULSE).stderr
+        assert said.count("defaults:") == 1
+        assert "defaults: --within-amplitude 3% (ROCKING_WITHIN_AMPLITUDE), --tail 5 (rocking.toml)" in said
+        assert "--within" in run(*PULSE, "--tail", "5").stderr and "--tail" not in run(*PULSE, "--tail", "5").stderr
+        monkeypatch.delenv("ROCKING_WITHIN_AMPLITUDE")
+        (tmp_path / "rocking.toml").write_text("tail = 10.0\n", encoding="utf-8")
+        assert "defaults:" not in run(*PULSE).stderr
+
+    @pytest.mark.parametrize(
+        ("text", "words"),
+        [
+            ("neighbors = 2", "rocking.toml: neighbors: this is no option that can have a default did you mean neigh"),
+            ("out = 'a.csv'", "rocking.toml: out: this is no option that can have a default"),
+            ("model = 'linear1'", "rocking.toml: model: this is no option that can have a default it differs between"),
+            ("[repsond]\ntail = 2", "rocking.toml: [repsond]: no command is called repsond did you mean respond?"),
+            ("[respond]\ntial = 2", "rocking.toml: [respond] tial: this is no option that can have a default"),
+            ("[respond]\njobs = 2", "rocking.toml: [respond] jobs: `rocking respond` has no option --jobs"),
+            ("tail = '2h'", "rocking.toml: tail: 'h' is not a unit of time"),
+            ("tail = true", "rocking.toml: tail: this is neither a text nor a number"),
+            ("[respond]\nmodel = ['linear3']", "rocking.toml: [respond] model: linear3 is not a model: choose from"),
+            ("[respond\n", "rocking.toml: not TOML: "),
+        ],
+    )
+    def test_what_is_wrong_is_said_with_file_and_key(self, text, words, tmp_path):
+        (tmp_path / "rocking.toml").write_text(text, encoding="utf-8")
+        without = (each for each in PULSE if each not in ("--model", "linear2"))
+        assert words in " ".join(run(*without, code=2).stderr.split())
+        assert "Usage:" in run("respond", "--help").stdout
+
+    def test_a_wrong_variable_is_named(self, monkeypatch):
+        monkeypatch.setenv("ROCKING_TAIL", "long")
+        assert "ROCKING_TAIL: 'long' is no time" in run(*PULSE, code=2).stderr
+
+    def test_a_list_is_what_is_typed_with_commas(self, tmp_path):
+        (tmp_path / "rocking.toml").write_text("[respond]\nmodel = ['linear1', 'linear2']\n", encoding="utf-8")
+        found = run_json("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0")
+        assert set(found["responses"]) == {"linear1", "linear2"}
+
+    def test_how_records_are_read_holds_where_the_file_does_not_say(self, tmp_path):
+        (tmp_path / "rocking.toml").write_text("units = 'm/s2'\ndt = 0.02\n", encoding="utf-8")
+        assert run_json("record", ACCEL)["dt"] == 0.01  # in its own unit, and with its own times
+        (tmp_path / "bare.txt").write_text("\n".join(f"{k % 7 - 3}.5" for k in range(50)), encoding="utf-8")
+        bare = run_json("record", "bare.txt")
+        assert (bare["unit"], bare["dt"]) == ("m/s2", 0.02)
+        run(*PULSE)  # no record to describe, and nobody typed that there is one
+        assert "describe a record" in run(*PULSE, "--units", "g", code=2).stderr
+
+    def test_jobs_are_for_this_machine_and_silent_on_a_cluster(self, monkeypatch):
+        from rocking_cli.cli.fragility import Running
+
+        @click.command()
+        @click.option("--jobs", type=int)
+        @click.pass_context
+        def command(ctx, jobs):
+            Running(jobs, "tcp://there", None, False)
+
+        assert "cluster has as many" in click.testing.CliRunner().invoke(command, ["--jobs", "2"]).output
+        assert click.testing.CliRunner().invoke(command, [], default_map={"jobs": "2"}).exit_code == 0
+
+    def test_the_options_that_can_have_one_are_options(self):
+        options: dict[str, set[str]] = {}
+        for name in COMMANDS:
+            for each in import_module(f"rocking_cli.cli.{name}").command.params:
+                options.setdefault(max(each.opts, key=len)[2:], set()).add(name)
+        assert set(defaults.EVERYWHERE) <= set(options) and set(defaults.IN_TABLES) <= set(options)
+
+    def test_a_report_says_what_it_took_from_where(self, monkeypatch):
+        monkeypatch.setenv("ROCKING_NEIGHBOURS", "5")
+        run("report", BLOCK, "-o", "r.html")
+        assert "--neighbours 5  # --neighbours from ROCKING_NEIGHBOURS" in Path("r.html").read_text(encoding="utf-8")
