@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
+from time import monotonic
 
 import click
 import pytest
 
 from rocking_cli.cli import defaults
 from rocking_cli.cli.main import COMMANDS
+from rocking_cli.dynamics import compiled
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -146,3 +149,57 @@ class TestDefaults:
         monkeypatch.setenv("ROCKING_NEIGHBOURS", "5")
         run("report", BLOCK, "-o", "r.html")
         assert "--neighbours 5  # --neighbours from ROCKING_NEIGHBOURS" in Path("r.html").read_text(encoding="utf-8")
+
+
+class TestCompiling:
+    MAP = ("-m", "rocking_cli", "overturning", "--points", "6", "--json")
+
+    def test_ahead_says_what_it_did_and_then_has_nothing_to_do(self):
+        assert [each["kernel"] for each in run_json("warm")["kernels"]] == ["histories", "exact_pulses"]
+        again = run_json("warm")
+        assert all(each["compiled_before"] and each["seconds"] < 5 for each in again["kernels"])
+        assert "histories: were compiled already" in run("warm").stdout
+
+    def test_ahead_is_refused_where_nothing_can_be_kept(self, tmp_path, monkeypatch):
+        (tmp_path / "cache").touch()
+        monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+        compiled.unwritable.cache_clear()
+        said = run("warm", code=1).stderr
+        compiled.unwritable.cache_clear()
+        assert f"{tmp_path / 'cache'}: cannot be written to" in said and "NUMBA_CACHE_DIR" in said
+
+    @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals")
+    def test_something_moves_on_a_terminal_and_a_damaged_cache_is_mended(self, tmp_path):
+        cache = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "TERM": "xterm"}
+        shown, silent = on_a_terminal([sys.executable, *self.MAP], cache)
+        assert "compiling the exact response to pulses, some five seconds, once" in shown
+        assert re.search(r"compiling.*0:00:0[1-9]", shown) and silent < 2
+        piped = subprocess.run([sys.executable, *self.MAP], env=cache, capture_output=True, text=True, check=True)
+        assert "compil" not in piped.stderr
+        for half in (tmp_path / "cache").rglob("*.nbi"):
+            half.write_bytes(half.read_bytes()[:100])
+        for times in (1, 0):
+            mended = subprocess.run([sys.executable, *self.MAP], env=cache, capture_output=True, text=True, check=True)
+            assert mended.stderr.count("is damaged, and is compiled anew") == times and "Traceback" not in mended.stderr
+            assert mended.stdout == piped.stdout
+
+
+def on_a_terminal(arguments, environment):
+    """What a program shows on a terminal of its own, and its longest silence [s] once it has said something."""
+    import pty
+
+    shown, silent, last = b"", 0.0, None
+    here, there = pty.openpty()
+    with subprocess.Popen(arguments, env=environment, stdin=there, stdout=there, stderr=there):
+        os.close(there)
+        while True:
+            try:
+                piece = os.read(here, 4096)
+            except OSError:  # Linux, at the end
+                break
+            if not piece:
+                break
+            silent = max(silent, monotonic() - last) if last is not None else silent
+            shown, last = shown + piece, monotonic()
+    os.close(here)
+    return shown.decode(), silent

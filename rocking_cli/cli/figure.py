@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 # The numbers stand here again so that `--help` needs no numpy; a test holds them together.
 NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
+OF_HISTORIES = {14, 15}
 
 
 @click.command(
@@ -80,6 +81,10 @@ def command(
 
     wanted = [int(each) for each in (NUMBERS if number == "all" else [number])]
     place = make_folder(out)
+    if OF_HISTORIES & {*wanted}:
+        from rocking_cli.cli.waiting import compile_first
+
+        compile_first()
     made: list[tuple[int, list[str]]] = []
     with terminal.progress(len(wanted), "figures") as advance:
         for each in wanted:

@@ -138,7 +138,7 @@ def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
         if prepared.finished == prepared.plan.total:
             return
         if running.scheduler is None:
-            waiting.say_if_compiling()
+            waiting.compile_first()
         engine = engine or stack.enter_context(running.engine())
         done, failed = prepared.finished, prepared.failed
         with terminal.progress(prepared.plan.total, "runs", done=done, failed=failed) as advance:

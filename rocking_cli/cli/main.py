@@ -16,12 +16,12 @@ import click
 
 from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
-from rocking_cli.errors import InputError, PluginWarning, RockingError
+from rocking_cli.errors import CacheWarning, InputError, PluginWarning, RockingError
 from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "respond", "margin", "animate", "pulse", "overturning", "spectrum",
-    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "new",
+    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "new", "warm",
 )  # fmt: skip
 DO_WITHOUT = ("info",)
 """Commands that run whatever is wrong with the user's defaults."""
@@ -51,10 +51,10 @@ class _Context(click.Context):
 
 
 def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """Show warnings about plugins as all others of this program."""
+    """Show warnings about plugins, and about what is compiled, as all others of this program."""
 
     def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-        if not issubclass(category, PluginWarning):
+        if not issubclass(category, (PluginWarning, CacheWarning)):
             otherwise(message, category, *where, **more)
             return
         terminal.warning(str(message))

@@ -49,7 +49,7 @@ def command(
     asked.check()
     if not near.neighbours:
         raise click.UsageError("A report says how close a result is: --neighbours must be at least 1 here.")
-    from rocking_cli.cli.waiting import say_if_compiling
+    from rocking_cli.cli.waiting import compile_first
     from rocking_cli.io.files import check_writable, keep_apart, write_whole
     from rocking_cli.studies.assessment import gather, steps
     from rocking_cli.views.assessment import view
@@ -68,7 +68,7 @@ def command(
     bad += refused
     if bad and not given:
         ctx.exit(InputError.exit_code)
-    say_if_compiling()
+    compile_first()
     with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
             structure, _file(structure), given, asked.signs, around=near.around,

@@ -146,7 +146,7 @@ def command(
     if asked and not paths and not asked.pulses:
         ctx.exit(InputError.exit_code)
     from rocking_cli.cli import inputs
-    from rocking_cli.cli.waiting import say_if_compiling
+    from rocking_cli.cli.waiting import compile_first
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.response import Question
@@ -164,7 +164,7 @@ def command(
     outs, plots = (motion_files.separate(path, chosen, several=several) for path in (output.out, output.plot))
     if several:
         keep_apart([*(("--out", each) for each in outs), *(("--plot", each) for each in plots)], read)
-    say_if_compiling()
+    compile_first()
     structure.models(history.names)
     question = Question(asked.signs, history.release, history.tail, history.rtol, history.with_pulse, near.around)
     job = _Job(structure, history.names, question, asked.polarity, several, impacts, output.as_json)

@@ -172,6 +172,19 @@ def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterat
         bar.stop()
 
 
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Something that moves, and the seconds, while one long piece of work is done; on a terminal only."""
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as moving:
+        moving.add_task(printable(what), total=None)
+        yield
+
+
 def table(
     title: str,
     columns: Sequence[str],
