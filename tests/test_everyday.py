@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 from time import monotonic
 
@@ -203,3 +204,43 @@ def on_a_terminal(arguments, environment):
             shown, last = shown + piece, monotonic()
     os.close(here)
     return shown.decode(), silent
+
+
+class TestInfo:
+    def test_it_knows_the_versions_the_extras_and_the_plugins(self, monkeypatch):
+        from rocking_cli.studies import installation
+
+        found = run_json("info")
+        assert found["version"] == version("rocking-cli") and found["libraries"]["numpy"] == version("numpy")
+        assert {"parquet", "seismo", "cluster"} == set(found["extras"])
+        names = {kind: {each["name"] for each in plugins} for kind, plugins in found["plugins"].items()}
+        assert "arch" in names["mechanisms"] and "peer_at2" in names["records"] and "ricker" in names["pulses"]
+        assert found["processors"] >= found["threads"] >= 1
+        monkeypatch.setattr(installation, "_version", lambda name: None)
+        assert "no pyarrow: pip install 'rocking-cli[parquet]'" in run("info").stdout
+
+    def test_it_knows_what_is_taken_for_granted_and_what_is_wrong_with_it(self, tmp_path, monkeypatch):
+        monkeypatch.setenv("ROCKING_TAIL", "3")
+        monkeypatch.setenv("ROCKING_TAILS", "3")
+        (tmp_path / "rocking.toml").write_text("tail = 4\n[margin]\ntail = 5\n", encoding="utf-8")
+        found = run_json("info")["defaults"]
+        assert [(each["value"], each["place"], each["command"]) for each in found["set"]] == [
+            ("3", "ROCKING_TAIL", None), ("5", "rocking.toml", "margin"), ("4", "rocking.toml", None),
+        ]  # fmt: skip
+        assert found["unknown"] == ["ROCKING_TAILS"] and found["problem"] is None
+        (tmp_path / "rocking.toml").write_text("tial = 4\n", encoding="utf-8")
+        assert "rocking.toml: tial: this is no option" in run_json("info")["defaults"]["problem"]
+        assert "ROCKING_TAILS in the environment means nothing" in run("info").stdout
+
+    def test_it_knows_where_compiled_code_is_and_whether_it_is(self, tmp_path, monkeypatch):
+        monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+        compiled.unwritable.cache_clear()
+        found = run_json("info")
+        (tmp_path / "file").touch()
+        monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
+        compiled.unwritable.cache_clear()
+        refused = run_json("info")
+        compiled.unwritable.cache_clear()
+        assert found["cache"] == str(tmp_path / "cache") and found["unwritable"] is None
+        assert found["compiled"] == {"histories": False, "exact_pulses": False}
+        assert refused["unwritable"] and refused["cache"] == str(tmp_path / "file")

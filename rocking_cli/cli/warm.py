@@ -21,14 +21,14 @@ def command(as_json: bool) -> None:
     """
     from rocking_cli.dynamics.compiled import cache_folder, unwritable
     from rocking_cli.errors import Refused
-    from rocking_cli.studies.compiling import KERNELS, compile_kernel
-    from rocking_cli.views.warm import CALLED, view
+    from rocking_cli.studies.compiling import CALLED, compile_kernel
+    from rocking_cli.views.warm import view
 
     if (why := unwritable()) is not None:
         hint = "name another folder in NUMBA_CACHE_DIR"
         raise Refused(f"{cache_folder()}: cannot be written to ({why}): nothing compiled would be kept\n  {hint}")
     found = []
-    for kernel in KERNELS:
-        with terminal.working(f"compiling {CALLED[kernel].replace('_', ' ')}"):
+    for kernel, name in CALLED.items():
+        with terminal.working(f"compiling {name.replace('_', ' ')}"):
             found.append(compile_kernel(kernel))
     terminal.show(view(cache_folder(), found), as_json=as_json)

@@ -7,7 +7,8 @@ from time import monotonic
 
 from rocking_cli.dynamics.compiled import HISTORIES, PULSES, needs_compiling
 
-KERNELS = (HISTORIES, PULSES)
+CALLED = {HISTORIES: "histories", PULSES: "exact_pulses"}
+"""The kernels, by the names that users know them by."""
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rocking_cli.dynamics.compiled import HISTORIES, PULSES
-from rocking_cli.studies.compiling import Compiled
+from rocking_cli.studies.compiling import CALLED, Compiled
 from rocking_cli.views.view import View
-
-CALLED = {HISTORIES: "histories", PULSES: "exact_pulses"}
-"""The kernels by the name that users know them by."""
 
 
 def view(folder: Path, found: Sequence[Compiled]) -> View:
