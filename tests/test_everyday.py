@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from importlib import import_module
@@ -244,3 +245,75 @@ class TestInfo:
         assert found["cache"] == str(tmp_path / "cache") and found["unwritable"] is None
         assert found["compiled"] == {"histories": False, "exact_pulses": False}
         assert refused["unwritable"] and refused["cache"] == str(tmp_path / "file")
+
+
+class TestCompletion:
+    def asked(self, *words, debug=()):
+        environment = {**os.environ, "_ROCKING_COMPLETE": "bash_complete", "COMP_WORDS": "\n".join(words)}
+        environment["COMP_CWORD"] = str(len(words) - 1)
+        program = [sys.executable, *debug, "-m", "rocking_cli"]
+        ran = subprocess.run(program, env=environment, capture_output=True, text=True, check=True)
+        return {line.partition(",")[2] for line in ran.stdout.splitlines()}, ran
+
+    @pytest.mark.parametrize(
+        ("words", "found"),
+        [
+            (("resp",), {"respond"}),
+            (("mechanisms", "a"), {"arch", "asymmetric_frame"}),
+            (("new", "s"), {"study", "symmetric_frame"}),
+            (("pulse", "--shape", "ric"), {"ricker", "ricker_antisymmetric"}),
+            (("respond", "--pulse", "s"), {"sine:"}),
+            (("respond", "--model", "linear1,"), {"linear1,nonlinear", "linear1,linear2"}),
+            (("spectrum", "--model", "l"), {"linear1", "linear2"}),
+            (("completion", ""), {"bash", "zsh", "fish"}),
+        ],
+    )
+    def test_names_are_completed_and_no_plugin_is_loaded(self, words, found):
+        completed, ran = self.asked("rocking", *words, debug=("-X", "importtime"))
+        assert completed == found
+        loaded = {line.rpartition("|")[2].strip() for line in ran.stderr.splitlines()}
+        assert "click" in loaded and not loaded & {"mechanisms", "numpy", "pydantic", "rocking_cli.excitation.pulses"}
+
+    @pytest.mark.parametrize("words", [("equiv", "x"), ("respond", "--record", "x"), ("draw", "--plot", "x")])
+    def test_files_are_left_to_the_shell(self, words):
+        assert self.asked("rocking", *words)[1].stdout == "file,x\n"
+
+    @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+    def test_the_script_is_that_of_the_shell(self, shell):
+        script = run_json("completion", shell)["script"]
+        assert f"_ROCKING_COMPLETE={shell}_complete" in script
+        assert run("completion", shell).stdout.strip() == script.strip()
+
+    @pytest.mark.skipif(shutil.which("bash") is None or sys.platform == "win32", reason="no bash")
+    def test_bash_completes_with_it(self, tmp_path):
+        program = tmp_path / "rocking"
+        program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m rocking_cli "$@"\n', encoding="utf-8")
+        program.chmod(0o755)
+        (tmp_path / "script").write_text(run("completion", "bash").stdout, encoding="utf-8")
+        typed = "COMP_WORDS=(rocking new ar); COMP_CWORD=2; _rocking_completion rocking; echo ${COMPREPLY[@]}"
+        environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
+        ran = subprocess.run(["bash", "-c", f". ./script; {typed}"], env=environment, capture_output=True, text=True)
+        assert ran.stdout == "arch\n", ran.stderr
+
+
+def test_the_study_to_start_from_runs_beside_a_block(tmp_path):
+    (tmp_path / "block.yaml").write_text(run("new", "block").stdout, encoding="utf-8")
+    (tmp_path / "study.yaml").write_text(run("new", "study").stdout, encoding="utf-8")
+    assert run_json("new", "study")["yaml"] == (tmp_path / "study.yaml").read_text(encoding="utf-8")
+    found = run_json("fragility", "study.yaml")
+    assert found["finished"] == found["runs"] > 0 and found["failed"] == 0
+    assert {each["limit_state"] for each in found["curves"]} == {"uplift", 0.5, "overturning"}
+
+
+def test_what_is_left_out_of_the_study_to_start_from_can_be_put_in(tmp_path):
+    for each in ("block", "wall"):
+        (tmp_path / f"{each}.yaml").write_text(run("new", each).stdout, encoding="utf-8")
+    (tmp_path / "records").mkdir()
+    (tmp_path / "records" / "one.AT2").write_bytes(Path(ACCEL).read_bytes())
+    (tmp_path / "accel.txt").write_text("\n".join(f"0.{k % 7}" for k in range(50)), encoding="utf-8")
+    head, body = run("new", "study").stdout.split("name:")
+    full = re.sub(r"^( *)# ( *(- |[a-z]+:))", r"\1\2", body, flags=re.M)
+    assert full.count("\n  - ") > body.count("\n  - ") and "\nsamples: 10" in full and "\nhazard:" in full
+    (tmp_path / "study.yaml").write_text(f"{head}name:{full}", encoding="utf-8")
+    checked = run_json("fragility", "study.yaml", "--check")
+    assert checked["runs"] == 15 * 2 * 11 * (1 + 10)

@@ -21,7 +21,7 @@ from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "respond", "margin", "animate", "pulse", "overturning", "spectrum",
-    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "new", "info", "warm",
+    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "new", "info", "warm", "completion",
 )  # fmt: skip
 DO_WITHOUT = ("info",)
 """Commands that run whatever is wrong with the user's defaults."""

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import terminal
+from rocking_cli.cli import complete, terminal
 from rocking_cli.cli.quantities import AMPLITUDE, INTERVAL, PERIOD, PGA, PGV, Finite, Quantity, Share, Unit
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -57,6 +57,7 @@ def out(*suffixes: str, what: str, required: bool = False, metavar: str | None =
         required=required,
         callback=output_path(*suffixes),
         metavar=metavar or f"FILE{suffixes[0]}",
+        shell_complete=complete.files,
         help=what,
     )
 
@@ -67,6 +68,7 @@ def plot(what: str, more: str = "") -> Decorator:
         "--plot",
         callback=output_path(".png", ".svg", ".pdf"),
         metavar="FILE.png",
+        shell_complete=complete.files,
         help=f"{what} (.png, .svg or .pdf).{'  ' * bool(more)}{more}",
     )
 
@@ -130,11 +132,11 @@ def _in_order(*decorators: Decorator) -> Decorator:
 
 ground_motions: Decorator = _in_order(
     click.option(
-        "--record", "records", multiple=True, metavar="PLACE",
+        "--record", "records", multiple=True, metavar="PLACE", shell_complete=complete.files,
         help="A ground motion, - for standard input, or a pattern in quotes: 'records/*.AT2'. May be repeated.",
     ),
     click.option(
-        "--pulse", "pulses", multiple=True, metavar="PULSE",
+        "--pulse", "pulses", multiple=True, metavar="PULSE", shell_complete=complete.shapes(":"),
         help="A pulse for one, NAME:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s. May be repeated.",
     ),
 )  # fmt: skip
@@ -183,6 +185,7 @@ shape: Decorator = click.option(
     default="sine",
     show_default=True,
     metavar="SHAPE",
+    shell_complete=complete.shapes(),
     help="Of the pulse: sine, cosine, half_sine, rectangular, ricker, ... with what it takes besides.",
 )
 

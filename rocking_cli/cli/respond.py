@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli import complete, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, History, Near, Output, Vertical
 from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
@@ -82,7 +82,13 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     help="Start at rest from this fraction of phi_cr; negative: anticlockwise.",
 )
 @click.option(
-    "--model", "models", default=",".join(NAMES), show_default=True, callback=_models, help="Which histories."
+    "--model",
+    "models",
+    default=",".join(NAMES),
+    show_default=True,
+    callback=_models,
+    shell_complete=complete.listed(NAMES),
+    help="Which histories.",
 )
 @click.option(
     "--tail",
