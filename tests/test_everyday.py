@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -14,9 +15,10 @@ from time import monotonic
 
 import click
 import pytest
+from click.testing import CliRunner
 
 from rocking_cli.cli import defaults
-from rocking_cli.cli.main import COMMANDS
+from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.dynamics import compiled
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -35,10 +37,6 @@ def test_the_package_runs_as_the_command_does():
 
 class TestSwitchesOfTheProgram:
     def debugged(self, *arguments):
-        from click.testing import CliRunner
-
-        from rocking_cli.cli.main import main
-
         return CliRunner().invoke(main, list(arguments))
 
     @pytest.mark.parametrize("wrong", [("equiv", "none.yaml"), ("equiv", "--none"), ("respond", BLOCK)])
@@ -137,8 +135,8 @@ class TestDefaults:
         def command(ctx, jobs):
             Running(jobs, "tcp://there", None, False)
 
-        assert "cluster has as many" in click.testing.CliRunner().invoke(command, ["--jobs", "2"]).output
-        assert click.testing.CliRunner().invoke(command, [], default_map={"jobs": "2"}).exit_code == 0
+        assert "cluster has as many" in CliRunner().invoke(command, ["--jobs", "2"]).output
+        assert CliRunner().invoke(command, [], default_map={"jobs": "2"}).exit_code == 0
 
     def test_the_options_that_can_have_one_are_options(self):
         options: dict[str, set[str]] = {}
@@ -317,3 +315,75 @@ def test_what_is_left_out_of_the_study_to_start_from_can_be_put_in(tmp_path):
     (tmp_path / "study.yaml").write_text(f"{head}name:{full}", encoding="utf-8")
     checked = run_json("fragility", "study.yaml", "--check")
     assert checked["runs"] == 15 * 2 * 11 * (1 + 10)
+
+
+def piped(*arguments, given, code=0):
+    result = CliRunner().invoke(main, [str(each) for each in arguments], input=given)
+    assert result.exit_code == code, result.output
+    assert "Traceback" not in result.stderr
+    return result
+
+
+class TestStandardStreams:
+    @pytest.mark.parametrize(
+        "command",
+        [
+            ("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0"),
+            ("spectrum", BLOCK, "--pulse", "sine:0.5g:1s", "--sizes", "2:3:2"),
+            ("overturning", BLOCK, "--points", "6"),
+            ("equivalent", BLOCK, str(EXAMPLES / "wall.yaml"), "--ag", "0.6g", "--period", "0.8"),
+        ],
+        ids=lambda command: command[0],
+    )
+    def test_a_table_goes_to_standard_output_and_nothing_else_does(self, command):
+        run(*command, "--out", "there.csv")
+        table = Path("there.csv").read_bytes()
+        shown = run(*command)
+        assert table and CliRunner().invoke(main, [*command, "--out", "-"]).stdout_bytes == table
+        assert run(*command, "--out", "-", "--json").stdout_bytes == table
+        assert shown.stdout.strip() in run(*command, "--out", "-").stderr
+        assert not Path("-").exists()
+
+    def test_after_it_results_are_on_standard_output_again(self):
+        run("overturning", BLOCK, "--points", "6", "--out", "-")
+        assert run("equiv", BLOCK).stdout
+
+    def test_the_runs_of_a_study_go_there_too(self):
+        Path("block.yaml").write_text(run("new", "block").stdout, encoding="utf-8")
+        Path("study.yaml").write_text(run("new", "study").stdout, encoding="utf-8")
+        run("fragility", "study.yaml")
+        run("results", "study.db", "--out", "runs.csv")
+        assert run("results", "study.db", "--out", "-").stdout_bytes == Path("runs.csv").read_bytes()
+
+    def test_several_motions_have_several_tables_and_a_picture_is_none(self):
+        several = ("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--pulse", "sine:0.4g:1s", "--out", "-")
+        assert "--out - is for one motion" in run(*several, code=2).stderr
+        assert "does not end in .html" in run("report", BLOCK, "-o", "-", code=2).stderr
+
+    @pytest.mark.parametrize("command", [("equiv",), ("error",), ("draw",), ("respond", "--release", "0.3")])
+    def test_a_structure_comes_from_standard_input(self, command):
+        given = Path(BLOCK).read_text(encoding="utf-8")
+        assert piped(*command, "-", "--json", given=given).stdout == run(*command, BLOCK, "--json").stdout
+
+    def test_a_report_holds_what_came_from_there(self):
+        there = json.loads(piped("report", "-", "--json", given=Path(BLOCK).read_bytes()).stdout)["structure"]
+        assert there == {**run_json("report", BLOCK)["structure"], "file": "standard input"}
+
+    def test_files_that_are_made_of_it_have_a_name_of_their_own(self):
+        piped("draw", "-", given=Path(BLOCK).read_text(encoding="utf-8"))
+        assert Path("rocking.png").exists()
+
+    def test_what_is_wrong_with_it_is_said_and_it_is_one_thing(self):
+        assert "standard input:2:" in piped("equiv", "-", given="mechanism: block\nwidht: 3\n", code=2).stderr
+        both = ("respond", "-", "--record", "-")
+        said = piped(*both, given=Path(BLOCK).read_text(encoding="utf-8"), code=2).stderr
+        assert "can be read once only, and something else has been read from it" in said
+        assert "larger than 1 MB" in piped("equiv", "-", given="#" * 1_000_001, code=2).stderr
+
+    def test_a_record_is_read_by_defaults_from_there_too(self, monkeypatch):
+        monkeypatch.setenv("ROCKING_UNITS", "m/s2")
+        monkeypatch.setenv("ROCKING_DT", "0.02")
+        bare = "\n".join(f"{k % 7 - 3}.5" for k in range(50))
+        assert json.loads(piped("record", "-", "--json", given=bare).stdout)["dt"] == 0.02
+        own = Path(ACCEL).read_text(encoding="utf-8")
+        assert json.loads(piped("record", "-", "--json", given=own).stdout)["dt"] == 0.01

@@ -174,9 +174,8 @@ class Output:
     def write(self, table: Callable[[], Iterable[Columns]], draw: Callable[[], Figure]) -> None:
         """Write the table and the picture that are asked for, each made only then, and say so."""
         if self.out is not None:
-            from rocking_cli.io.tables import write_table
+            from rocking_cli.cli import tables
 
-            write_table(self.out, table())
-            terminal.note(f"wrote {self.out}")
+            tables.write(self.out, table())
         if self.plot is not None:
             write_picture(self.plot, draw())

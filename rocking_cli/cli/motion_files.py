@@ -15,6 +15,7 @@ import click
 
 from rocking_cli.cli import terminal
 from rocking_cli.cli.defaults import from_default
+from rocking_cli.cli.options import STANDARD_OUTPUT
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import FEW
@@ -79,12 +80,14 @@ def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
 def read(file: str | Path, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
     """Read a record; what of its reading is a default, and was not typed, holds only where the file does not say."""
     from rocking_cli.excitation.records import read_record
+    from rocking_cli.excitation.records.opening import allow_again
 
     given: dict[str, Any] = {"dt": dt, "units": units, "channel": channel}
     typed = {name: None if from_default(name) else value for name, value in given.items()}
     if typed != given:
         with suppress(InputError):
             return read_record(file, **typed)
+        allow_again(file)
     return read_record(file, **given)
 
 
@@ -213,6 +216,8 @@ def separate(path: Path | None, chosen: Sequence[Scaled | None], *, several: boo
     """Where the file of each motion goes: of several beside the one asked for, `out-accel.csv` for `out.csv`."""
     if path is None or not several:
         return [path] * len(chosen)
+    if str(path) == STANDARD_OUTPUT:
+        raise click.UsageError("--out - is for one motion: of several give a file, and each has its own beside it.")
     taken: dict[str, Path] = {}
     for each in chosen:
         assert each is not None

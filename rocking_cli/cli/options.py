@@ -13,6 +13,7 @@ import click
 from rocking_cli.cli import complete, terminal
 from rocking_cli.cli.quantities import AMPLITUDE, INTERVAL, PERIOD, PGA, PGV, Finite, Quantity, Share, Unit
 
+STANDARD_OUTPUT = "-"
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 as_json: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
@@ -33,7 +34,10 @@ def share(ctx: click.Context, param: click.Parameter, value: float) -> float:
 
 
 def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str | None], Path | None]:
-    """A callback for an output file: its suffix must be one of these, and its folder must take a file."""
+    """A callback for an output file: its suffix must be one of these, and its folder must take a file.
+
+    Of a table in text it may be - for standard output: `tables.write` knows.
+    """
 
     def check(ctx: click.Context, param: click.Parameter, value: str | None) -> Path | None:
         from rocking_cli.io.files import check_writable
@@ -41,6 +45,8 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
         if value is None:
             return None
         path = Path(value)
+        if value == STANDARD_OUTPUT and ".csv" in suffixes:
+            return path
         if path.suffix.lower() not in suffixes:
             raise click.BadParameter(f"{value!r} does not end in {' or '.join(suffixes)}.", ctx, param)
         check_writable(path)
@@ -58,7 +64,7 @@ def out(*suffixes: str, what: str, required: bool = False, metavar: str | None =
         callback=output_path(*suffixes),
         metavar=metavar or f"FILE{suffixes[0]}",
         shell_complete=complete.files,
-        help=what,
+        help=what + ("  - is standard output." if ".csv" in suffixes else ""),
     )
 
 

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Protocol, TextIO
+from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TextIO
 
 import click
 
@@ -40,6 +40,17 @@ def results_only() -> Iterator[None]:
             yield
     finally:
         _results = before
+
+
+@contextmanager
+def results_as_bytes() -> Iterator[BinaryIO]:
+    """Standard output for one result as a file; all else that this module prints goes to standard error after it."""
+    global _results
+    text: Any = _results or sys.stdout
+    text.flush()
+    _results = sys.stderr
+    yield text.buffer
+    text.flush()
 
 
 def result(text: str = "") -> None:
