@@ -112,6 +112,13 @@ class TestDefaults:
         monkeypatch.setenv("ROCKING_TAIL", "long")
         assert "ROCKING_TAIL: 'long' is no time" in run(*PULSE, code=2).stderr
 
+    def test_an_option_that_does_not_go_with_others_is_said_to_be_a_default(self, tmp_path):
+        (tmp_path / "rocking.toml").write_text("[respond]\npolarity = 'both'\n", encoding="utf-8")
+        said = " ".join(run("respond", BLOCK, "--release", "0.5", code=2).stderr.split())
+        assert "Nobody typed --polarity both: it is a default, rocking.toml: [respond] polarity." in said
+        typed = run("respond", BLOCK, "--release", "0.5", "--polarity", "-1", code=2).stderr
+        assert "Nobody" not in typed
+
     def test_a_list_is_what_is_typed_with_commas(self, tmp_path):
         (tmp_path / "rocking.toml").write_text("[respond]\nmodel = ['linear1', 'linear2']\n", encoding="utf-8")
         found = run_json("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0")

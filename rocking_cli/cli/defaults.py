@@ -7,6 +7,7 @@ of a command in a file before what the same file says of all.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,12 +24,12 @@ PREFIX = "ROCKING_"
 LARGEST = 1_000_000  # bytes of a file
 
 EVERYWHERE = (
-    "units", "dt", "channel", "neighbours", "within-amplitude", "within-restitution", "tail", "rtol", "shape", "points",
+    "units", "dt", "channel", "neighbours", "within-amplitude", "within-restitution", "tail", "rtol", "points",
     "fractiles", "fps", "speed", "jobs", "format",
 )  # fmt: skip
 """Options that mean the same in every command that has them. Those that say what is asked, read or written are none."""
-IN_TABLES = ("polarity", "model", "eta", "kappa")
-"""Options whose values differ from command to command: only the table of a command gives them."""
+IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")
+"""Options that differ from command to command: only the table of a command gives them."""
 OTHERS = ("DEBUG",)
 """Other variables of the environment that mean something."""
 
@@ -141,6 +142,13 @@ def blame(error: click.BadParameter) -> InputError | None:
         return None
     default = of_run(error.ctx).get(error.param.name or "")
     return InputError(Problem(error.message.rstrip("."), default.key)) if default is not None else None
+
+
+def whose(error: click.UsageError) -> str:
+    """Which options that an error names nobody typed, to be said after it; empty if there are none."""
+    taken = of_run(error.ctx).values() if error.ctx is not None else ()
+    named = [each for each in taken if re.search(rf"--{each.option}(?![\w-])", error.message)]
+    return "".join(f" Nobody typed --{each.option} {each.value}: it is a default, {each.key}." for each in named)
 
 
 def _of_file(file: Path, commands: tuple[str, ...], problems: list[Problem]) -> Iterator[Default]:

@@ -115,7 +115,8 @@ class LazyGroup(click.Group):
                 terminal.error(str(blamed))
                 terminal.debug_traceback(error)
                 ctx.exit(blamed.exit_code)
-            error.message = printable(error.message)  # type: ignore[misc]  # it quotes what was typed
+            more = defaults.whose(error) if isinstance(error, click.UsageError) else ""
+            error.message = printable(error.message + more)  # type: ignore[misc]  # it quotes what was typed
             terminal.debug_traceback(error)
             raise
         except KeyboardInterrupt as stopped:
