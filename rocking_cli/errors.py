@@ -134,6 +134,10 @@ class PluginWarning(UserWarning):
     """A plugin that cannot be used and is left out, while all others go on."""
 
 
+class CacheWarning(UserWarning):
+    """Compiled kernels that cannot be used, and are compiled anew."""
+
+
 class SolverError(RockingError):
     """A solver that could not reach an answer it can stand behind."""
 

@@ -35,6 +35,19 @@ def _in_an_empty_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.fixture(autouse=True)
+def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
+    """No test takes the defaults of whoever runs it: the file that would have them, which is not there."""
+    from rocking_cli.cli import defaults
+
+    for name in [each for each in os.environ if each.startswith("ROCKING_") and each != "ROCKING_RECORDS"]:
+        monkeypatch.delenv(name)
+    file = tmp_path_factory.getbasetemp() / "user" / "rocking.toml"
+    file.unlink(missing_ok=True)
+    monkeypatch.setattr(defaults, "user_file", lambda: file)
+    return file
+
+
 @pytest.fixture(scope="session")
 def frame_report(tmp_path_factory):
     """The report on the example of a frame: its file, and what was printed."""

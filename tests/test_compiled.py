@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from rocking_cli.cli.waiting import say_if_compiling
+from rocking_cli.cli import waiting
 from rocking_cli.dynamics import compiled
 from tests.conftest import EXAMPLES
 
@@ -74,9 +74,12 @@ class TestCache:
         (tmp_path / "cache").touch()
         monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
         compiled.unwritable.cache_clear()
-        say_if_compiling()
-        compiled.unwritable.cache_clear()
+        monkeypatch.setattr(waiting, "_SAID", set())
+        waiting.say_that_it_compiles(compiled.HISTORIES)
         said = capsys.readouterr().err
+        waiting.say_that_it_compiles(compiled.PULSES)
+        compiled.unwritable.cache_clear()
+        assert "NUMBA_CACHE_DIR" not in capsys.readouterr().err  # the remedy is said once
         assert f"again in every process: {tmp_path / 'cache'} cannot be written to" in said
         assert "NUMBA_CACHE_DIR" in said and "once for this machine" not in said
 

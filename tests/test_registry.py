@@ -232,6 +232,16 @@ class TestPluginsThatGoWrong:
         assert run.returncode == 3
         assert re.search(r"plugin leaving_pulse of odd 1\.0 .* cannot be loaded: SystemExit", run.stderr)
 
+    def test_info_names_what_is_broken_and_shows_the_rest(self, odd_plugin):
+        run = rocking(odd_plugin, "info", "--json")
+        assert run.returncode == 0 and "Traceback" not in run.stderr
+        plugins = json.loads(run.stdout)["plugins"]
+        broken = {each["name"]: each["broken"] for kind in plugins.values() for each in kind}
+        assert "cannot be loaded: SystemExit" in broken["leaving_pulse"] and broken["breaking_format"] is not None
+        assert broken["arch"] is None and broken["odd"] is None and broken["peer_at2"] is None
+        assert "odd 1.0" in {each["package"] for each in plugins["mechanisms"]}
+        assert "broken: leaving_pulse" in rocking(odd_plugin, "info").stdout
+
     def test_new_says_what_to_fill_in_where_there_is_no_example(self, odd_plugin):
         run = rocking(odd_plugin, "new", "no_example")
         assert "# Fill in load: the mechanism gives no example.\n" in run.stdout

@@ -103,7 +103,7 @@ def command(
     if not paths and not asked.pulses:
         ctx.exit(InputError.exit_code)
     from rocking_cli.cli import inputs
-    from rocking_cli.cli.waiting import say_if_compiling
+    from rocking_cli.cli.waiting import compile_first
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.picture import picture
     from rocking_cli.views.animation import view
@@ -116,7 +116,7 @@ def command(
         ctx.exit(InputError.exit_code)
     places = motion_files.separate(out, given, several=several)
     keep_apart([("--out", place) for place in places], read)
-    say_if_compiling()
+    compile_first()
     camera = _Camera(structure.model(cast("ModelName", model)), picture(structure.mechanism), pace, near)
     title, rows = heading(structure.mechanism), []
     for each, place in zip(given, places, strict=True):

@@ -51,7 +51,7 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
     from rocking_cli.views.draw import view
 
     if plot is None and not as_json:
-        plot = Path(f"{Path(file).stem if file else 'rocking'}.png")
+        plot = Path(f"{structures.stem(file)}.png")
         check_writable(plot)
     keep_apart([("--plot", plot)], [file])
     mechanism = structures.load([file] if file else [])[0]

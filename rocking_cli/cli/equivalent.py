@@ -83,7 +83,7 @@ def command(
     if files[0] not in good or len(good) < 2:
         raise InputError("the first FILE and one more are needed: the pulse is for the first")
     mechanisms = structures.told_apart(loaded, good)
-    waiting.say_if_compiling()
+    waiting.compile_first()
     found = equivalent(mechanisms, given, polarity=pulse.signs[0], kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
 
     def draw() -> Figure:

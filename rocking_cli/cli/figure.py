@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import options, terminal
+from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import Reading
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 # The numbers stand here again so that `--help` needs no numpy; a test holds them together.
 NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
+OF_HISTORIES = {14, 15}
 
 
 @click.command(
@@ -80,6 +81,10 @@ def command(
 
     wanted = [int(each) for each in (NUMBERS if number == "all" else [number])]
     place = make_folder(out)
+    if OF_HISTORIES & {*wanted}:
+        from rocking_cli.cli.waiting import compile_first
+
+        compile_first()
     made: list[tuple[int, list[str]]] = []
     with terminal.progress(len(wanted), "figures") as advance:
         for each in wanted:
@@ -98,7 +103,7 @@ def _motion(record: str | None, reading: Reading) -> GroundMotion:
     from rocking_cli.excitation.records import read_record
 
     if record is not None:
-        return read_record(record, **vars(reading))
+        return motion_files.read(record, *reading.reading)
     package = Path(__file__).parents[1]
     shipped = package / "data" / "accel.csv"
     return read_record(shipped if shipped.exists() else package.parent / "examples" / "accel.csv")

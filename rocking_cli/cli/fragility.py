@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import endings, options, terminal
+from rocking_cli.cli.defaults import from_default
 from rocking_cli.errors import INCOMPLETE
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ class Running:
     restart: bool
 
     def __post_init__(self) -> None:
-        if self.scheduler is not None and self.jobs is not None:
+        if self.scheduler is not None and self.jobs is not None and not from_default("jobs"):
             raise click.UsageError("--jobs is for this machine: a cluster has as many workers as it has.")
 
     def engine(self) -> AbstractContextManager[Engine]:
@@ -137,7 +138,7 @@ def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
         if prepared.finished == prepared.plan.total:
             return
         if running.scheduler is None:
-            waiting.say_if_compiling()
+            waiting.compile_first()
         engine = engine or stack.enter_context(running.engine())
         done, failed = prepared.finished, prepared.failed
         with terminal.progress(prepared.plan.total, "runs", done=done, failed=failed) as advance:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, cast
 import click
 
 from rocking_cli.cli import terminal
+from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.pictures import write_picture
 
 if TYPE_CHECKING:
@@ -79,8 +80,8 @@ class GroundMotions(Scaling, Reading):
 
     def check(self, vertical: str | None = None) -> None:
         """Refuse what says nothing; `units` and `dt` also read the vertical component, if there is one, of a pulse."""
-        reading = self.reading if vertical is None else (self.channel,)
-        if not self.records and any(value is not None for value in reading):
+        reading = ("units", "dt", "channel") if vertical is None else ("channel",)
+        if not self.records and any(getattr(self, name) is not None and not from_default(name) for name in reading):
             raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
         if not self and self.is_scaled:
             raise click.UsageError(
@@ -173,9 +174,8 @@ class Output:
     def write(self, table: Callable[[], Iterable[Columns]], draw: Callable[[], Figure]) -> None:
         """Write the table and the picture that are asked for, each made only then, and say so."""
         if self.out is not None:
-            from rocking_cli.io.tables import write_table
+            from rocking_cli.cli import tables
 
-            write_table(self.out, table())
-            terminal.note(f"wrote {self.out}")
+            tables.write(self.out, table())
         if self.plot is not None:
             write_picture(self.plot, draw())

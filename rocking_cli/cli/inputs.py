@@ -38,9 +38,7 @@ def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
 
 def read(what: str, file: str | Path, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
     """Read a motion and say what was read; `what` it is to be called."""
-    from rocking_cli.excitation.records import read_record
-
-    motion = read_record(file, dt=dt, units=units, channel=channel)
+    motion = motion_files.read(file, dt, units, channel)
     terminal.note(
         f"{what}: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:g} s, "
         f"in {motion.unit}, PGA = {motion.pga:.4g} g"

@@ -9,26 +9,41 @@ import sys
 import warnings
 from collections.abc import Callable
 from importlib import import_module
+from time import monotonic
 from typing import Any
 
 import click
 
 from rocking_cli import __version__
-from rocking_cli.cli import endings, terminal
-from rocking_cli.errors import InputError, PluginWarning, RockingError
+from rocking_cli.cli import defaults, endings, terminal
+from rocking_cli.errors import CacheWarning, InputError, PluginWarning, RockingError
 from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "respond", "margin", "animate", "pulse", "overturning", "spectrum",
-    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "new",
+    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "new", "info", "warm", "completion",
 )  # fmt: skip
+DO_WITHOUT = ("info",)
+"""Commands that run whatever is wrong with the user's defaults."""
 
 
 class _Context(click.Context):
-    """The context of a command: while its function runs, only the results go to standard output."""
+    """The context of a command: its options have the user's defaults, and only results go to standard output."""
+
+    def __init__(self, *args: Any, **more: Any) -> None:
+        super().__init__(*args, **more)
+        self.refused: InputError | None = None
+        if not self.resilient_parsing:
+            try:
+                defaults.set_for(self, defaults.for_command(self.command, self.info_name or "", COMMANDS))
+            except InputError as error:  # --help does not need them
+                self.refused = error
 
     def invoke(self, callback: Any, /, *args: Any, **named: Any) -> Any:
         """Run the function of a command."""
+        if self.refused is not None and self.info_name not in DO_WITHOUT:
+            raise self.refused
+        defaults.say(self)
         with terminal.results_only(), warnings.catch_warnings():
             warnings.simplefilter("always", PluginWarning)
             warnings.showwarning = _show(warnings.showwarning)
@@ -36,14 +51,14 @@ class _Context(click.Context):
 
 
 def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """Show warnings about plugins as all others of this program."""
+    """Show warnings about plugins, and about what is compiled, as all others of this program."""
 
     def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-        if not issubclass(category, PluginWarning):
+        if not issubclass(category, (PluginWarning, CacheWarning)):
             otherwise(message, category, *where, **more)
             return
         terminal.warning(str(message))
-        terminal.plugin_traceback(message.__cause__ if isinstance(message, Warning) else None)
+        terminal.debug_traceback(message.__cause__ if isinstance(message, Warning) else None)
 
     return show
 
@@ -91,11 +106,18 @@ class LazyGroup(click.Group):
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="replace")  # a name that an old code page cannot spell ends nothing
+        began = monotonic()
         try:
             with endings.in_order():
                 return super().invoke(ctx)
         except click.ClickException as error:
-            error.message = printable(error.message)  # type: ignore[misc]  # it quotes what was typed
+            if isinstance(error, click.BadParameter) and (blamed := defaults.blame(error)) is not None:
+                terminal.error(str(blamed))
+                terminal.debug_traceback(error)
+                ctx.exit(blamed.exit_code)
+            more = defaults.whose(error) if isinstance(error, click.UsageError) else ""
+            error.message = printable(error.message + more)  # type: ignore[misc]  # it quotes what was typed
+            terminal.debug_traceback(error)
             raise
         except KeyboardInterrupt as stopped:
             terminal.error("interrupted")
@@ -103,16 +125,29 @@ class LazyGroup(click.Group):
         except RockingError as error:
             command = self.get_command(ctx, ctx.invoked_subcommand or "")
             terminal.error(terminal.as_typed(str(error), command))
-            terminal.plugin_traceback(error)
+            terminal.debug_traceback(error)
             ctx.exit(error.exit_code)
-        except MemoryError:
+        except MemoryError as error:
             terminal.error("there is not enough memory for this on this machine")
+            terminal.debug_traceback(error)
             ctx.exit(1)
+        except OSError as error:  # what became of it is said further out
+            terminal.debug_traceback(error)
+            raise
+        finally:
+            terminal.detail(f"took {monotonic() - began:.2f} s")
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="rocking")
-def main() -> None:
+@click.option("-v", "--verbose", is_flag=True, help="Say more: where things come from, and how long they take.")
+@click.option(
+    "--debug",
+    is_flag=True,
+    default=lambda: os.environ.get("ROCKING_DEBUG") == "1",
+    help="Show the traceback of any error.",
+)
+def main(verbose: bool, debug: bool) -> None:
     """Rocking structures under earthquakes.
 
     A structure is a YAML file. From it come the equivalent single rocking block, the response to a ground motion,
@@ -135,5 +170,6 @@ def main() -> None:
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
     3 mechanism or plugin, 4 solver, 5 done except for records or runs that are reported; 128 + n ended by signal n.
 
-    ROCKING_DEBUG=1 in the environment shows the traceback of an error that a plugin itself makes.
+    -v and --debug stand before the command: rocking --debug equiv block.yaml. ROCKING_DEBUG=1 in the environment is
+    --debug for every command.
     """

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import options, terminal
+from rocking_cli.cli import complete, options, terminal
 
 if TYPE_CHECKING:
     from rocking_cli.core.registry import Registry
 
 
 @click.command(short_help="List the installed mechanisms, show the fields of one, or check it.")
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=complete.mechanisms())
 @click.argument("file", required=False, type=click.Path())
 @click.option("--check", "checked", is_flag=True, help="Hold NAME to the contract: of its examples, or of FILE.")
 @options.as_json
@@ -58,7 +58,7 @@ def _all(registry: Registry, as_json: bool) -> None:
             title: str | None = registry[name].title
         except MechanismError as error:  # one broken plugin must not hide the others
             terminal.warning(str(error))
-            terminal.plugin_traceback(error)
+            terminal.debug_traceback(error)
             title = None
         found.append(Installed(name, title, registry.package_of(name)))
     terminal.show(installed(found), as_json=as_json)

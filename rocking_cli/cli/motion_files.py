@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from textwrap import shorten
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rocking_cli.cli import terminal
+from rocking_cli.cli.defaults import from_default
+from rocking_cli.cli.options import STANDARD_OUTPUT
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import FEW
@@ -72,6 +75,20 @@ def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
     """Say on standard error what makes a motion doubtful."""
     for doubt in found:
         terminal.warning(f"{motion.name}: {doubt.text}")
+
+
+def read(file: str | Path, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
+    """Read a record; what of its reading is a default, and was not typed, holds only where the file does not say."""
+    from rocking_cli.excitation.records import read_record
+    from rocking_cli.excitation.records.opening import allow_again
+
+    given: dict[str, Any] = {"dt": dt, "units": units, "channel": channel}
+    typed = {name: None if from_default(name) else value for name, value in given.items()}
+    if typed != given:
+        with suppress(InputError):
+            return read_record(file, **typed)
+        allow_again(file)
+    return read_record(file, **given)
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
@@ -140,7 +157,6 @@ def gather(
     from rocking_cli.excitation.doubts import coarse_for, doubts
     from rocking_cli.excitation.measures import measure
     from rocking_cli.excitation.pulses import parse_pulse
-    from rocking_cli.excitation.records import read_record
 
     sources: list[Path | Pulse] = [*paths, *dict.fromkeys(parse_pulse(text) for text in pulses)]
     dt, units, channel = reading
@@ -149,7 +165,7 @@ def gather(
     for source in sources:
         try:
             if isinstance(source, Path):
-                each = Scaled(read_record(source, dt=dt, units=units, channel=channel), 1.0, file=source)
+                each = Scaled(read(source, dt, units, channel), 1.0, file=source)
             else:
                 each = Scaled(source.sampled(), 1.0, pulse=source)
             motion = each.motion
@@ -157,7 +173,7 @@ def gather(
             each = each._replace(factor=factor(motion, measured, *asked))
         except InputError as error:
             terminal.error(str(error))
-            terminal.plugin_traceback(error)
+            terminal.debug_traceback(error)
             continue
         if isinstance(source, Path):
             if any(motion.name == other.motion.name for other in found):
@@ -200,6 +216,8 @@ def separate(path: Path | None, chosen: Sequence[Scaled | None], *, several: boo
     """Where the file of each motion goes: of several beside the one asked for, `out-accel.csv` for `out.csv`."""
     if path is None or not several:
         return [path] * len(chosen)
+    if str(path) == STANDARD_OUTPUT:
+        raise click.UsageError("--out - is for one motion: of several give a file, and each has its own beside it.")
     taken: dict[str, Path] = {}
     for each in chosen:
         assert each is not None

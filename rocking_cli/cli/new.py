@@ -6,21 +6,31 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import options, terminal
+from rocking_cli.cli import complete, options, terminal
 
+STUDY = "study"
+"""Not a mechanism: a study file is printed for it. A mechanism that a package calls so works, and is not printed."""
 UNITS = "A bare number is in the unit in brackets; 800 mm or 12 ft are read too."
 
 
-@click.command(short_help="Print a commented structure file that works as it is.")
-@click.argument("name")
+@click.command(short_help="Print a commented structure file, or study, that works as it is.")
+@click.argument("name", shell_complete=complete.mechanisms(STUDY))
 @options.as_json
 def command(name: str, as_json: bool) -> None:
-    """Print a commented structure file of the mechanism NAME that works as it is.
+    """Print a commented structure file of the mechanism NAME that works as it is; `study` is a fragility study.
+
+    The study is of block.yaml beside it.
 
     \b
     Example:
       rocking new arch > arch.yaml
+      rocking new study > study.yaml
     """
+    if name == STUDY:
+        from rocking_cli.cli.new_study import TEMPLATE
+
+        _print({"study": STUDY, "yaml": TEMPLATE}, as_json=as_json)
+        return
     from rocking_cli.core.registry import Registry
     from rocking_cli.errors import RockingError
     from rocking_cli.structure import parse_structure
@@ -34,11 +44,15 @@ def command(name: str, as_json: bool) -> None:
             f"the examples of the mechanism {name} make no structure, and this file does not work as it is"
         )
         terminal.note(str(error))
-        terminal.plugin_traceback(error)
+        terminal.debug_traceback(error)
+    _print({"mechanism": name, "yaml": text}, as_json=as_json)
+
+
+def _print(made: dict[str, str], *, as_json: bool) -> None:
     if as_json:
-        terminal.print_json({"mechanism": name, "yaml": text})
+        terminal.print_json(made)
     else:
-        terminal.result(text.rstrip("\n"))
+        terminal.result(made["yaml"].rstrip("\n"))
 
 
 def template(cls: Any) -> str:

@@ -10,9 +10,10 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import terminal
+from rocking_cli.cli import complete, terminal
 from rocking_cli.cli.quantities import AMPLITUDE, INTERVAL, PERIOD, PGA, PGV, Finite, Quantity, Share, Unit
 
+STANDARD_OUTPUT = "-"
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 as_json: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
@@ -33,7 +34,10 @@ def share(ctx: click.Context, param: click.Parameter, value: float) -> float:
 
 
 def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str | None], Path | None]:
-    """A callback for an output file: its suffix must be one of these, and its folder must take a file."""
+    """A callback for an output file: its suffix must be one of these, and its folder must take a file.
+
+    Of a table in text it may be - for standard output: `tables.write` knows.
+    """
 
     def check(ctx: click.Context, param: click.Parameter, value: str | None) -> Path | None:
         from rocking_cli.io.files import check_writable
@@ -41,6 +45,8 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
         if value is None:
             return None
         path = Path(value)
+        if value == STANDARD_OUTPUT and ".csv" in suffixes:
+            return path
         if path.suffix.lower() not in suffixes:
             raise click.BadParameter(f"{value!r} does not end in {' or '.join(suffixes)}.", ctx, param)
         check_writable(path)
@@ -57,7 +63,8 @@ def out(*suffixes: str, what: str, required: bool = False, metavar: str | None =
         required=required,
         callback=output_path(*suffixes),
         metavar=metavar or f"FILE{suffixes[0]}",
-        help=what,
+        shell_complete=complete.files,
+        help=what + ("  - is standard output." if ".csv" in suffixes else ""),
     )
 
 
@@ -67,6 +74,7 @@ def plot(what: str, more: str = "") -> Decorator:
         "--plot",
         callback=output_path(".png", ".svg", ".pdf"),
         metavar="FILE.png",
+        shell_complete=complete.files,
         help=f"{what} (.png, .svg or .pdf).{'  ' * bool(more)}{more}",
     )
 
@@ -130,11 +138,11 @@ def _in_order(*decorators: Decorator) -> Decorator:
 
 ground_motions: Decorator = _in_order(
     click.option(
-        "--record", "records", multiple=True, metavar="PLACE",
+        "--record", "records", multiple=True, metavar="PLACE", shell_complete=complete.files,
         help="A ground motion, - for standard input, or a pattern in quotes: 'records/*.AT2'. May be repeated.",
     ),
     click.option(
-        "--pulse", "pulses", multiple=True, metavar="PULSE",
+        "--pulse", "pulses", multiple=True, metavar="PULSE", shell_complete=complete.shapes(":"),
         help="A pulse for one, NAME:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s. May be repeated.",
     ),
 )  # fmt: skip
@@ -183,6 +191,7 @@ shape: Decorator = click.option(
     default="sine",
     show_default=True,
     metavar="SHAPE",
+    shell_complete=complete.shapes(),
     help="Of the pulse: sine, cosine, half_sine, rectangular, ricker, ... with what it takes besides.",
 )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rocking_cli.cli import structures, terminal
 from rocking_cli.cli.groups import SizedPulse
-from rocking_cli.cli.waiting import say_if_compiling
+from rocking_cli.cli.waiting import compile_first
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.pulse_on_structure import Answer, answers, closed_forms, sampled_histories
@@ -21,7 +21,7 @@ def run(file: str | None, given: SizedPulse, *, as_json: bool) -> None:
 
 def _answers(structure: Prepared, pulse: Pulse, polarity: int) -> dict[str, Answer]:
     """What the models say, with a warning of those that no sampling settles."""
-    say_if_compiling()
+    compile_first()
     sampled = sampled_histories(structure, pulse, polarity)
     for name, found in sampled.items():
         if not found.converged:

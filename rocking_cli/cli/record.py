@@ -101,7 +101,7 @@ def command(
             found = asked.of(file)
         except InputError as error:
             terminal.error(str(error))
-            terminal.plugin_traceback(error)
+            terminal.debug_traceback(error)
             continue
         examined += found
         if output.as_json:
@@ -190,10 +190,9 @@ class _Asked:
 
     def of(self, file: str) -> list[Examined]:
         """Read a record, examine it in every polarity, and write what is to be written."""
-        from rocking_cli.excitation.records import read_record
         from rocking_cli.excitation.records.opening import name_of
 
-        motion = read_record(file, **vars(self.reading))
+        motion = motion_files.read(file, *self.reading.reading)
         found = []
         for sign in self.scaling.signs:
             one, scaled = self._examine(name_of(file), motion, sign)

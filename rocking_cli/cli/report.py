@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import inputs, motion_files, options, terminal
+from rocking_cli.cli import defaults, inputs, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Near
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -49,13 +49,14 @@ def command(
     asked.check()
     if not near.neighbours:
         raise click.UsageError("A report says how close a result is: --neighbours must be at least 1 here.")
-    from rocking_cli.cli.waiting import say_if_compiling
+    from rocking_cli.cli import structures
+    from rocking_cli.cli.waiting import compile_first
     from rocking_cli.io.files import check_writable, keep_apart, write_whole
     from rocking_cli.studies.assessment import gather, steps
     from rocking_cli.views.assessment import view
 
     if out is None and not as_json:
-        out = Path(f"{Path(files[0]).stem if files else 'rocking'}.html")
+        out = Path(f"{structures.stem(files[0] if files else None)}.html")
         check_writable(out)
     paths, bad = motion_files.find(asked.records)
     keep_apart([("--out", out)], [*files, *(str(path) for path in paths)])
@@ -68,10 +69,10 @@ def command(
     bad += refused
     if bad and not given:
         ctx.exit(InputError.exit_code)
-    say_if_compiling()
+    compile_first()
     with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
-            structure, _file(structure), given, asked.signs, around=near.around,
+            structure, _file(structure, files), given, asked.signs, around=near.around,
             command=_command_line(ctx), date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"), progress=advance,
         )  # fmt: skip
     if out is not None:
@@ -85,26 +86,31 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _file(structure: Prepared) -> File:
+def _file(structure: Prepared, files: tuple[str, ...]) -> File:
     """The content of the file that a structure stands in."""
     from rocking_cli.cli import structures
+    from rocking_cli.excitation.records.opening import original
     from rocking_cli.studies.assessment import File
 
     if structure.file is None:
         return File("default block", structures.DEFAULT.encode())
-    return File(structure.file, Path(structure.file).read_bytes())
+    return File(structure.file, original(files[0] if files else structure.file))
 
 
 def _command_line(ctx: click.Context) -> str:
-    """The command as it was given, for a POSIX shell."""
+    """The command as it was given, for a POSIX shell, with the user's defaults, which hold nowhere else."""
     from click.core import ParameterSource
 
     said = ["rocking", "report"]
+    taken = defaults.of_run(ctx)
     for param in ctx.command.params:
         value = ctx.params.get(param.name or "")
+        if default := taken.get(param.name or ""):
+            said += [f"--{default.option}", default.value]
         if ctx.get_parameter_source(param.name or "") is not ParameterSource.COMMANDLINE:
             continue
         for each in value if isinstance(value, tuple) else (value,):
             said += [] if isinstance(param, click.Argument) else [param.opts[0]]
             said += [] if each is True else [str(each)]
-    return shlex.join(said)
+    places = ", ".join(f"--{each.option} from {each.place}" for each in taken.values())
+    return shlex.join(said) + (f"  # {places}" if places else "")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli import complete, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, History, Near, Output, Vertical
 from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
@@ -82,7 +82,13 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     help="Start at rest from this fraction of phi_cr; negative: anticlockwise.",
 )
 @click.option(
-    "--model", "models", default=",".join(NAMES), show_default=True, callback=_models, help="Which histories."
+    "--model",
+    "models",
+    default=",".join(NAMES),
+    show_default=True,
+    callback=_models,
+    shell_complete=complete.listed(NAMES),
+    help="Which histories.",
 )
 @click.option(
     "--tail",
@@ -146,7 +152,7 @@ def command(
     if asked and not paths and not asked.pulses:
         ctx.exit(InputError.exit_code)
     from rocking_cli.cli import inputs
-    from rocking_cli.cli.waiting import say_if_compiling
+    from rocking_cli.cli.waiting import compile_first
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.response import Question
@@ -164,7 +170,7 @@ def command(
     outs, plots = (motion_files.separate(path, chosen, several=several) for path in (output.out, output.plot))
     if several:
         keep_apart([*(("--out", each) for each in outs), *(("--plot", each) for each in plots)], read)
-    say_if_compiling()
+    compile_first()
     structure.models(history.names)
     question = Question(asked.signs, history.release, history.tail, history.rtol, history.with_pulse, near.around)
     job = _Job(structure, history.names, question, asked.polarity, several, impacts, output.as_json)

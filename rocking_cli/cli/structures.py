@@ -10,6 +10,8 @@ from rocking_cli.cli import terminal
 from rocking_cli.core import Mechanism
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
+from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
+from rocking_cli.io.yaml_file import decoded
 from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.text import one_line
 
@@ -21,7 +23,7 @@ DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nhei
 
 
 def load(files: Sequence[str]) -> list[Mechanism]:
-    """The structures of the files; without any, that of `rocking.yaml` here, else the default block.
+    """The structures of files, - for standard input; without any, that of `rocking.yaml` here, else the default block.
 
     Raises
     ------
@@ -32,11 +34,11 @@ def load(files: Sequence[str]) -> list[Mechanism]:
     problems: list[Problem] = []
     for file in files or [""]:
         try:
-            found.append(load_structure(file) if files else _unnamed())
+            found.append(_read(file) if files else _unnamed())
         except InputError as error:
             problems += error.problems
         except MechanismError as error:
-            raise MechanismError(f"{file}: {error}") from error
+            raise MechanismError(f"{name_of(file)}: {error}") from error
     if problems:
         raise InputError(*problems)
     for mechanism in found:
@@ -83,8 +85,8 @@ def load_each(files: Sequence[str]) -> tuple[list[Mechanism], list[str], int]:
 
 
 def place(file: str | None) -> str | None:
-    """The file that a structure stands in, given or found here; None for the default block."""
-    return file if file is not None else HERE if Path(HERE).exists() else None
+    """The file that a structure stands in, as messages call it, given or found here; None for the default block."""
+    return name_of(file) if file is not None else HERE if Path(HERE).exists() else None
 
 
 def prepared(files: Sequence[str]) -> Prepared:
@@ -92,6 +94,21 @@ def prepared(files: Sequence[str]) -> Prepared:
     from rocking_cli.dynamics.prepared import Prepared
 
     return Prepared(load(files)[0], place(files[0] if files else None))
+
+
+def stem(file: str | None) -> str:
+    """What to call files that are made of a structure where nobody says."""
+    return "rocking" if file in (None, STANDARD_INPUT) else Path(str(file)).stem
+
+
+def _read(file: str) -> Mechanism:
+    """The structure of a file, or of standard input for `-`."""
+    if file != STANDARD_INPUT:
+        mechanism = load_structure(file)
+        terminal.detail(f"structure: {mechanism.name} ({mechanism.mechanism}), of {Path(file).resolve()}")
+        return mechanism
+    name = name_of(file)
+    return parse_structure(decoded(original(file), name, "structure"), name, "structure")
 
 
 def _unnamed() -> Mechanism:

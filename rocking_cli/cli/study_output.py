@@ -65,8 +65,7 @@ def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Frag
 
 
 def _write(out: Path, store: Store, plan: Plan) -> None:
-    from rocking_cli.io.tables import write_table
+    from rocking_cli.cli import tables
     from rocking_cli.studies.fragility.table import blocks
 
-    write_table(out, blocks(store, plan))
-    terminal.note(f"wrote {out}")
+    tables.write(out, blocks(store, plan))

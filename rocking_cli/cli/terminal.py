@@ -5,13 +5,12 @@ What it is given may quote files and their names: nothing in it commands the ter
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Protocol, TextIO
+from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TextIO
 
 import click
 
@@ -41,6 +40,17 @@ def results_only() -> Iterator[None]:
             yield
     finally:
         _results = before
+
+
+@contextmanager
+def results_as_bytes() -> Iterator[BinaryIO]:
+    """Standard output for one result as a file; all else that this module prints goes to standard error after it."""
+    global _results
+    text: Any = _results or sys.stdout
+    text.flush()
+    _results = sys.stderr
+    yield text.buffer
+    text.flush()
 
 
 def result(text: str = "") -> None:
@@ -80,12 +90,26 @@ def error(text: str) -> None:
     click.echo(click.style("error: ", fg="red", bold=True) + printable(as_typed(text)), err=True)
 
 
-def plugin_traceback(error: BaseException | None) -> None:
-    """The traceback of what a plugin itself raised, for who develops it: if ROCKING_DEBUG is set to 1."""
+def asked(switch: str) -> bool:
+    """Whether a switch of `rocking` itself is on: `debug` or `verbose`."""
+    context = click.get_current_context(silent=True)
+    return bool(context is not None and context.find_root().params.get(switch))
+
+
+def detail(text: str) -> None:
+    """Something that only some want to know: with --verbose."""
+    if asked("verbose"):
+        note(text)
+
+
+def debug_traceback(error: BaseException | None) -> None:
+    """The traceback of an error, with --debug; of what a plugin itself raised, if that is at the bottom of it."""
     from rocking_cli.plugins.errors import own_traceback
 
-    if os.environ.get("ROCKING_DEBUG") == "1" and (told := own_traceback(error)):
-        note(told)
+    if error is not None and asked("debug"):
+        from traceback import format_exception
+
+        note(own_traceback(error) or "".join(format_exception(error)).rstrip("\n"))
 
 
 def width() -> int:
@@ -157,6 +181,19 @@ def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterat
         yield advance
     finally:
         bar.stop()
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Something that moves, and the seconds, while one long piece of work is done; on a terminal only."""
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as moving:
+        moving.add_task(printable(what), total=None)
+        yield
 
 
 def table(

@@ -22,7 +22,7 @@ from typing import Any
 
 import platformdirs
 
-from rocking_cli.errors import InputError
+from rocking_cli.errors import CacheWarning, InputError
 
 
 def cache_folder() -> Path:
@@ -95,7 +95,34 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
     finally:
         config.CACHE_DIR = theirs
     # Where it may not write to its folder within ours, numba would go beside the source.
-    return kept if Path(kept.stats.cache_path).is_relative_to(cache_folder()) else kernel
+    if not Path(kept.stats.cache_path).is_relative_to(cache_folder()):
+        return kernel
+    _mend(kept._cache)
+    return kept
+
+
+def _mend(cache: Any) -> None:
+    """Have a damaged cache emptied, and compiled anew: a full disk leaves halves, on which numba would end."""
+    load = cache.load_overload
+
+    def load_or_empty(*asked: Any) -> Any:
+        try:
+            return load(*asked)
+        except MemoryError:
+            raise
+        except Exception:  # whatever a pickle of half a file raises
+            _say_damaged()
+            cache.flush()
+            return None
+
+    cache.load_overload = load_or_empty
+
+
+@functools.cache
+def _say_damaged() -> None:
+    """Warn, once in this process."""
+    text = f"what is compiled in {cache_folder()} is damaged, and is compiled anew, which takes some ten seconds"
+    warnings.warn(CacheWarning(text), stacklevel=2)
 
 
 def compile_source(

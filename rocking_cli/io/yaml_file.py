@@ -152,8 +152,13 @@ def spell(place: Place) -> str | None:
 
 def read_text(path: Path, what: str) -> str:
     """The text of a file that should be a `what`. Raises `InputError` if there is none."""
-    shown = str(path)
-    raw = read_bytes(path, f"{what} file", LARGEST)
+    return decoded(read_bytes(path, f"{what} file", LARGEST), str(path), what)
+
+
+def decoded(raw: bytes, shown: str, what: str) -> str:
+    """The text in the content of a file, or of what is called so. Raises `InputError` if it is none."""
+    if len(raw) > LARGEST:
+        raise InputError(Problem(f"this is no {what} file: it is larger than {LARGEST / 1e6:.4g} MB", shown))
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # what a redirection writes in older shells of Windows
         raw = raw.decode("utf-16", errors="replace").encode()
     if b"\0" in raw:

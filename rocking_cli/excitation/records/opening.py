@@ -9,7 +9,7 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakSet
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_at_most, read_bytes
@@ -28,6 +28,8 @@ _UNPACK = "unpack it, and give the record in it"
 
 _taken: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
 """What came from standard input, which gives it once."""
+_again: WeakSet[Any] = WeakSet()
+"""Of these, what may be read once more."""
 
 
 class Opened(NamedTuple):
@@ -60,7 +62,7 @@ def name_of(path: str | Path) -> str:
 
 
 def original(path: str | Path) -> bytes:
-    """The bytes of a record file as they came, compressed or not; those of standard input if they were read before.
+    """The bytes of a file as they came, compressed or not; those of standard input if they were read before.
 
     Raises
     ------
@@ -70,6 +72,12 @@ def original(path: str | Path) -> bytes:
     if str(path) == STANDARD_INPUT and sys.stdin in _taken:
         return _taken[sys.stdin]
     return _bytes(path)
+
+
+def allow_again(path: str | Path) -> None:
+    """Have a record that came from standard input read once more: the same one, in another way."""
+    if str(path) == STANDARD_INPUT and sys.stdin in _taken:
+        _again.add(sys.stdin)
 
 
 def open_record(path: str | Path, channel: str | None = None) -> Opened:
@@ -115,8 +123,11 @@ def _from_standard_input() -> bytes:
     stream: Any = sys.stdin
     if stream is None:
         raise InputError(Problem("there is none", file, hint="give a file"))
+    if stream in _again:
+        _again.discard(stream)
+        return _taken[stream]
     if stream in _taken:
-        message = "it can be read once only, and another record has been read from it"
+        message = "it can be read once only, and something else has been read from it"
         raise InputError(Problem(message, file, hint="give one of them as a file"))
     try:
         data = read_at_most(getattr(stream, "buffer", stream), LARGEST)

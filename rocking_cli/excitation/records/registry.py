@@ -74,7 +74,7 @@ def load_readers(group: str = GROUP) -> dict[str, Reader]:
     PluginWarning
         Of each that is left out, once in a process.
     """
-    installed, readers = _Readers(group), dict[str, Reader]()
+    installed, readers = Readers(group), dict[str, Reader]()
     for name in installed:
         try:
             readers[name] = installed[name]
@@ -84,11 +84,25 @@ def load_readers(group: str = GROUP) -> dict[str, Reader]:
     return readers
 
 
-class _Readers(Plugins[Reader]):
+class Readers(Plugins[Reader]):
+    """Record readers by name. Listing names loads nothing; looking one up loads and checks it.
+
+    Raises
+    ------
+    InputError
+        On looking up an unknown name.
+    MechanismError
+        On looking up a plugin that cannot be loaded, is no reader, or has a name that two packages claim.
+    """
+
     kind = "record reader"
+
+    def __init__(self, group: str = GROUP) -> None:
+        super().__init__(group)
 
     @staticmethod
     def accept(loaded: object, point: EntryPoint) -> Reader:
+        """What was loaded, if it is a reader, with its errors named."""
         missing = [word for word in ("sniff", "read") if not callable(getattr(loaded, word, None))]
         missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(loaded, word, None), str)]
         if missing:

@@ -1,0 +1,129 @@
+"""What is installed on this machine, and what of it works."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, requires, version
+from typing import Any
+
+from rocking_cli.core.registry import Registry
+from rocking_cli.dynamics.compiled import cache_folder, needs_compiling, unwritable
+from rocking_cli.errors import RockingError
+from rocking_cli.excitation.pulses import PulseShapes
+from rocking_cli.excitation.records.registry import Readers
+from rocking_cli.plugins.registry import Plugins
+from rocking_cli.studies.compiling import CALLED
+
+OURS = "rocking-cli"
+WITHOUT = ("dev", "docs", "bench")
+"""Extras that add nothing to a command."""
+
+
+@dataclass(frozen=True)
+class Plugin:
+    """An installed mechanism, record reader or pulse shape.
+
+    Parameters
+    ----------
+    name, package : str
+        Its own, and the distribution and version that it comes from.
+    broken : str or None
+        Why it cannot be used.
+    """
+
+    name: str
+    package: str
+    broken: str | None
+
+
+@dataclass(frozen=True)
+class Installation:
+    """What `rocking` is made of here.
+
+    Parameters
+    ----------
+    version, python, platform : str
+        Of this package, the interpreter and the machine.
+    libraries : mapping of str to str or None
+        Version of every package that is needed; None where it is missing.
+    extras : mapping of str to mapping
+        For each extra of the package, those packages likewise.
+    plugins : mapping of str to tuple of Plugin
+        Under `mechanisms`, `records` and `pulses`.
+    cache : str
+        The folder of the compiled kernels.
+    unwritable : str or None
+        Why it cannot be written to.
+    compiled : mapping of str to bool
+        Whether each kernel is compiled already, by the names of `compiling.CALLED`.
+    processors, threads : int
+        Of the machine, and those that this process may use.
+    """
+
+    version: str
+    python: str
+    platform: str
+    libraries: Mapping[str, str | None]
+    extras: Mapping[str, Mapping[str, str | None]]
+    plugins: Mapping[str, tuple[Plugin, ...]]
+    cache: str
+    unwritable: str | None
+    compiled: Mapping[str, bool]
+    processors: int
+    threads: int
+
+
+def examine() -> Installation:
+    """Look at what is installed; nothing that is broken raises."""
+    libraries, extras = _packages()
+    return Installation(
+        version(OURS),
+        f"{platform.python_implementation()} {platform.python_version()}",
+        platform.platform(),
+        libraries,
+        extras,
+        {
+            "mechanisms": _plugins(Registry()),
+            "records": _plugins(Readers()),
+            "pulses": _plugins(PulseShapes()),
+        },
+        str(cache_folder()),
+        unwritable(),
+        {name: not needs_compiling(kernel) for kernel, name in CALLED.items()},
+        os.cpu_count() or 1,
+        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
+    )
+
+
+def _packages() -> tuple[dict[str, str | None], dict[str, dict[str, str | None]]]:
+    """The packages that this one needs, and those of each of its extras, with their versions."""
+    needed: dict[str, str | None] = {}
+    extras: dict[str, dict[str, str | None]] = {}
+    for line in requires(OURS) or []:
+        name, extra = re.match(r"[\w.-]+", line), re.search(r"extra == ['\"]([\w-]+)", line)
+        if name is not None and (extra is None or extra[1] not in WITHOUT):
+            (needed if extra is None else extras.setdefault(extra[1], {}))[name[0]] = _version(name[0])
+    return needed, extras
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _plugins(installed: Plugins[Any]) -> tuple[Plugin, ...]:
+    return tuple(Plugin(name, installed.package_of(name), _broken(installed, name)) for name in installed)
+
+
+def _broken(installed: Plugins[Any], name: str) -> str | None:
+    try:
+        installed[name]
+    except RockingError as error:
+        return str(error)
+    return None

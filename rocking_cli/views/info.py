@@ -1,0 +1,72 @@
+"""What is installed on this machine, as people ask for it and as a report of a fault needs it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from rocking_cli.studies.installation import OURS, Installation, Plugin
+from rocking_cli.views.view import Table, View
+
+
+def view(found: Installation, defaults: Mapping[str, Any]) -> View:
+    """What is installed, and the user's defaults.
+
+    Parameters
+    ----------
+    found : Installation
+        What is installed.
+    defaults : mapping
+        `files`, those that are there; `user_file`, where the user's own would be; `set`, each with `option`, `command`,
+        `value` and `place`; `environment`, variables that change what commands do; `unknown`, those that mean nothing;
+        and `problem`, what is wrong with a file, or None.
+    """
+    data = {**asdict(found), "defaults": defaults}
+    rows = [
+        [OURS, found.version],
+        ["Python", found.python],
+        ["platform", found.platform],
+        ["processors", f"{found.processors}, {found.threads} of them for this process"],
+        *([name, version or "missing"] for name, version in found.libraries.items()),
+        *(_extra(name, packages) for name, packages in found.extras.items()),
+        *(row for kind, plugins in found.plugins.items() for row in _plugins(kind, plugins)),
+        ["compiled code", _cache(found)],
+        ["own defaults", ", ".join(defaults["files"]) or f"no file; {defaults['user_file']} would be one"],
+    ]
+    if defaults["environment"]:
+        rows.append(["environment", " ".join(f"{name}={value}" for name, value in defaults["environment"].items())])
+    parts: list[Table | str] = [Table("", ["what", "here"], rows)]
+    if defaults["set"]:
+        places = [
+            [each["option"], each["value"], each["command"] or "every command", each["place"]]
+            for each in defaults["set"]
+        ]
+        parts.append(Table("Defaults, the first of an option before others", ["option", "value", "of", "from"], places))
+    parts += [f"{name} in the environment means nothing to rocking." for name in defaults["unknown"]]
+    if defaults["problem"]:
+        parts.append(f"The defaults cannot be used: {defaults['problem']}")
+    return View(data, parts)
+
+
+def _extra(name: str, packages: Mapping[str, str | None]) -> list[str]:
+    missing = [package for package, version in packages.items() if version is None]
+    if missing:
+        return [f"extra {name}", f"no {', '.join(missing)}: pip install '{OURS}[{name}]'"]
+    return [f"extra {name}", ", ".join(f"{package} {version}" for package, version in packages.items())]
+
+
+def _plugins(kind: str, plugins: Sequence[Plugin]) -> list[list[str]]:
+    """A line for each package, and one for each that is broken."""
+    packages: dict[str, list[str]] = {}
+    for each in plugins:
+        packages.setdefault(each.package, []).append(each.name)
+    rows = [[kind, f"{', '.join(names)} ({package})"] for package, names in packages.items()]
+    return rows + [[f"broken: {each.name}", each.broken] for each in plugins if each.broken is not None]
+
+
+def _cache(found: Installation) -> str:
+    if found.unwritable is not None:
+        return f"{found.cache} cannot be written to ({found.unwritable}): every process compiles anew"
+    missing = [name.replace("_", " ") for name, ready in found.compiled.items() if not ready]
+    return f"{found.cache}: " + (f"without {' and '.join(missing)}: `rocking warm`" if missing else "all that there is")
