@@ -19,10 +19,10 @@ from rocking_cli.api.verbs import margin as margin
 from rocking_cli.api.verbs import overturning_curves as overturning_curves
 from rocking_cli.api.verbs import overturning_map as overturning_map
 from rocking_cli.api.verbs import record as record
-from rocking_cli.api.verbs import report as report
 from rocking_cli.api.verbs import respond as respond
 from rocking_cli.api.verbs import respond_each as respond_each
 from rocking_cli.api.verbs import spectrum as spectrum
+from rocking_cli.api.verbs import write_report as write_report
 from rocking_cli.core import Body as Body
 from rocking_cli.core import Direction as Direction
 from rocking_cli.core import Equivalence as Equivalence

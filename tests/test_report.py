@@ -353,3 +353,14 @@ class TestSize:
         page = read(out)
         assert len(page.data) == 2 and "facade overturns under Rinaldi228.AT2 (1 of 2 ground motions)" in page.words
         assert max(map(abs, page.data[1]["charts"][1]["series"][0]["y"])) == pytest.approx(0.8741, rel=1e-3)
+
+
+def test_the_head_names_project_place_and_author(tmp_path):
+    out = tmp_path / "r.html"
+    head = ("--project", "Survey <2026>", "--place", "L'Aquila", "--author", "A. & B.")
+    data = run_json("report", *FEW, BLOCK, *head, "-o", out)
+    assert (data["project"], data["place"], data["author"]) == ("Survey <2026>", "L'Aquila", "A. & B.")
+    page = out.read_text(encoding="utf-8")
+    assert "Project: Survey &lt;2026&gt;. Place: L&#39;Aquila. Author: A. &amp; B.." in page
+    run("report", *FEW, BLOCK, "-o", out)
+    assert "Project:" not in out.read_text(encoding="utf-8")

@@ -638,12 +638,15 @@ def fragility(
     return Answer("fragility", curves, shown, columns, figure)
 
 
-def report(
+def write_report(
     structure: Structure,
     motions: Motion | Sequence[Motion] = (),
     file: str | Path = "report.html",
     *,
     polarities: Sequence[int] = (1, -1),
+    project: str | None = None,
+    place: str | None = None,
+    author: str | None = None,
 ) -> Answer[Any]:
     """Write a report: one HTML file that opens in any browser and prints.
 
@@ -657,25 +660,27 @@ def report(
         Where to.
     polarities : sequence of int
         Of 1 and -1.
+    project, place, author : str, optional
+        For the head of the report.
     """
     from datetime import UTC, datetime
 
     from rocking_cli.io.files import check_writable, write_whole
     from rocking_cli.report.page import render
-    from rocking_cli.studies.assessment import File, gather
+    from rocking_cli.studies.assessment import File, TitleBlock, gather
     from rocking_cli.views.assessment import view
 
     check_writable(Path(file))
     ready = _structure(structure)
     text = Path(ready.file).read_bytes() if ready.file is not None else _yaml(ready.mechanism).encode()
     given = [_scaled(each) for each in _each(motions)]
+    today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
     found = gather(
         ready,
         File(ready.file or ready.name, text),
         given,
         polarities,
-        command="rocking_cli.report(...)",
-        date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"),
+        title=TitleBlock("rocking_cli.write_report(...)", today, project, place, author),
     )
     page = render(found).encode()
     write_whole(Path(file), lambda stream: stream.write(page))

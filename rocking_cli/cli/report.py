@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +17,23 @@ from rocking_cli.errors import INCOMPLETE, InputError
 if TYPE_CHECKING:
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.scaled import Scaled
-    from rocking_cli.studies.assessment import File
+    from rocking_cli.studies.assessment import File, TitleBlock
+
+
+@dataclass(frozen=True)
+class Head:
+    """What stands at the head of a report."""
+
+    project: str | None
+    place: str | None
+    author: str | None
+
+    def block(self, command: str) -> TitleBlock:
+        """With the command and the day."""
+        from rocking_cli.studies.assessment import TitleBlock
+
+        today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
+        return TitleBlock(command, today, self.project, self.place, self.author)
 
 
 @click.command(short_help="A document to hand over: one page with all that there is to say.")
@@ -25,13 +42,22 @@ if TYPE_CHECKING:
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse is shown", default="both")
 @options.out(".html", what="Where to.  [default: FILE with .html, in this folder; none with --json]")
+@click.option("--project", metavar="TEXT", help="Of the report: its head names it.")
+@click.option("--place", metavar="TEXT", help="Where the structure stands.")
+@click.option("--author", metavar="TEXT", help="Who hands it over.")
 @options.around
 @options.as_json
 @click.pass_context
-@options.grouped(asked=GroundMotions, near=Near)
+@options.grouped(asked=GroundMotions, head=Head, near=Near)
 def command(
-    ctx: click.Context, files: tuple[str, ...], asked: GroundMotions, out: Path | None, near: Near, as_json: bool
-) -> None:  # fmt: skip
+    ctx: click.Context,
+    files: tuple[str, ...],
+    asked: GroundMotions,
+    out: Path | None,
+    head: Head,
+    near: Near,
+    as_json: bool,
+) -> None:
     """Write a report on a structure: one HTML file that opens in any browser, without a network, and prints.
 
     A summary in words first: will it uplift, will it overturn, how close, which model to trust, what is doubtful. Then
@@ -73,7 +99,7 @@ def command(
     with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
             structure, _file(structure, files), given, asked.signs, around=near.around,
-            command=_command_line(ctx), date=datetime.now(UTC).strftime("%d %B %Y").lstrip("0"), progress=advance,
+            title=head.block(_command_line(ctx)), progress=advance,
         )  # fmt: skip
     if out is not None:
         from rocking_cli.report.page import render

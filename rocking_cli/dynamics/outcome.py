@@ -64,7 +64,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
 
     @property
     def lifted(self) -> Flags:
-        """Whether it moved at all: it uplifted, or was released from a tilt."""
+        """Whether it moved at all, by uplift or by a release from a tilt."""
         return (self.uplift_time >= 0) | self.overturned | (self.peak_ratio > 0)  # type: ignore[operator, no-any-return]
 
     @property

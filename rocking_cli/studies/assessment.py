@@ -61,6 +61,31 @@ class File:
         return self.content.decode("utf-8", errors="replace")
 
 
+@dataclass(frozen=True)
+class TitleBlock:
+    """What stands beside the answer: for whom, by whom and how it was made.
+
+    Parameters
+    ----------
+    command, date : str
+        What wrote it, and when.
+    project, place, author : str, optional
+        As the reader knows them.
+    """
+
+    command: str
+    date: str
+    project: str | None = None
+    place: str | None = None
+    author: str | None = None
+
+    @property
+    def known(self) -> dict[str, str]:
+        """What was given of project, place and author."""
+        given = {"project": self.project, "place": self.place, "author": self.author}
+        return {name: text for name, text in given.items() if text}
+
+
 @dataclass(frozen=True, eq=False)
 class MotionResult:
     """A ground motion and what it does.
@@ -171,10 +196,8 @@ class Assessment:
         What each ground motion does.
     maps : tuple of PulseMap
         One for each shape of pulse; empty if no history can be computed.
-    command : str
-        The command that wrote it.
-    date : str
-        When.
+    title : TitleBlock
+        For whom, by whom and how it was made.
     versions : mapping of str to str
         Of the software.
     """
@@ -188,8 +211,7 @@ class Assessment:
     trust: str
     results: tuple[MotionResult, ...]
     maps: tuple[PulseMap, ...]
-    command: str
-    date: str
+    title: TitleBlock
     versions: Mapping[str, str]
 
     @property
@@ -204,8 +226,7 @@ def gather(
     given: Sequence[Scaled],
     polarities: Sequence[int],
     *,
-    command: str,
-    date: str,
+    title: TitleBlock,
     around: Around | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Assessment:
@@ -221,8 +242,8 @@ def gather(
         The ground motions; may be empty.
     polarities : sequence of int
         Of 1 and -1: those of the motions to look at.
-    command, date : str
-        For the reader: what wrote it, and when.
+    title : TitleBlock
+        For whom, by whom and how it is made.
     around : Around, optional
         How to draw the neighbours of a motion, at least one.
     progress : callable, optional
@@ -257,8 +278,7 @@ def gather(
         trust=said,
         results=tuple(results),
         maps=tuple(maps),
-        command=command,
-        date=date,
+        title=title,
         versions={
             "rocking-cli": version("rocking-cli"),
             f"mechanism {mechanism.mechanism}": _plugin(mechanism),

@@ -42,8 +42,9 @@ def view(content: Assessment) -> View:
             for each, said in zip(content.results, verdicts, strict=True)
         ],
         "linearisation": content.trust,
-        "command": content.command,
-        "date": content.date,
+        **content.title.known,
+        "command": content.title.command,
+        "date": content.title.date,
         "versions": dict(content.versions),
     }
     return View(data, [words.in_a_sentence(content)])
