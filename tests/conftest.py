@@ -31,8 +31,9 @@ for _name, _usual in (("SIGINT", signal.default_int_handler), ("SIGTERM", signal
 
 @pytest.fixture(autouse=True)
 def _in_an_empty_folder(tmp_path, monkeypatch):
-    """No test reads a `rocking.yaml` that happens to lie where pytest was started."""
+    """No test reads a `rocking.yaml` that happens to lie where pytest was started, nor is as wide as its terminal."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("COLUMNS", raising=False)
 
 
 @pytest.fixture(scope="session")

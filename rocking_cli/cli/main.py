@@ -15,6 +15,7 @@ import click
 
 from rocking_cli import __version__
 from rocking_cli.cli import endings, terminal
+from rocking_cli.cli.help import WIDEST, Context
 from rocking_cli.errors import InputError, PluginWarning, RockingError
 from rocking_cli.text import cut, one_line, printable
 
@@ -24,7 +25,7 @@ COMMANDS = (
 )  # fmt: skip
 
 
-class _Context(click.Context):
+class _Context(Context):
     """The context of a command: while its function runs, only the results go to standard output."""
 
     def invoke(self, callback: Any, /, *args: Any, **named: Any) -> Any:
@@ -50,6 +51,8 @@ def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
 
 class LazyGroup(click.Group):
     """Commands live in a module of their name; errors of the package become a message and an exit code."""
+
+    context_class = Context
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names in the order in which a newcomer needs them."""
@@ -95,7 +98,8 @@ class LazyGroup(click.Group):
             with endings.in_order():
                 return super().invoke(ctx)
         except click.ClickException as error:
-            error.message = printable(error.message)  # type: ignore[misc]  # it quotes what was typed
+            said = terminal.beside(printable(error.format_message()), "Error: ")  # it quotes what was typed
+            error.format_message = lambda: said  # type: ignore[method-assign]
             raise
         except KeyboardInterrupt as stopped:
             terminal.error("interrupted")
@@ -110,7 +114,7 @@ class LazyGroup(click.Group):
             ctx.exit(1)
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": WIDEST})
 @click.version_option(__version__, prog_name="rocking")
 def main() -> None:
     """Rocking structures under earthquakes.
