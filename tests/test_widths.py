@@ -167,8 +167,13 @@ class TestSentences:
         assert wrapped("one two three", 9) == "one two\n  three"
         assert wrapped("    one two three", 13) == "    one two\n      three"
         assert wrapped("one:   two three\nthree: four five", 14) == "one:   two\n       three\nthree: four\n       five"
+        assert wrapped("one  two three", 13) == "one  two\n     three"
         assert wrapped("one two", 9, start=4) == "one\n  two"
         assert wrapped("one two three", 3, hang=0) == "one\ntwo\nthree"
+
+    def test_a_traceback_stays_as_it_is(self):
+        traced = 'Traceback (most recent call last):\n  File "a file of somebody.py", line 1'
+        assert wrapped(f"it fails in a word\n{traced}", 12) == f"it fails in\n  a word\n{traced}"
 
     def test_wide_characters_take_two_columns(self):
         assert wrapped("木木木 木木木", 12) == "木木木\n  木木木"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 HANG = 2  # blanks before the lines that go on with a sentence
 DOTS = "..."
-_LABEL = re.compile(r"\w+: +")
+_LABEL = re.compile(r"\w+:? +")
 _UNITS = (
     r"%|°|deg|m?rad(?:/s)?|(?:k|c|d|m)?m(?:/s2?|2|3)?|in(?:/s)?|ft(?:/s2)?|m?s|min|gal|m?g|kg(?: m2?|/m3)?"
     r"|t(?:/m3)?|Mg|lb|[kM]?N(?:/m[23])?|[kMG]?Pa|bar|psi|ksi|MB|phi_cr|times"
@@ -18,6 +18,7 @@ _HELD = re.compile(
     rf"|[-+]?\d[\d.,]*(?:e[-+]?\d+)? (?:{_UNITS})(?![\w/])"
     rf"|[^\s,]+ (?:=|<=|>=|<|>) [^\s,]+(?: (?:{_UNITS})(?![\w/]))?|(?:<=|>=|<|>) [-+]?\d\S*|\bEqs?\. \d\S*"
 )
+_TRACEBACK = "Traceback (most recent call last)"  # is for who writes programs, and stays as it is to its end
 _BLANK = "\0"  # stands for a blank at which no line ends: printable text has none
 
 
@@ -62,31 +63,37 @@ def wrapped(text: str, width: int | None, *, start: int = 0, hang: int = HANG) -
     if width is None:
         return text
     lines = text.split("\n")
-    label = _label(lines)
-    deeper = 0 if label else hang
+    labels = _labels(lines)
     made: list[str] = []
     for k, line in enumerate(lines):
         taken = 0 if k else start
-        if k and lines[k].strip() == "^":  # comes with the line that it marks
+        if line.startswith(_TRACEBACK):
+            return "\n".join([*made, *lines[k:]])
+        if k and line.strip() == "^":  # comes with the line that it marks
             continue
         if k + 1 < len(lines) and lines[k + 1].strip() == "^":
             made += _around(line, lines[k + 1], width)
         elif cells(line) + taken <= width:
             made.append(line)
         else:
-            made += _filled(line, width, taken, label or len(line) - len(line.lstrip()), deeper)
+            made += _filled(line, width, taken, labels[k], hang)
     return "\n".join(made)
 
 
-def _label(lines: list[str]) -> int:
-    """Columns of the labels before texts that begin below one another, as `source:   ...`; 0 if there are none."""
-    found = {len(label[0]) if (label := _LABEL.match(line)) else 0 for line in lines}
-    return found.pop() if len(lines) > 1 and len(found) == 1 else 0
+def _labels(lines: list[str]) -> list[int]:
+    """Columns of the label before each text, as in `source:   ...`; 0 where there is none.
+
+    Two blanks tell a label from a word; of lines that stand below one another the longest label has but one.
+    """
+    wide = [len(found[0]) if (found := _LABEL.match(line)) else 0 for line in lines]
+    sure = {each for each, line in zip(wide, lines, strict=True) if line[:each].endswith("  ")}
+    return [each if each in sure else 0 for each in wide]
 
 
-def _filled(line: str, width: int, taken: int, blanks: int, deeper: int) -> Iterator[str]:
-    """One line in several, below its first characters and so much deeper."""
-    hang = min(blanks + deeper, width // 2)
+def _filled(line: str, width: int, taken: int, label: int, deeper: int) -> Iterator[str]:
+    """One line in several: what goes on hangs below the text after its label, or so much deeper than it begins."""
+    blanks = label or len(line) - len(line.lstrip())
+    hang = min(label or blanks + deeper, width // 2)
     shown = line[:blanks]
     begun = False
     for word in words(line[blanks:], width - hang):
