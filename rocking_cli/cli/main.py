@@ -15,7 +15,7 @@ import click
 
 from rocking_cli import __version__
 from rocking_cli.cli import endings, terminal
-from rocking_cli.cli.help import WIDEST, Context
+from rocking_cli.cli.help import Context
 from rocking_cli.errors import InputError, PluginWarning, RockingError
 from rocking_cli.text import cut, one_line, printable
 
@@ -114,7 +114,7 @@ class LazyGroup(click.Group):
             ctx.exit(1)
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": WIDEST})
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="rocking")
 def main() -> None:
     """Rocking structures under earthquakes.
