@@ -8,7 +8,7 @@ import sys
 from collections import Counter
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rocking_cli.cli import terminal
@@ -147,6 +147,7 @@ def test_a_terminal_says_how_wide_it_is_and_a_file_does_not(tmp_path):
 
 
 class TestSentences:
+    @example(["1", "%%111111111"], 12)
     @given(st.lists(st.text("ab%1", min_size=1, max_size=12), min_size=1, max_size=30), st.integers(12, 60))
     def test_lines_are_no_wider_and_have_the_same_words(self, said, width):
         text = " ".join(said)

@@ -33,11 +33,12 @@ def cells(text: str) -> int:
 
 def words(text: str, most: int) -> list[str]:
     """The pieces of a line between which it may be broken; what is held together is at most so wide."""
-
-    def held(found: re.Match[str]) -> str:
-        return found[0] if cells(found[0]) > most else found[0].replace(" ", _BLANK)
-
-    return [each.replace(_BLANK, " ") for each in _HELD.sub(held, text).split()]
+    held = _HELD.sub(lambda found: found[0].replace(" ", _BLANK), text).split()
+    return [
+        piece
+        for each in held
+        for piece in ([each.replace(_BLANK, " ")] if cells(each) <= most else each.replace(_BLANK, " ").split())
+    ]
 
 
 def wrapped(text: str, width: int | None, *, start: int = 0, hang: int = HANG) -> str:
