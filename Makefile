@@ -5,21 +5,27 @@ BIN := $(VENV)/bin
 ifeq ($(OS),Windows_NT)
 BIN := $(VENV)/Scripts
 endif
+PACKAGE_STAMP := $(VENV)/.installed-package
 STAMP := $(VENV)/.installed
+RELEASE_STAMP := $(VENV)/.installed-release
 DOCS_STAMP := $(VENV)/.installed-docs
 
 .PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz lint type contracts check bench validation stub pictures \
-	docs clean
+	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
-$(STAMP): pyproject.toml
+$(PACKAGE_STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -c "import pathlib; pathlib.Path('$(PACKAGE_STAMP)').touch()"
+
+$(STAMP): $(PACKAGE_STAMP)
 	$(BIN)/python -m pip install --quiet --editable ".[dev]"
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(STAMP)').touch()"
 
-demo: setup  ## The main job on the shipped example: equiv, respond with a plot, pulse
+demo: $(PACKAGE_STAMP)  ## The main job on the shipped example: equiv, respond with a plot, pulse
 	$(BIN)/python -c "import pathlib; pathlib.Path('out').mkdir(exist_ok=True)"
 	$(BIN)/rocking equiv examples/frame.yaml
 	$(BIN)/rocking respond examples/frame.yaml --record examples/accel.csv --plot out/response.png --out out/history.csv
@@ -84,5 +90,12 @@ docs: $(DOCS_STAMP)  ## The documentation as a site, out/site/index.html; every 
 	$(BIN)/python docs/make_python.py
 	$(BIN)/python -m sphinx -W --keep-going -E -q -b html -d out/doctrees docs out/site
 
+$(RELEASE_STAMP): $(PACKAGE_STAMP)
+	$(BIN)/python -m pip install --quiet --editable ".[release]"
+	$(BIN)/python -c "import pathlib; pathlib.Path('$(RELEASE_STAMP)').touch()"
+
+release: $(RELEASE_STAMP)  ## dist/: source distribution and wheel, checked, installed elsewhere and tried there
+	$(BIN)/python scripts/release.py
+
 clean:
-	$(PYTHON) -c "import shutil; [shutil.rmtree(p, ignore_errors=True) for p in ('$(VENV)', 'out', 'docs/_generated', '.mypy_cache', '.ruff_cache', '.pytest_cache')]"
+	$(PYTHON) -c "import shutil; [shutil.rmtree(p, ignore_errors=True) for p in ('$(VENV)', 'out', 'dist', 'docs/_generated', '.mypy_cache', '.ruff_cache', '.pytest_cache')]"

@@ -18,7 +18,6 @@ from contextlib import chdir, contextmanager
 from itertools import chain
 from math import isclose
 from pathlib import Path
-from textwrap import fill
 from typing import Any
 from unittest.mock import patch
 
@@ -91,8 +90,7 @@ def run(shown: dict[str, str], folder: Path) -> dict[str, list[Entry]]:
             done = CliRunner().invoke(main, arguments[:-2] if into else arguments, env={"COLUMNS": str(WIDTH)})
             if done.exit_code != 0:
                 raise SystemExit(f"`{command}` ended with exit code {done.exit_code}:\n{done.output}")
-            # Sentences are broken here, as a terminal would; tables are no wider.
-            lines = [fill(line, WIDTH) if len(line) > WIDTH else line.rstrip() for line in done.stdout.splitlines()]
+            lines = [line.rstrip() for line in done.stdout.splitlines()]
             for file in filter(None, (f"{name}.txt", into)):
                 Path(file).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
             if "--plot" in arguments:

@@ -22,6 +22,9 @@ FORMATS = RECORDS / "formats"
 NEEDS_RECORDS = pytest.mark.skipif(not FORMATS.is_dir(), reason=f"no real records in {RECORDS} (ROCKING_RECORDS)")
 
 
+# What tests read is as in a pipe, where no line is broken; those of widths say how wide they are.
+os.environ.pop("COLUMNS", None)
+
 # Whoever runs the tests in the background, or under nohup, has these ignored, and their children with them.
 for _name, _usual in (("SIGINT", signal.default_int_handler), ("SIGTERM", signal.SIG_DFL), ("SIGHUP", signal.SIG_DFL)):
     _number = getattr(signal, _name, None)

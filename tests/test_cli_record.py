@@ -69,7 +69,8 @@ class TestWhatIsShown:
         text = run("record", *files, "--dt", "0.01").stdout
         assert max(map(len, text.splitlines())) <= width
         assert all(f"0.{k + 1} " in text for k in range(5))  # each PGA
-        assert text.count("PGV") == {60: 3, 80: 2, 200: 1}[width]
+        assert text.count("PGV") == {60: 5, 80: 5, 200: 2}[width]
+        assert all(file.name in text for file in files)  # in one piece
 
     def test_a_channel_is_named(self, tmp_path):
         rows = "".join(f"{value:8.1f}" for value in (0.0, 100.0, -100.0, 0.0))

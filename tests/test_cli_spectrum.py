@@ -99,8 +99,8 @@ class TestTables:
         monkeypatch.setenv("COLUMNS", "60")
         text = run(BLOCK, "--slenderness", "0.15,0.3", "--record", records, *QUICK, "--fractiles", "0.25").stdout
         assert all(word in text for word in ("median", "25 %", "2 of 3", "as given", " R ", "[m]", "alpha = 0.3:"))
-        assert "pedestal, 2 pi/p = 2.78 s: 1 of 3 motions overturn it (r2.csv)" in text
-        assert max(map(len, text.split("pedestal, 2 pi/p")[0].splitlines()[3:12])) <= 60
+        assert "pedestal, 2 pi/p = 2.78 s: 1 of 3 motions overturn it (r2.csv)" in " ".join(text.split())
+        assert max(map(len, text.splitlines())) <= 60
 
     def test_what_larger_and_smaller_ones_do(self):
         weak = run(BLOCK, "--record", ACCEL, "--scale", "0.01").stdout

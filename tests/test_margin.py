@@ -172,7 +172,7 @@ class TestCommand:
     @pytest.mark.parametrize("width", ["40", "80", "200"])
     def test_the_table_has_a_row_each(self, width, monkeypatch):
         monkeypatch.setenv("COLUMNS", width)
-        text = run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5).stdout
+        text = " ".join(run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5).stdout.split())
         assert "accel.csv" in text and "the share of the 5 motions next to each" in text
 
     def test_a_picture(self, tmp_path):

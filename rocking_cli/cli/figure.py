@@ -95,7 +95,7 @@ def command(
         terminal.print_json({"figures": [{"figure": each, "files": files} for each, files in made]})
         return
     for each, files in made:
-        terminal.result(f"figure {each}: {', '.join(files)}")
+        terminal.sentence(f"figure {each}: {', '.join(files)}")
 
 
 def _motion(record: str | None, reading: Reading) -> GroundMotion:

@@ -174,8 +174,8 @@ class Output:
     def write(self, table: Callable[[], Iterable[Columns]], draw: Callable[[], Figure]) -> None:
         """Write the table and the picture that are asked for, each made only then, and say so."""
         if self.out is not None:
-            from rocking_cli.cli import tables
+            from rocking_cli.cli import table_files
 
-            tables.write(self.out, table())
+            table_files.write(self.out, table())
         if self.plot is not None:
             write_picture(self.plot, draw())

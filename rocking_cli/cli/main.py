@@ -16,6 +16,7 @@ import click
 
 from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
+from rocking_cli.cli.help import Context
 from rocking_cli.errors import CacheWarning, InputError, PluginWarning, RockingError
 from rocking_cli.text import cut, one_line, printable
 
@@ -27,7 +28,7 @@ DO_WITHOUT = ("info",)
 """Commands that run whatever is wrong with the user's defaults."""
 
 
-class _Context(click.Context):
+class _Context(Context):
     """The context of a command: its options have the user's defaults, and only results go to standard output."""
 
     def __init__(self, *args: Any, **more: Any) -> None:
@@ -65,6 +66,8 @@ def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
 
 class LazyGroup(click.Group):
     """Commands live in a module of their name; errors of the package become a message and an exit code."""
+
+    context_class = Context
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names in the order in which a newcomer needs them."""
@@ -116,7 +119,9 @@ class LazyGroup(click.Group):
                 terminal.debug_traceback(error)
                 ctx.exit(blamed.exit_code)
             more = defaults.whose(error) if isinstance(error, click.UsageError) else ""
-            error.message = printable(error.message + more)  # type: ignore[misc]  # it quotes what was typed
+            # It quotes what was typed.
+            said = terminal.beside(printable(error.format_message() + more), "Error: ")
+            error.format_message = lambda: said  # type: ignore[method-assign]
             terminal.debug_traceback(error)
             raise
         except KeyboardInterrupt as stopped:

@@ -65,7 +65,7 @@ def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Frag
 
 
 def _write(out: Path, store: Store, plan: Plan) -> None:
-    from rocking_cli.cli import tables
+    from rocking_cli.cli import table_files
     from rocking_cli.studies.fragility.table import blocks
 
-    tables.write(out, blocks(store, plan))
+    table_files.write(out, blocks(store, plan))

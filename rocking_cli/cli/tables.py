@@ -1,25 +1,96 @@
-"""Where a table goes that is asked for with --out: into a file, or to standard output for `-`."""
+"""How a table of the result is laid out in the width of a terminal: as a grid, or as a block of lines for each row."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Sequence
 
-from rocking_cli.cli import terminal
-from rocking_cli.cli.options import STANDARD_OUTPUT
+from rocking_cli.cli.prose import HANG, cells, words, wrapped
 
-if TYPE_CHECKING:
-    from rocking_cli.io.tables import Columns
+NARROW = 60  # columns below which no cell is wrapped: there a column has room for a word or two
+READABLE = 18  # columns that a cell keeps when it is wrapped, or all that it needs if that is less
+EDGES = 2  # blanks around a grid
+GAPS = (3, 2)  # blanks between its columns: as people like them, and close
 
 
-def write(out: Path, blocks: Iterable[Columns]) -> None:
-    """Write a table to a file and say so, or as CSV to standard output, and from then on nothing else there."""
-    from rocking_cli.io.tables import write_csv, write_table
+def grid(
+    columns: Sequence[str], rows: Sequence[Sequence[str]], numbers: Collection[int], width: int | None
+) -> tuple[int, list[list[str]]] | None:
+    """The gap between columns and the lines of cells, headings first, that fit a width; None if nothing does.
 
-    if str(out) == STANDARD_OUTPUT:
-        with terminal.results_as_bytes() as stream:
-            write_csv(stream, blocks)
-        return
-    write_table(out, blocks)
-    terminal.note(f"wrote {out}")
+    Parameters
+    ----------
+    columns, rows : sequence
+        Headings, and cells; their line breaks stay.
+    numbers : collection of int
+        Places of columns that never wrap, as the first does not.
+    width : int or None
+        Columns of the terminal; None where there is none, and a row is as long as it is.
+    """
+    lines = [list(columns), *(list(row) for row in rows)]
+    needs = [max(_widest(line[k]) for line in lines) for k in range(len(columns))]
+    for gap in GAPS:
+        if width is None or _whole(needs, gap) <= width:
+            return gap, lines
+    assert width is not None
+    if width < NARROW:
+        return None
+    floors = [
+        need if k == 0 or k in numbers else min(need, max(READABLE, *(_longest(line[k], need) for line in lines)))
+        for k, need in enumerate(needs)
+    ]
+    if _whole(floors, GAPS[-1]) > width:
+        return None
+    while _whole(needs, GAPS[-1]) > width:
+        slack = [need - floor for need, floor in zip(needs, floors, strict=True)]
+        widest = max((k for k in range(len(needs)) if slack[k]), key=lambda k: needs[k])
+        needs[widest] -= 1
+    return GAPS[-1], [
+        ["\n".join(_folded(cell, need)) for cell, need in zip(line, needs, strict=True)] for line in lines
+    ]
+
+
+def stacked(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
+    """A block for each row: its first cell, and below it a line `heading: value` for each other that is not empty."""
+    heads = [each.replace("\n", " ").strip() for each in columns]
+    made = []
+    for row in rows:
+        first, *others = (cell.replace("\n", " ").rstrip() for cell in row)
+        deeper = " " * (len(first) - len(first.lstrip()))
+        lines = [f"{deeper}{heads[0]}: {first.lstrip()}" if heads[0] and first.strip() else first]
+        lines += [
+            f"{deeper}{' ' * HANG}{head}: {cell.strip()}" if head else f"{deeper}{' ' * HANG}{cell.strip()}"
+            for head, cell in zip(heads[1:], others, strict=True)
+            if cell
+        ]
+        made += [wrapped(line, width) for line in lines]
+    return made
+
+
+def _whole(needs: Sequence[int], gap: int) -> int:
+    return sum(needs) + gap * (len(needs) - 1) + EDGES
+
+
+def _widest(cell: str) -> int:
+    return max(cells(line) for line in cell.split("\n"))
+
+
+def _longest(cell: str, most: int) -> int:
+    """How wide the widest word of a cell is."""
+    return max((cells(word) for line in cell.split("\n") for word in words(line, most)), default=0)
+
+
+def _folded(cell: str, width: int) -> list[str]:
+    """The lines of a cell in a width, without hanging."""
+    lines: list[str] = []
+    for line in cell.split("\n"):
+        if cells(line) <= width:
+            lines.append(line)
+            continue
+        shown = ""
+        for word in words(line, width):
+            if shown and cells(shown) + 1 + cells(word) > width:
+                lines.append(shown)
+                shown = ""
+            shown += f" {word}" if shown else word
+        lines.append(shown)
+    return lines

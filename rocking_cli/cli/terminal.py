@@ -5,6 +5,7 @@ What it is given may quote files and their names: nothing in it commands the ter
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TextIO
 
 import click
 
+from rocking_cli.cli.prose import wrapped
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
@@ -21,8 +23,7 @@ if TYPE_CHECKING:
     from rocking_cli.views.view import View
 
 PATIENCE = 1.0  # s of work before it is shown
-NARROW = 76  # columns below which a table's explanations are left out: they would break into syllables
-
+USUAL = 80  # columns of a terminal that does not say how many it has
 
 _results: TextIO | None = None
 
@@ -54,8 +55,13 @@ def results_as_bytes() -> Iterator[BinaryIO]:
 
 
 def result(text: str = "") -> None:
-    """A line of the result."""
+    """A line of the result as it is: of a file, or of what another program reads."""
     click.echo(printable(text), file=_results)
+
+
+def sentence(text: str) -> None:
+    """A sentence of the result, in lines of the terminal's width."""
+    click.echo(wrapped(printable(text), width()), file=_results)
 
 
 def print_json(data: Mapping[str, Any]) -> None:
@@ -77,17 +83,28 @@ def as_typed(text: str, command: click.Command | None = None) -> str:
 
 def note(text: str) -> None:
     """Something to know that is not part of the result."""
-    click.echo(printable(as_typed(text)), err=True)
+    _say(text)
 
 
 def warning(text: str) -> None:
     """Something to be careful about."""
-    click.echo(click.style("warning: ", fg="yellow", bold=True) + printable(as_typed(text)), err=True)
+    _say(text, "warning: ", "yellow")
 
 
 def error(text: str) -> None:
     """What went wrong; a line each for several problems."""
-    click.echo(click.style("error: ", fg="red", bold=True) + printable(as_typed(text)), err=True)
+    _say(text, "error: ", "red")
+
+
+def _say(text: str, prefix: str = "", colour: str | None = None) -> None:
+    """Sentences on standard error, in lines of its terminal's width."""
+    said = beside(printable(as_typed(text)), prefix)
+    click.echo((click.style(prefix, fg=colour, bold=True) if prefix else "") + said, err=True)
+
+
+def beside(text: str, prefix: str) -> str:
+    """A text in lines of the width of standard error, to be said after a prefix."""
+    return wrapped(text, _columns(sys.stderr), start=len(prefix))
 
 
 def asked(switch: str) -> bool:
@@ -109,14 +126,23 @@ def debug_traceback(error: BaseException | None) -> None:
     if error is not None and asked("debug"):
         from traceback import format_exception
 
-        note(own_traceback(error) or "".join(format_exception(error)).rstrip("\n"))
+        click.echo(printable(own_traceback(error) or "".join(format_exception(error)).rstrip("\n")), err=True)
 
 
-def width() -> int:
-    """Columns of the terminal."""
-    from rich.console import Console
+def width() -> int | None:
+    """Columns of the terminal that results go to; None if they go to a pipe or a file, where no line is broken."""
+    return _columns(_results or sys.stdout)
 
-    return Console(file=_results).width
+
+def _columns(stream: TextIO) -> int | None:
+    """Columns of a terminal; what COLUMNS in the environment says goes before, as in other programs."""
+    said = os.environ.get("COLUMNS", "")
+    if said.isdecimal() and int(said) > 0:
+        return int(said)
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or USUAL
+    except (OSError, ValueError):  # no terminal, or nothing that the system knows
+        return None
 
 
 class Advance(Protocol):
@@ -197,60 +223,48 @@ def working(what: str) -> Iterator[None]:
 
 
 def table(
-    title: str,
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str]],
-    *,
-    numbers: Collection[int] = (),
-    explained: bool = False,
-) -> None:
-    """A table of the result.
+    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], *, numbers: Collection[int] = ()
+) -> None:  # fmt: skip
+    """A table of the result: a grid, or a block of lines for each row where the terminal is too narrow for one.
 
     Parameters
     ----------
     title : str
         Printed above it.
     columns : sequence of str
-        Headings; a line break in one, or in a cell, is kept.
+        Headings; a line break in one, or in a cell, is kept in a grid.
     rows : sequence of sequence of str
         Cells.
     numbers : collection of int
         Indexes of columns to align to the right; these and the first never wrap.
-    explained : bool
-        Whether the last column only explains, and may be left out on a narrow terminal.
     """
+    from rocking_cli.cli.tables import grid, stacked
+
+    room, columns = width(), [printable(each) for each in columns]
+    rows = [[printable(cell) for cell in row] for row in rows]
+    if title:
+        click.echo(click.style(wrapped(printable(title), room), bold=True), file=_results)
+    found = grid(columns, rows, numbers, room)
+    if found is not None:
+        _draw(*found, numbers)
+    else:
+        assert room is not None  # else everything fits
+        click.echo("\n".join(["", *stacked(columns, rows, room), ""]), file=_results)
+
+
+def _draw(gap: int, lines: Sequence[Sequence[str]], numbers: Collection[int]) -> None:
     from rich import box
     from rich.console import Console
-    from rich.measure import Measurement
     from rich.table import Table
     from rich.text import Text
 
-    title, columns = printable(title), [printable(each) for each in columns]
-    rows = [[printable(cell) for cell in row] for row in rows]
+    drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, gap - 2))
+    for k, heading in enumerate(lines[0]):
+        drawn.add_column(Text(heading), justify="right" if k in numbers else "left", no_wrap=True)
+    for line in lines[1:]:
+        drawn.add_row(*(Text(cell) for cell in line))
     console = Console(file=_results)
-    if explained and console.width < NARROW:
-        columns, rows = columns[:-1], [row[:-1] for row in rows]
-    drawn = Table(
-        title=Text(title) if title else None,
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        title_style="bold",
-        pad_edge=False,
-    )
-    for k, heading in enumerate(columns):
-        whole = k == 0 or k in numbers
-        drawn.add_column(
-            Text(heading),
-            justify="right" if k in numbers else "left",
-            no_wrap=whole,
-            min_width=max(_widest_line(cell) for cell in [heading, *(row[k] for row in rows)]) if whole else None,
-            overflow="fold",
-        )
-    for row in rows:
-        drawn.add_row(*(Text(cell) for cell in row))
-    # Wider than the terminal rather than with digits cut off.
-    unbounded = console.options.update(max_width=1000)
-    console.width = max(console.width, Measurement.get(console, unbounded, drawn).minimum)
+    console.width = console.measure(drawn, options=console.options.update(max_width=10**6)).maximum
     console.print(drawn)
 
 
@@ -261,10 +275,6 @@ def show(view: View, *, as_json: bool) -> None:
         return
     for part in view.parts:
         if isinstance(part, str):
-            result(part)
+            sentence(part)
         else:
-            table(part.title, part.columns, part.rows, numbers=part.numbers, explained=part.explained)
-
-
-def _widest_line(text: str) -> int:
-    return max(len(line) for line in text.split("\n"))
+            table(part.title, part.columns, part.rows, numbers=part.numbers)

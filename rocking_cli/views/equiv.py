@@ -42,7 +42,7 @@ def view(mechanism: Mechanism, equivalence: Equivalence) -> View:
         for each in PARAMETERS
     ]
     columns = ["", *(name for name, _, _ in shown), "unit", "meaning"]
-    table = Table(heading(mechanism), columns, rows, numbers=range(1, len(shown) + 1), explained=True)
+    table = Table(heading(mechanism), columns, rows, numbers=range(1, len(shown) + 1))
     said = [
         f"{where}critical rotation {degrees(block['phi_cr']):.4g} deg. {advice.why}"
         for where, (_, block, advice) in zip(_where(equivalence), shown, strict=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from textwrap import shorten
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Mechanism
@@ -11,8 +10,6 @@ from rocking_cli.names import percent
 from rocking_cli.studies.margin import LEVELS, Margin, in_words
 from rocking_cli.studies.neighbours import Around
 from rocking_cli.views.view import FEW, Table, View, heading, number
-
-NAME = 36  # characters of a motion's name in the table
 
 
 class Row(NamedTuple):
@@ -30,7 +27,7 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
     heads += [f"{percent(level)}\nfrom" for level in LEVELS] + [f"below\n{percent(level)} to" for level in LEVELS]
     cells = [
         [
-            shorten(row.name, NAME, placeholder=" ..."),
+            row.name,
             f"{row.pga:.3g}",
             number(row.margin.uplift, 3),
             percent(row.margin.itself),

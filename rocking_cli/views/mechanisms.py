@@ -69,11 +69,11 @@ def view(cls: type[Mechanism], package: str) -> View:
     kinds = dict.fromkeys(tuple(row["units"]) for row in rows if len(row["units"]) > 1)
     taken = "; ".join(", ".join(units) for units in kinds)
     parts: list[Table | str] = [
-        Table(f"{cls.mechanism}: {cls.title}", columns, cells, explained=True),
+        Table(f"{cls.mechanism}: {cls.title}", columns, cells),
         f"A bare number is in the unit of its field; taken with their unit, as in 800 mm: {taken}.",
-        f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'by nobody yet'}",
+        f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'by nobody yet'}"
+        + (f"\ncaution:  {cls.caution}" if cls.caution else ""),
     ]
-    parts += [f"caution:  {cls.caution}"] if cls.caution else []
     return View(data, parts)
 
 

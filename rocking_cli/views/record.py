@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulse_fit import PulseFit
 
-HEADING = 14  # characters of a record's name in a line above its column
+HEADING = 14  # characters of a line of a record's name above its column, where blanks in it allow
 LEFT = 26  # characters that labels and units take of a table
 BESIDE = 3  # blanks between columns
 
@@ -68,15 +68,23 @@ def data(record: Examined) -> dict[str, Any]:
     return found
 
 
-def parts(records: Sequence[Examined], width: int) -> Iterator[Table | str]:
-    """A column for each record, in as many tables below one another as so many characters need; then its pulses."""
-    names = [record.label if len(records) == 1 else _folded(record.label) for record in records]
+def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | str]:
+    """A column for each record, in as many tables below one another as so many characters need; then its pulses.
+
+    Without a width there is one table. Where there is room for one record beside the labels, its name is above.
+    """
+    names = [_folded(record.label) for record in records]
     rows = _rows(records)
-    fitting = max((width - LEFT) // (HEADING + BESIDE), 1)
+    fitting = len(records)
+    if width is not None:
+        widest = max(HEADING, *(len(line) for name in names for line in name.split("\n")))
+        fitting = max((width - LEFT) // (widest + BESIDE), 1)
     for start in range(0, len(records), fitting):
         part = slice(start, start + fitting)
         cells = [[row[0], *row[1:-1][part], row[-1]] for row in rows]
-        title, headings = (names[0], ["value"]) if len(records) == 1 else ("", names[part])
+        title, headings = ("", names[part])
+        if len(headings) == 1:
+            title, headings = records[start].label, ["value"]
         yield Table(title, ["", *headings, "unit"], cells, numbers=range(1, len(headings) + 1))
     for record in records:
         if record.pulses:
@@ -119,5 +127,5 @@ def _channel(record: Examined) -> str | None:
 
 
 def _folded(name: str) -> str:
-    """A name broken into lines of a column's width, at blanks where there are some."""
-    return "\n".join(wrap(name, HEADING))
+    """A name broken into lines of a column's width at its blanks."""
+    return "\n".join(wrap(name, HEADING, break_long_words=False, break_on_hyphens=False))

@@ -160,7 +160,7 @@ def _curve(results: Results, each: Spectrum) -> Iterator[Table | str]:
     else:
         heads += ["median" if q == 0.5 else f"{100 * q:g} %" for q in results.fractiles]
         columns += [[_peak(value) for value in each.fractile(q)] for q in results.fractiles]
-        heads.append("over-\nturned")
+        heads.append("overturned")
         columns.append([f"{value} of {of}" for value, of in zip(each.overturned, each.followed, strict=True)])
     rows = [[column[k] for column in columns] for k in shown]
     side = "" if structure.symmetric else f" ({structure.direction.label})"

@@ -28,15 +28,12 @@ class Table:
         Cells.
     numbers : collection of int
         Places of columns that are aligned to the right; these and the first never wrap.
-    explained : bool
-        Whether the last column only explains, and may be left out where there is no room.
     """
 
     title: str
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     numbers: Collection[int] = ()
-    explained: bool = False
 
 
 @dataclass(frozen=True)

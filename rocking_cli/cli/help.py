@@ -1,0 +1,59 @@
+"""The texts of --help in the width of the terminal, up to one that is easy to read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from shutil import get_terminal_size
+
+import click
+
+from rocking_cli.cli.prose import HANG, wrapped
+
+WIDEST = 100  # columns
+READABLE = 24  # columns that what an option means needs beside it, and its longest word; else it stands below
+MARGIN = 2  # columns that stay free, as in click
+LEAST = 18  # columns: even less is asked of nobody
+
+
+class HelpFormatter(click.HelpFormatter):
+    """As click's, but in a narrow terminal too: click takes 50 columns at least, and breaks words."""
+
+    def __init__(self, indent_increment: int = 2, width: int | None = None, max_width: int | None = None) -> None:
+        room = min(get_terminal_size().columns, max_width or WIDEST) - MARGIN
+        super().__init__(indent_increment, width or max(room, LEAST), max_width)
+
+    def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
+        """How the command is called."""
+        before = "Usage: " if prefix is None else prefix
+        called = f"{' ' * self.current_indent}{before}{prog} {args}".rstrip()
+        self.write(f"{wrapped(called, self.width, hang=len(before))}\n")
+
+    def write_text(self, text: str) -> None:
+        r"""Paragraphs, of which those after a `\b` keep their lines."""
+        indent = " " * self.current_indent
+        for k, paragraph in enumerate(re.split(r"\n\s*\n", text)):
+            kept = paragraph.startswith("\b")
+            lines = paragraph.splitlines()[1:] if kept else [" ".join(paragraph.split())]
+            room = self.width + MARGIN if kept else self.width
+            self.write("\n" if k else "")
+            for line in lines:
+                self.write(f"{wrapped(indent + line, room, hang=HANG if kept else 0)}\n")
+
+    def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
+        """Options, or commands, and what they mean."""
+        rows = list(rows)
+        longest = max((len(word) for _, meaning in rows for word in meaning.split()), default=0)
+        if self.width - col_max - 2 * col_spacing >= max(READABLE, longest):
+            super().write_dl(rows, col_max, col_spacing)
+            return
+        for term, meaning in rows:
+            below = " " * (self.current_indent + 2 * self.indent_increment)
+            self.write(f"{wrapped(' ' * self.current_indent + term, self.width + MARGIN)}\n")
+            self.write(f"{wrapped(below + meaning, self.width, hang=0)}\n" if meaning else "")
+
+
+class Context(click.Context):
+    """The context of a command, with these texts of help."""
+
+    formatter_class = HelpFormatter
