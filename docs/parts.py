@@ -26,7 +26,7 @@ def renewed(text: str, make: Callable[[str, str], str]) -> str:
     """A page with the parts made anew that say something else; `make` gives the text of a kind and a subject."""
 
     def anew(part: re.Match[str]) -> str:
-        made = f"\n{make(part['kind'], part['what']).strip()}\n\n"
+        made = "\n" + make(part["kind"], part["what"]).strip("\n") + "\n\n"
         if part["kind"] == RAN and same(part["made"], made):
             return part[0]
         return f"<!-- {part['kind']}: {part['what']} -->\n{made}<!-- end -->"
