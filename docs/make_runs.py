@@ -194,7 +194,7 @@ def write_small(picture: Path, into: Path) -> None:
         share = min(1.0, width / frames[0].width)
         size = (round(frames[0].width * share), round(frames[0].height * share))
         sized = [frame.resize(size, Image.Resampling.LANCZOS) if share < 1 else frame for frame in frames]
-        palette = sized[0].quantize(colours)  # of all frames, so that what does not move takes no bytes
+        palette = sized[0].quantize(colours, method=Image.Quantize.FASTOCTREE)  # of all frames, so that what does not move takes no bytes
         first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in sized)
         if others:
             first.save(into, save_all=True, append_images=others, duration=duration, loop=0, optimize=True)
