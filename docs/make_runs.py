@@ -40,7 +40,7 @@ WIDTH = 100  # columns of the terminal
 CLOSE = 1e-2  # of a number, mean or deviation: pictures differ by less from machine to machine
 LARGEST = 100_000  # bytes of a picture
 # Colours and width of a picture in pixels, the first that make it small enough.
-PLAINER = ((128, 1600), (64, 1300), (64, 1000), (32, 1000), (32, 700), (16, 480), (16, 360), (8, 360))
+PLAINER = ((128, 1600), (64, 1300), (64, 1000), (64, 480), (32, 480), (32, 360))
 
 
 @dataclass(frozen=True)
@@ -194,7 +194,8 @@ def write_small(picture: Path, into: Path) -> None:
         share = min(1.0, width / frames[0].width)
         size = (round(frames[0].width * share), round(frames[0].height * share))
         sized = [frame.resize(size, Image.Resampling.LANCZOS) if share < 1 else frame for frame in frames]
-        palette = sized[0].quantize(colours, method=Image.Quantize.FASTOCTREE)  # of all frames, so that what does not move takes no bytes
+        # One palette for all frames: what does not move takes no bytes. This method keeps white.
+        palette = sized[0].quantize(colours, method=Image.Quantize.FASTOCTREE)
         first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in sized)
         if others:
             first.save(into, save_all=True, append_images=others, duration=duration, loop=0, optimize=True)
