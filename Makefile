@@ -85,8 +85,7 @@ $(DOCS_STAMP): $(STAMP)
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(DOCS_STAMP)').touch()"
 
 docs: $(DOCS_STAMP)  ## The documentation as a site, out/site/index.html; every warning is an error
-	$(BIN)/python docs/make_runs.py
-	$(BIN)/python docs/make_reference.py
+	$(BIN)/python docs/make_pages.py
 	$(BIN)/python docs/make_python.py
 	$(BIN)/python -m sphinx -W --keep-going -E -q -b html -d out/doctrees docs out/site
 

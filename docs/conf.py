@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -18,7 +19,8 @@ version = release = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
 exclude_patterns = ["_generated", "corrections.md", "validation_head.md"]  # parts of other pages
-myst_enable_extensions = ["deflist", "dollarmath"]
+myst_enable_extensions = ["dollarmath"]
+myst_fence_as_directive = ["math"]  # ```math is what code forges draw
 myst_heading_anchors = 3
 smartquotes = False  # -- begins an option, and '' is a second derivative
 nitpicky = True
@@ -48,17 +50,35 @@ napoleon_use_rtype = False
 napoleon_use_ivar = True
 default_role = "code"  # `name` in a docstring
 
-# What is a folder or a page of the repository, and has a page here.
+# What is a folder or a file of the repository, and has a page here.
 ELSEWHERE = {
     "](../examples/)": "](examples.md)",
     "](../examples/plugin)": "](examples.md#a-plugin)",
     "](../README.md#set-up)": "](index.md#set-up)",
+    "one file that needs no network": "{download}`one file that needs no network <_generated/run/report.html>`",
+}
+WHOLE = {
+    "changelog": "```{include} ../CHANGELOG.md\n```\n",
+    "contributing": "```{include} ../CONTRIBUTING.md\n:relative-docs: docs/\n```\n",
 }
 
 
 def _on_the_site(app: Sphinx, page: str, source: list[str]) -> None:
+    text = WHOLE.get(page, source[0])
     for link, here in ELSEWHERE.items():
-        source[0] = source[0].replace(link, here)
+        text = text.replace(link, here)
+    source[0] = text + _menus(text) if page == "index" else text
+
+
+def _menus(text: str) -> str:
+    """The menus of the site: the lists of contents of the first page."""
+    _, *lists = re.split(r"^##+ (?=Contents|Mechanisms|Background|Reference)", text, flags=re.M)
+    menus = []
+    for each in lists:
+        caption = each.split("\n")[0]
+        entries = "\n".join(f"{name} <{link}>" for name, link in re.findall(r"^- \[(.+?)\]\((\S+)\.md\)", each, re.M))
+        menus.append(f"```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{entries}\n```\n")
+    return "\n" + "\n".join(menus)
 
 
 def setup(app: Sphinx) -> None:

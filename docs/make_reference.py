@@ -1,26 +1,16 @@
-"""Writes the parts of the documentation that are in the code: the command line, and the fields of the mechanisms.
-
-    python docs/make_reference.py             # part of make docs
-
-The parts go to docs/_generated, which is not in git, and are included by docs/cli.md and docs/mechanisms/*.md.
-"""
+"""The parts of the documentation that are in the code: the command line, fields of mechanisms, names for Python."""
 
 from __future__ import annotations
 
-from inspect import cleandoc
-from pathlib import Path
+from inspect import cleandoc, getdoc, isclass
 from textwrap import dedent, indent
 from typing import Any
 
 import click
-from make_runs import examples, of_mechanisms
 
-from rocking_cli import Registry
+import rocking_cli
 from rocking_cli.cli.main import main
 from rocking_cli.views.mechanisms import fields
-
-GENERATED = Path(__file__).resolve().parent / "_generated"
-OURS = "rocking-cli"  # the package; a plugin that happens to be installed is documented elsewhere
 
 
 def command_line() -> str:
@@ -49,10 +39,10 @@ def paragraph(text: str) -> str:
 
 
 def options(command: click.Command, ctx: click.Context) -> str:
-    """A definition list of what `--help` lists."""
+    """A list of what `--help` lists."""
     listed = [each for each in command.get_params(ctx) if isinstance(each, click.Option)]
     records = [found for each in listed if (found := each.get_help_record(ctx)) is not None]
-    return "\n\n".join(f"`{names}`\n: {plain(meaning)}" for names, meaning in records)
+    return "\n".join(f"- `{names}`: {plain(meaning)}" for names, meaning in records)
 
 
 def plain(text: str) -> str:
@@ -64,18 +54,12 @@ def plain(text: str) -> str:
     return "`".join(pieces)
 
 
-def mechanism(name: str, cls: Any, file: str) -> str:
-    """Source and verification, fields, the example and its equivalent block."""
-    shown = of_mechanisms()
-    drawing = f"```{{image}} ../_generated/run/draw_{name}.png\n:alt: {cls.title}, drawn\n```\n\n"
+def mechanism(cls: Any) -> str:
+    """Source and verification, and fields."""
     return (
-        drawing
-        + f"**Source:** {plain(cls.source)}.\n\n**Verified against:** {plain(cls.verified or 'nothing yet')}.\n\n"
+        f"**Source:** {plain(cls.source)}.\n\n**Verified against:** {plain(cls.verified or 'nothing yet')}.\n\n"
         + (f"**Caution:** {plain(cls.caution)}\n\n" if cls.caution else "")
-        + f"## Fields\n\n{table_of_fields(cls)}\n\n"
-        + f"## Example\n\n`examples/{file}`:\n\n```{{literalinclude}} ../../examples/{file}\n:language: yaml\n```\n\n"
-        + f"Its equivalent block:\n\n    {shown[f'equiv_{name}']}\n\n"
-        + f"```{{literalinclude}} ../_generated/run/equiv_{name}.txt\n:language: text\n```\n"
+        + f"## Fields\n\n{table_of_fields(cls)}"
     )
 
 
@@ -91,16 +75,12 @@ def table_of_fields(cls: Any) -> str:
     return "\n".join(rows) + f"\n\nand {common}, see [what is common to all](../mechanisms.md)."
 
 
-def write() -> None:
-    """Write all parts."""
-    (GENERATED / "mechanisms").mkdir(parents=True, exist_ok=True)
-    (GENERATED / "cli.md").write_text(command_line(), encoding="utf-8")
-    registry, files = Registry(), examples()
-    for name in registry:
-        if registry.package_of(name).split()[0] == OURS:
-            part = mechanism(name, registry[name], files[name])
-            (GENERATED / "mechanisms" / f"{name}.md").write_text(part, encoding="utf-8")
-
-
-if __name__ == "__main__":
-    write()
+def public_names() -> str:
+    """What can be imported from `rocking_cli`, with the first sentence on each."""
+    rows = ["| name | what it is |", "|---|---|"]
+    for name in rocking_cli.__all__:
+        if name != "__version__":
+            each = getattr(rocking_cli, name)
+            first = " ".join((getdoc(each) or "").split("\n\n")[0].split())
+            rows.append(f"| `{name}{'' if isclass(each) else '()'}` | {plain(first).replace('|', chr(92) + '|')} |")
+    return "\n".join(rows)

@@ -1,10 +1,7 @@
-"""Runs the commands that README.md and the documentation show, on examples/, and keeps what they print and draw.
+"""Runs the commands that README.md and the documentation show, and keeps what they draw in docs/pictures.
 
-    python docs/make_runs.py              # part of make docs
-
-Output and pictures go to docs/_generated/run, which is not in git: nothing that the site shows can be stale. README.md
-is also read where nothing is built. Its pictures are kept in docs/pictures, and written anew when they no longer show
-what the commands draw; `tests/test_docs.py` fails until they are.
+A picture is written anew only when it no longer shows what its command draws: `content.json` has what each shows, in
+words and numbers, as pixels depend on the fonts of the machine.
 """
 
 from __future__ import annotations
@@ -13,8 +10,10 @@ import json
 import re
 import shlex
 import shutil
-from collections.abc import Iterator
+import subprocess
+from collections.abc import Iterable, Iterator
 from contextlib import chdir, contextmanager
+from dataclasses import dataclass
 from itertools import chain
 from math import isclose
 from pathlib import Path
@@ -24,78 +23,59 @@ from unittest.mock import patch
 import numpy as np
 from click.testing import CliRunner
 from matplotlib.figure import Figure
-from PIL import Image
+from parts import same
+from PIL import Image, ImageSequence
 
 from rocking_cli.cli.main import main
 
 DOCS = Path(__file__).resolve().parent
 EXAMPLES = DOCS.parent / "examples"
-RUN = DOCS / "_generated" / "run"
 KEPT = DOCS / "pictures"
-KEPT_CONTENT = KEPT / "content.json"  # what its pictures show, in numbers: their pixels depend on the machine's fonts
+KEPT_CONTENT = KEPT / "content.json"
 Entry = list[str | float]
-
-# What is shown, in this order and in one folder with examples/ in it: the name of the output, and the command line.
-SHOWN = {
-    "new": "rocking new block > pedestal.yaml",
-    "draw": "rocking draw pedestal.yaml --plot drawing.png",
-    "equiv": "rocking equiv pedestal.yaml",
-    "error": "rocking error pedestal.yaml",
-    "record": "rocking record examples/accel.csv",
-    "respond": "rocking respond pedestal.yaml --record examples/accel.csv --plot response.png",
-    "stronger": "rocking respond pedestal.yaml --record examples/accel.csv --scale 1.3 --model nonlinear",
-    "overturning": "rocking overturning pedestal.yaml --plot map.png",
-    "spectrum": "rocking spectrum pedestal.yaml --record examples/accel.csv --plot spectrum.png",
-    "animate": "rocking animate examples/frame.yaml --record examples/accel.csv --out moving.gif",
-    "report": "rocking report pedestal.yaml --record examples/accel.csv -o report.html",
-    "blocks": "rocking spectrum pedestal.yaml --record examples/accel.csv --slenderness 0.2,0.3 --plot blocks.png",
-    "frame": "rocking respond examples/frame.yaml --record examples/accel.csv --polarity both --plot frame.png",
-}
-IN_README = ("draw_asymmetric_frame.png", "response.png", "map.png", "blocks.png")
+Content = list[Entry]
 
 WIDTH = 100  # columns of the terminal
 CLOSE = 1e-2  # of a number, mean or deviation: pictures differ by less from machine to machine
+LARGEST = 100_000  # bytes of a picture
+# Colours and width of a picture in pixels, the first that make it small enough.
+PLAINER = ((128, 1600), (64, 1300), (64, 1000), (64, 480), (32, 480), (32, 360))
 
 
-def examples() -> dict[str, str]:
-    """The file in examples/ for each mechanism that has one."""
-    named = ((re.search(r"^mechanism: (\w+)", file.read_text(encoding="utf-8"), re.M), file.name)
-             for file in sorted(EXAMPLES.glob("*.yaml")))  # fmt: skip
-    return {found[1]: file for found, file in named if found}
+@dataclass(frozen=True)
+class Run:
+    """What a command printed, and what each picture that it drew shows, by the name of the file."""
+
+    output: str
+    pictures: dict[str, Content]
 
 
-def of_mechanisms() -> dict[str, str]:
-    """What the page of each mechanism shows of its example."""
-    shown = {}
-    for mechanism, file in examples().items():
-        shown[f"equiv_{mechanism}"] = f"rocking equiv examples/{file}"
-        shown[f"draw_{mechanism}"] = f"rocking draw examples/{file} --plot draw_{mechanism}.png"
-    return shown
-
-
-def run(shown: dict[str, str], folder: Path) -> dict[str, list[Entry]]:
-    """Run commands one after the other in a folder, and write the output of each there as NAME.txt.
-
-    Returns
-    -------
-    dict
-        The content of each picture, by its file name.
-    """
-    contents = {}
+def run(commands: Iterable[str], folder: Path) -> dict[str, Run]:
+    """Run commands one after the other in a folder, with examples/ in it."""
     shutil.copytree(EXAMPLES, folder / "examples", dirs_exist_ok=True)
-    with chdir(folder), noted_figures() as figures:
-        for name, command in shown.items():
-            _, *arguments = shlex.split(command)
-            into = arguments[arguments.index(">") + 1] if ">" in arguments else None
-            done = CliRunner().invoke(main, arguments[:-2] if into else arguments, env={"COLUMNS": str(WIDTH)})
-            if done.exit_code != 0:
-                raise SystemExit(f"`{command}` ended with exit code {done.exit_code}:\n{done.output}")
-            lines = [line.rstrip() for line in done.stdout.splitlines()]
-            for file in filter(None, (f"{name}.txt", into)):
-                Path(file).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
-            if "--plot" in arguments:
-                contents[arguments[arguments.index("--plot") + 1]] = content(figures.pop())
-    return contents
+    with chdir(folder):
+        return {command: ran(command) for command in commands}
+
+
+def ran(command: str) -> Run:
+    """Run a command in the current folder."""
+    _, *arguments = shlex.split(command)
+    into = arguments[arguments.index(">") + 1] if ">" in arguments else None
+    there = set(Path().rglob("*"))
+    with noted_figures() as figures:
+        done = CliRunner().invoke(main, arguments[:-2] if into else arguments, env={"COLUMNS": str(WIDTH)})
+    if done.exit_code != 0:
+        raise SystemExit(f"`{command}` ended with exit code {done.exit_code}:\n{done.output}")
+    lines = [line.rstrip() for line in done.stdout.splitlines()]
+    output = "\n".join(lines).strip("\n") + "\n"
+    if into:
+        Path(into).write_text(output, encoding="utf-8")
+    made = sorted(set(Path().rglob("*")) - there, key=lambda file: file.stat().st_mtime_ns)
+    drawn = [file.name for file in made if file.suffix == ".png"]
+    pictures = dict(zip(drawn, map(content, figures), strict=True)) if drawn else {}
+    pictures |= {file.name: content_of_frames(file) for file in made if file.suffix == ".gif"}
+    pictures |= {f"{file.stem}.png": [[output]] for file in made if file.suffix == ".html"}  # a page in a browser
+    return Run(output, pictures)
 
 
 @contextmanager
@@ -112,9 +92,9 @@ def noted_figures() -> Iterator[list[Figure]]:
         yield figures
 
 
-def content(figure: Figure) -> list[Entry]:
+def content(figure: Figure) -> Content:
     """What a figure shows, without what fonts and their sizes change: words, and size, mean and deviation of data."""
-    entries: list[Entry] = []
+    entries: Content = []
     for axes in figure.axes:
         entries.append([axes.get_title(loc="left"), axes.get_title(), axes.get_xlabel(), axes.get_ylabel()])
         entries.append([text.get_text() for text in axes.texts])
@@ -127,44 +107,97 @@ def content(figure: Figure) -> list[Entry]:
     return entries
 
 
+def content_of_frames(file: Path) -> Content:
+    """How many frames there are, and how bright."""
+    with Image.open(file) as image:
+        frames = [np.asarray(frame.convert("L")) for frame in ImageSequence.Iterator(image)]
+    return [["frames", len(frames), *numbers(np.mean(frames, axis=(1, 2)))]]
+
+
 def numbers(values: Any) -> list[float]:
     """How many there are, their mean and their standard deviation, of those that are finite."""
     found = np.asarray(values, dtype=float).ravel()
     found = found[np.isfinite(found)]
-    return [found.size, float(found.mean()), float(found.std())] if found.size else [0]
+    return [found.size, *(float(f"{value:.5g}") for value in (found.mean(), found.std()))] if found.size else [0]
 
 
-def alike(one: list[Entry], other: list[Entry]) -> bool:
+def alike(one: Content, other: Content) -> bool:
     """Whether two pictures have the same content."""
     if [len(entry) for entry in one] != [len(entry) for entry in other]:
         return False
     pairs = zip(chain.from_iterable(one), chain.from_iterable(other), strict=True)
-    return all(a == b if isinstance(a, str) else isclose(a, b, rel_tol=CLOSE, abs_tol=CLOSE / 10) for a, b in pairs)
+    return all(
+        same(str(a), str(b)) if isinstance(a, str) or isinstance(b, str)
+        else isclose(a, b, rel_tol=CLOSE, abs_tol=CLOSE / 10)
+        for a, b in pairs
+    )  # fmt: skip
 
 
-def stale(contents: dict[str, list[Entry]]) -> list[str]:
-    """The pictures in README.md that are not there, or show something else than these."""
-    kept = json.loads(KEPT_CONTENT.read_text(encoding="utf-8")) if KEPT_CONTENT.exists() else {}
-    return [
-        name
-        for name in IN_README
-        if name not in kept or not (KEPT / name).exists() or not alike(contents[name], kept[name])
-    ]
+def shown(page: str) -> list[str]:
+    """The names of the pictures that a page shows."""
+    return re.findall(r"!\[[^]]*\]\((?:\.\./|docs/)?pictures/([^)]+)\)", page)
 
 
-def keep(contents: dict[str, list[Entry]], folder: Path) -> None:
-    """Renew the pictures in README.md if any is stale."""
-    if not stale(contents):
-        return
+def kept() -> dict[str, Content]:
+    """What the pictures in docs/pictures show."""
+    found: dict[str, Content] = json.loads(KEPT_CONTENT.read_text(encoding="utf-8")) if KEPT_CONTENT.exists() else {}
+    return {name: entries for name, entries in found.items() if (KEPT / name).exists()}
+
+
+def stale(contents: dict[str, Content]) -> list[str]:
+    """The pictures that are not there, or show something else than these."""
+    there = kept()
+    return [name for name, entries in contents.items() if name not in there or not alike(entries, there[name])]
+
+
+def keep(contents: dict[str, Content], folder: Path) -> None:
+    """Renew the pictures that are stale, and drop those that are not among these."""
     KEPT.mkdir(exist_ok=True)
-    for name in IN_README:
-        with Image.open(folder / name) as image:  # 128 colours are enough, and a third of the bytes
-            image.convert("RGB").quantize(128, dither=Image.Dither.NONE).save(KEPT / name, optimize=True)
-    lines = ",\n".join(f" {json.dumps(name)}: {json.dumps(contents[name])}" for name in IN_README)
+    there = kept()
+    for name in stale(contents):
+        made = found(folder, name)
+        if made is None:
+            print(f"docs/pictures/{name} is stale, and there is no chromium here to renew it")
+            continue
+        write_small(made, KEPT / name)
+        there[name] = contents[name]
+        print(f"renewed docs/pictures/{name}")
+    for file in set(KEPT.iterdir()) - {KEPT_CONTENT, *(KEPT / name for name in contents)}:
+        file.unlink()
+    lines = ",\n".join(f" {json.dumps(name)}: {json.dumps(there[name])}" for name in sorted(there.keys() & contents))
     KEPT_CONTENT.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
-    print("renewed docs/pictures")
 
 
-if __name__ == "__main__":
-    RUN.mkdir(parents=True, exist_ok=True)
-    keep(run(SHOWN | of_mechanisms(), RUN), RUN)
+def found(folder: Path, name: str) -> Path | None:
+    """The picture that a command drew; of a page, the picture that a browser takes of it, where there is one."""
+    for file in folder.rglob(name):
+        return file
+    picture, browser = folder / name, shutil.which("chromium") or shutil.which("google-chrome")
+    if browser is None:
+        return None
+    options = ["--headless", "--no-sandbox", "--hide-scrollbars", "--virtual-time-budget=5000"]
+    page = picture.with_suffix(".html").as_uri()
+    subprocess.run(
+        [browser, *options, "--window-size=900,1250", f"--screenshot={picture}", page], check=True, capture_output=True
+    )
+    return picture
+
+
+def write_small(picture: Path, into: Path) -> None:
+    """Copy a picture, with as many colours and pixels as fit into its size: 128 colours are a third of the bytes."""
+    with Image.open(picture) as image:
+        frames = [frame.convert("RGB") for frame in ImageSequence.Iterator(image)]
+        duration = image.info.get("duration", 0)
+    for colours, width in PLAINER:
+        share = min(1.0, width / frames[0].width)
+        size = (round(frames[0].width * share), round(frames[0].height * share))
+        sized = [frame.resize(size, Image.Resampling.LANCZOS) if share < 1 else frame for frame in frames]
+        # One palette for all frames: what does not move takes no bytes. This method keeps white.
+        palette = sized[0].quantize(colours, method=Image.Quantize.FASTOCTREE)
+        first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in sized)
+        if others:
+            first.save(into, save_all=True, append_images=others, duration=duration, loop=0, optimize=True)
+        else:
+            first.save(into, optimize=True)
+        if into.stat().st_size < LARGEST:
+            return

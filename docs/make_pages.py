@@ -1,0 +1,81 @@
+"""Makes the parts of the pages that are made, and the pictures: all that the pages show of the program is its own.
+
+    python docs/make_pages.py             # part of make docs
+
+`tests/test_docs.py` fails as long as a part or a picture is stale.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import make_reference
+from make_runs import Content, Run, keep, run, shown
+from parts import asked, renewed
+
+from rocking_cli import Registry
+
+DOCS = Path(__file__).resolve().parent
+PROJECT = DOCS.parent
+RUN = DOCS / "_generated" / "run"  # not in git; the site has the report from there
+LANGUAGES = {".yaml": "yaml", ".py": "python", ".toml": "toml"}
+RUNS = ("run", "draw")  # the kinds of parts that are made by a command, with and without its output
+
+
+def pages() -> list[Path]:
+    """The README and all pages, the tutorial first: it writes the file that others use."""
+    found = [*DOCS.glob("*.md"), *DOCS.glob("mechanisms/*.md"), PROJECT / "README.md"]
+    return sorted(found, key=lambda page: (page.name != "tutorial.md", page))
+
+
+def commands() -> list[str]:
+    """Every command that is shown, once."""
+    parts = (part for page in pages() for part in asked(page.read_text(encoding="utf-8")))
+    return list(dict.fromkeys(what for kind, what in parts if kind in RUNS))
+
+
+def made(kind: str, what: str, runs: dict[str, Run]) -> str:
+    """The text of a part."""
+    if kind in RUNS:
+        output = f"\n\n```{'yaml' if '>' in what else 'text'}\n{runs[what].output}```" if kind == "run" else ""
+        return f"    {what}{output}"
+    if kind == "file":
+        text = (PROJECT / what).read_text(encoding="utf-8")
+        return f"```{LANGUAGES[Path(what).suffix]}\n{text.strip()}\n```"
+    if kind == "readme":
+        return of_the_readme(what)
+    if kind == "mechanism":
+        return make_reference.mechanism(Registry()[what])
+    return {"options": make_reference.command_line, "names": make_reference.public_names}[kind]()
+
+
+def of_the_readme(name: str) -> str:
+    """What stands in the README between `<!-- NAME -->`, or its beginning, and `<!-- /NAME -->`."""
+    before, _, _ = (PROJECT / "README.md").read_text(encoding="utf-8").partition(f"<!-- /{name} -->")
+    return before.rpartition(f"<!-- {name} -->")[2]
+
+
+def drawn(runs: dict[str, Run]) -> dict[str, Content]:
+    """The content of every picture that is shown."""
+    all_drawn = {name: content for each in runs.values() for name, content in each.pictures.items()}
+    wanted = {name for page in pages() for name in shown(page.read_text(encoding="utf-8"))}
+    return {name: all_drawn[name] for name in sorted(wanted)}
+
+
+def main() -> None:
+    """Run all commands, and renew what is stale."""
+    shutil.rmtree(RUN, ignore_errors=True)
+    RUN.mkdir(parents=True)
+    runs = run(commands(), RUN)
+    keep(drawn(runs), RUN)
+    for page in pages():
+        text = page.read_text(encoding="utf-8")
+        anew = renewed(text, lambda kind, what: made(kind, what, runs))
+        if anew != text:
+            page.write_text(anew, encoding="utf-8", newline="\n")
+            print(f"renewed {page.relative_to(PROJECT)}")
+
+
+if __name__ == "__main__":
+    main()
