@@ -680,7 +680,7 @@ def check(name, mechanism, history):
         assert ((side == 0) | (side == impacts[at[inside], 1]) | ~clear).all()
 
 
-@pytest.mark.parametrize("start", range(0, 240, 40))
+@pytest.mark.parametrize("start", range(0, 160, 40))
 def test_random_motions_are_consistent_and_never_fail(start):
     for seed in range(start, start + 40):
         name, mechanism, motion, release = anything(seed)

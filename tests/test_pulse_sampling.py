@@ -100,7 +100,7 @@ def peak_by_formula(pulse: Pulse) -> float:
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_peak_of_a_history_is_that_under_the_formula(shape, omega):
     model = build_model(BLOCK, "nonlinear")
-    for times in (1.01, 1.03, 1.05, 1.2, 2.0):
+    for times in (1.01, 1.05, 2.0):
         pulse = pulse_of(shape, times, omega)
         history = follow(model, pulse.sampled())
         wanted = peak_by_formula(pulse)

@@ -43,7 +43,7 @@ SHOWN = {
     "spectra": ("spectrum", BLOCK, "--record", "*.csv", "--slenderness", "0.2", "--sizes", "1:6:3"),
     "fragility": ("fragility", "study.yaml"),
     "results": ("results", "study.db"),
-    "figure": ("figure", "14", "--record", ACCEL),
+    "figure": ("figure", "3"),
     "mechanisms": ("mechanisms",),
     "mechanism": ("mechanisms", "wall"),
     "contract": ("mechanisms", "block", "--check"),

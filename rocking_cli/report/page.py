@@ -54,10 +54,12 @@ def render(content: Assessment) -> str:
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     environment.filters["symbols"] = symbols
+    environment.filters["greek"] = _greek
     bins = int(np.clip(BINS // max(1, len(content.results)), FEWEST, MOST))
     page = environment.get_template("report.html").render(
         content=content,
         answer=words.in_a_sentence(content),
+        falls=any(each.histories["nonlinear"].overturned for each in content.results),
         verdicts=words.verdicts(content),
         overview=words.overview(content),
         governs=words.governs(content) if content.results else "",
