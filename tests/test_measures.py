@@ -18,7 +18,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
-from rocking_cli.excitation.measures import arias_build_up, displacement, measure, velocity
+from rocking_cli.excitation.measures import arias_build_up, measure
 from rocking_cli.excitation.records import read_record
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
@@ -124,10 +124,10 @@ class TestAgainstQuadrature:
 
     def test_curves_end_where_the_measures_do(self):
         found = measure(NOISE)
-        assert velocity(NOISE)[-1] == found.final_velocity
-        assert displacement(NOISE)[-1] == found.final_displacement
+        assert NOISE.velocity[-1] == found.final_velocity
+        assert NOISE.displacement[-1] == found.final_displacement
         assert arias_build_up(NOISE)[-1] == found.arias
-        assert velocity(NOISE)[0] == displacement(NOISE)[0] == arias_build_up(NOISE)[0] == 0
+        assert NOISE.velocity[0] == NOISE.displacement[0] == arias_build_up(NOISE)[0] == 0
 
 
 class TestScaling:

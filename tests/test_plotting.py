@@ -8,7 +8,7 @@ import pytest
 from mechanisms.block import Block
 from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.measures import measure, velocity
+from rocking_cli.excitation.measures import measure
 from rocking_cli.plotting import style
 from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.record import draw_record
@@ -93,7 +93,7 @@ def test_a_record_is_drawn_with_its_integrals_and_the_build_up():
     labels = [axes.get_ylabel() for axes in figure.axes]
     assert labels == ["acceleration [g]", "velocity [m/s]", "displacement [m]", "Arias intensity [%]"]
     assert figure.axes[-1].get_xlabel() == "time [s]"
-    np.testing.assert_allclose(figure.axes[1].get_lines()[0].get_ydata(), velocity(PULSE))
+    np.testing.assert_allclose(figure.axes[1].get_lines()[0].get_ydata(), PULSE.velocity)
     built = figure.axes[3].get_lines()[0].get_ydata()
     assert built[0] == 0 and built[-1] == pytest.approx(100) and (np.diff(built) >= 0).all()
     marks = [(line.get_xdata()[0], line.get_ydata()[0]) for line in figure.axes[3].get_lines()[1:]]

@@ -10,7 +10,6 @@ from scipy.optimize import differential_evolution, minimize
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.measures import velocity
 from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, _Search, fit_pulse, fit_pulses
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
 from rocking_cli.excitation.records import read_record
@@ -38,7 +37,7 @@ def hidden(pulse, start=3.217, sign=1, noise=0.0, dt=0.01, npts=2000):
 
 
 def series(motion, criterion):
-    return velocity(motion) if criterion == "velocity" else motion.acceleration
+    return motion.velocity if criterion == "velocity" else motion.acceleration
 
 
 def share(motion, fit, criterion):
@@ -149,7 +148,7 @@ class TestRinaldi:
             assert 0.9 < fit.pulse.period < 1.5 and 2.3 < fit.centre < 2.8
         sine = fits["sine", "acceleration"]
         assert 0.6 < sine.pulse.period < 1.3 and 2.2 < sine.centre < 2.8 and sine.sign == 1
-        peak = np.abs(velocity(motion)).max()
+        peak = np.abs(motion.velocity).max()
         t = np.linspace(1.5, 4, 2501)
         assert np.abs(fits["mavroeidis", "velocity"].velocity(t)).max() == pytest.approx(peak, rel=0.15)
 

@@ -99,6 +99,23 @@ class GroundMotion:
         return (self.npts - 1) * self.dt
 
     @property
+    def time(self) -> NDArray[np.float64]:
+        """Times of the samples [s]."""
+        return np.arange(self.npts, dtype=np.float64) * self.dt
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Ground velocity at the samples [m/s], from zero: exact for straight lines between them."""
+        a = self.acceleration
+        return from_zero(self.dt * (a[:-1] + a[1:]) / 2)
+
+    @property
+    def displacement(self) -> NDArray[np.float64]:
+        """Ground displacement at the samples [m], from zero: exact for straight lines between them."""
+        a, v, dt = self.acceleration, self.velocity, self.dt
+        return from_zero(dt * (v[:-1] + dt * (2 * a[:-1] + a[1:]) / 6))
+
+    @property
     def pga(self) -> float:
         """Peak ground acceleration, in units of standard gravity."""
         # To 15 digits: the way through m/s2 and back has changed the last bit of what a record in g says.
@@ -121,3 +138,10 @@ class GroundMotion:
             raise InputError(f"{self.name}: a factor of {factor:g} makes accelerations beyond the range of numbers")
         vertical = self.vertical.scaled(abs(factor)) if self.vertical is not None else None
         return replace(self, name=name, acceleration=factor * self.acceleration, vertical=vertical)
+
+
+def from_zero(steps: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Running sums of steps, zero before the first."""
+    total = np.zeros(steps.size + 1)
+    np.cumsum(steps, out=total[1:])
+    return total

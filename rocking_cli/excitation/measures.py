@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion, from_zero
 
 Reals = NDArray[np.float64]
 SIGNIFICANT = (0.05, 0.95)  # of the Arias intensity: where the significant duration begins and ends
@@ -56,21 +56,9 @@ class Measures:
         return None if self.t_5 is None or self.t_95 is None else self.t_95 - self.t_5
 
 
-def velocity(motion: GroundMotion) -> Reals:
-    """Ground velocity at the samples [m/s], from zero."""
-    a = motion.acceleration
-    return _from_zero(motion.dt * (a[:-1] + a[1:]) / 2)
-
-
-def displacement(motion: GroundMotion) -> Reals:
-    """Ground displacement at the samples [m], from zero."""
-    a, v, dt = motion.acceleration, velocity(motion), motion.dt
-    return _from_zero(dt * (v[:-1] + dt * (2 * a[:-1] + a[1:]) / 6))
-
-
 def arias_build_up(motion: GroundMotion) -> Reals:
     """Arias intensity of the motion up to each sample [m/s]; over its last value, a Husid plot."""
-    return _from_zero(_squared(motion)) * (pi / (2 * STANDARD_GRAVITY))
+    return from_zero(_squared(motion)) * (pi / (2 * STANDARD_GRAVITY))
 
 
 def measure(motion: GroundMotion) -> Measures:
@@ -91,7 +79,7 @@ def measure(motion: GroundMotion) -> Measures:
         If the accelerations are so large that their measures are beyond the range of numbers.
     """
     with np.errstate(over="ignore", invalid="ignore"):
-        v, u, built = velocity(motion), displacement(motion), arias_build_up(motion)
+        v, u, built = motion.velocity, motion.displacement, arias_build_up(motion)
         steepness = float(np.sum(np.diff(motion.acceleration) ** 2)) / motion.dt
         total = float(built[-1])
         squared = total * (2 * STANDARD_GRAVITY) / pi
@@ -112,13 +100,6 @@ def measure(motion: GroundMotion) -> Measures:
     if not all(isfinite(value) for value in (found.pgv, found.pgd, found.arias)):
         raise InputError(f"{motion.name}: accelerations of {motion.pga:.3g} g are beyond the range of numbers")
     return found
-
-
-def _from_zero(steps: Reals) -> Reals:
-    """Running sums of the steps, zero before the first."""
-    total = np.zeros(steps.size + 1)
-    np.cumsum(steps, out=total[1:])
-    return total
 
 
 def _squared(motion: GroundMotion) -> Reals:

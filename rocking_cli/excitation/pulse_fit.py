@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.measures import velocity
 from rocking_cli.excitation.pulses.base import Pulse
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
 from rocking_cli.excitation.simplex import maximise
@@ -119,7 +118,7 @@ def fit_pulses(
     `fit_pulse` says what the arguments are.
     """
     for criterion in criteria:
-        values = velocity(motion) if criterion == "velocity" else motion.acceleration
+        values = motion.velocity if criterion == "velocity" else motion.acceleration
         peak = float(np.abs(values).max())
         if peak == 0:
             raise InputError(Problem("the record is zero throughout: there is no pulse in it", motion.name))

@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.measures import velocity
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.plotting.thinning import visible
@@ -36,7 +35,7 @@ def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> F
     figure = style.new_figure(4.8)
     above, below = figure.subplots(2, 1, sharex=True)
     style.heading(above, motion.name)
-    for axes, values in ((above, motion.acceleration / STANDARD_GRAVITY), (below, velocity(motion))):
+    for axes, values in ((above, motion.acceleration / STANDARD_GRAVITY), (below, motion.velocity)):
         shown = visible(values)
         axes.plot(shown * motion.dt, values[shown], color=style.RECORD, linewidth=style.CURVE)
         axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.measures import Measures, arias_build_up, displacement, velocity
+from rocking_cli.excitation.measures import Measures, arias_build_up
 from rocking_cli.plotting import style
 from rocking_cli.plotting.thinning import visible
 
@@ -31,8 +31,8 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     panels = figure.subplots(4, 1, sharex=True)
     style.heading(panels[0], motion.name)
     _draw_curve(panels[0], motion, motion.acceleration / STANDARD_GRAVITY, "acceleration [g]")
-    _draw_curve(panels[1], motion, velocity(motion), "velocity [m/s]")
-    _draw_curve(panels[2], motion, displacement(motion), "displacement [m]")
+    _draw_curve(panels[1], motion, motion.velocity, "velocity [m/s]")
+    _draw_curve(panels[2], motion, motion.displacement, "displacement [m]")
     style.note(panels[0], f"PGA {measures.pga:.3g} g")
     style.note(panels[1], f"PGV {measures.pgv:.3g} m/s")
     style.note(panels[2], f"PGD {measures.pgd:.3g} m")
