@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
 
 from rocking_cli.plotting import style
+from rocking_cli.plotting.structure import draw_at_rest
 from rocking_cli.studies.paper_figures import PaperFigure
+from rocking_cli.studies.picture import picture
 
 CAPTION = 115  # characters a line
-PANEL = 2.6  # inches high
+PANEL, DRAWN = 2.6, 1.4  # inches high
 FLAT = 0.01  # what differs by less is shown flat
 SPREAD = 0.5  # of 1: ratios beyond are cut off
 
@@ -33,8 +36,16 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
     caption = fill(
         f"Figure {paper.number} of DeJong and Dimitrakopoulos (2014), computed anew. {paper.caption}", CAPTION
     )
-    figure = style.new_figure(PANEL * rows + 0.5 + 0.14 * (caption.count("\n") + 1))
-    axes = figure.subplots(rows, columns, squeeze=False)
+    drawn = DRAWN if paper.structures else 0.0
+    figure = style.new_figure(PANEL * rows + drawn + 0.5 + 0.14 * (caption.count("\n") + 1))
+    below: Any = figure
+    if paper.structures:
+        parts: Any = figure.subfigures(2, 1, height_ratios=[drawn, PANEL * rows])
+        above, below = parts
+        places = above.subplots(1, len(paper.structures), squeeze=False)[0]
+        for place, (name, structure) in zip(places, paper.structures.items(), strict=True):
+            draw_at_rest(place, picture(structure), name)
+    axes = below.subplots(rows, columns, squeeze=False)
     for panel, each in zip((p for row in paper.panels for p in row), axes.flat, strict=True):
         for k, curve in enumerate(panel.curves):
             width = 0.7 if curve.thin else 1.6 - 0.15 * k
@@ -62,5 +73,5 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
         if [curve.label for curve in panel.curves] != labels and len(panel.curves) > 1:  # a legend where it changes
             labels = [curve.label for curve in panel.curves]
             each.legend(**style.LEGEND | {"fontsize": style.SMALL})
-    figure.supxlabel(caption, fontsize=style.SMALL, x=0.01, ha="left", color=style.INK)
+    below.supxlabel(caption, fontsize=style.SMALL, x=0.01, ha="left", color=style.INK)
     return figure

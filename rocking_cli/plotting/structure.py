@@ -99,6 +99,21 @@ def draw_structure(picture: Picture, title: str, ratio: float = 1.0) -> Figure:
     return figure
 
 
+def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:
+    """Draw a structure at rest into axes of its own, in proportion, without measures."""
+    low, high = picture.extent[0], picture.extent[1]
+    axes.set_axis_off()
+    axes.set_aspect("equal")
+    for line in picture.ground:
+        axes.plot(line.real, line.imag, color=style.EARTH, linewidth=style.BOLD, zorder=1)
+    _draw_parts(axes, picture, 0.0)
+    across, up = (high - low).real, (high - low).imag
+    axes.set_xlim(low.real - 0.1 * across, high.real + 0.1 * across)
+    axes.set_ylim(low.imag - 0.05 * up, high.imag + 0.05 * up)
+    if title:
+        axes.set_title(title, fontsize=style.TICK)
+
+
 def _box_at_rest(picture: Picture) -> tuple[complex, complex]:
     """The box of the structure and of all that is measured [m]."""
     measured = [z for each in picture.sketch.lengths for z in (each.start, each.end)]

@@ -6,7 +6,7 @@ says they show is stated in the caption.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import cos, sin, sqrt, tan
 from typing import Any
@@ -83,12 +83,15 @@ class PaperFigure:
         What it shows, and what of it is our choice.
     panels : list of list of Panel
         By rows.
+    structures : mapping of str to Mechanism, optional
+        What they are of, drawn above by their names.
     """
 
     number: int
     title: str
     caption: str
     panels: list[list[Panel]]
+    structures: Mapping[str, Mechanism] = field(default_factory=dict)
 
     def rows(self) -> Iterator[list[str]]:
         """The data as a table: a header, then a line for each point."""

@@ -46,19 +46,18 @@ def record_response(motion: GroundMotion) -> PaperFigure:
     called = printable(motion.name).replace("$", r"\$")  # labels and captions hold mathematics: a $ in a name is a $
     ground.curves.append(Curve(called, time, motion.acceleration / STANDARD_GRAVITY, thin=True))
     ground.curves.append(Curve("sine pulse in it", time, alone.acceleration / STANDARD_GRAVITY))
-    panels = [[ground]]
-    for what, shaking in (("the record", motion), ("the pulse alone", alone)):
-        panel = Panel(f"response to {what}", "time [s]", OVER)
+    response = Panel("response", "time [s]", OVER)
+    for what, shaking in (("record", motion), ("its pulse", alone)):
         for name, run in respond(frame, shaking, models=("nonlinear", "linear2"), tail=0.0).items():
-            panel.curves.append(_followed(LABELS[name], run))
-        panels.append([panel])
+            response.curves.append(_followed(f"{LABELS[name]}, {what}", run))
     caption = (
         f"An asymmetric frame with the paper's uplift accelerations (0.197 g positive, 0.241 g negative) under "
         f"{called}, and under its sine pulse of {fit.pulse.amplitude / STANDARD_GRAVITY:.3g} g and "
         f"{fit.pulse.period:.3g} s alone, which captures {fit.captured:.0%} of the record's energy. The rest of the "
         "geometry is ours: left column 9 m, right 15.91 m high, 2.606 m wide, axes 5.4 m apart, beam 4.5 m deep."
     )
-    return PaperFigure(14, "Seismic response of an asymmetric frame", caption, panels)
+    title = "Seismic response of an asymmetric frame"
+    return PaperFigure(14, title, caption, [[ground], [response]], {"": frame})
 
 
 def _followed(label: str, run: History, scale: float = 1.0) -> Curve:
@@ -105,5 +104,9 @@ def equivalent_vulnerability() -> PaperFigure:
         "twice as large, beam twice as heavy as they are), wall of blocks of slenderness 0.2, Oppenheim's arch."
     )
     return PaperFigure(
-        15, "Pulses to which different structures are equivalently vulnerable", caption, [[pulses], [responses]]
+        15,
+        "Pulses to which different structures are equivalently vulnerable",
+        caption,
+        [[pulses], [responses]],
+        structures(),
     )
