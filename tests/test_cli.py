@@ -555,3 +555,11 @@ def test_the_units_offered_are_those_the_readers_know():
     from rocking_cli.excitation.records import units
 
     assert set(UNITS) == set(units.UNITS)
+
+
+@pytest.mark.parametrize("command", ["respond", "margin"])
+def test_where_a_mechanism_is_not_on_the_safe_side_the_verdict_says_so_too(command):
+    wall = EXAMPLES / "wall.yaml"
+    said = run(command, wall, "--pulse", "sine:0.4g:0.8s", "--neighbours", 2).stdout
+    assert f"Caution: {load_structure(wall).caution}" in said
+    assert "Caution" not in run(command, EXAMPLES / "block.yaml", "--pulse", "sine:0.4g:0.8s", "--neighbours", 2).stdout

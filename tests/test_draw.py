@@ -364,3 +364,12 @@ class TestCommand:
     def test_it_does_not_write_over_its_input(self, tmp_path):
         (tmp_path / "odd.png").write_text("mechanism: block\nwidth: 1\nheight: 4\n", encoding="utf-8")
         assert "would overwrite" in run("draw", "odd.png", code=2).stderr
+
+
+@pytest.mark.parametrize(
+    "given", [{"lines": [(0j, 1j)]}, {"lengths": [("b", 0j, 1j)]}, {"angles": [1]}, {"notes": "abc"}]
+)
+def test_a_sketch_that_no_picture_can_be_made_of_is_refused_where_it_is_made(given):
+    (name,) = given
+    with pytest.raises(TypeError, match=f"{name} of a sketch must be a sequence of"):
+        Sketch(**given)

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -89,8 +90,9 @@ class TestWorkflow:
 class TestMakefile:
     def planned(self, target, tmp_path):
         """The commands of a target where nothing is installed yet."""
-        words = ["make", "--dry-run", target, f"VENV={(tmp_path / 'venv').as_posix()}"]
-        return subprocess.run(words, cwd=PROJECT, check=True, capture_output=True, encoding="utf-8").stdout
+        words = ["make", "--no-print-directory", "--dry-run", target, f"VENV={(tmp_path / 'venv').as_posix()}"]
+        alone = {key: value for key, value in os.environ.items() if not key.startswith(("MAKE", "MFLAGS"))}
+        return subprocess.run(words, cwd=PROJECT, check=True, capture_output=True, encoding="utf-8", env=alone).stdout
 
     def test_the_demo_installs_the_package_alone(self, tmp_path):
         assert "--editable ." in self.planned("demo", tmp_path)

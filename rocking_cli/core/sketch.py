@@ -131,6 +131,14 @@ class Sketch:
     ground: Sequence[Sequence[complex]] = ()
     notes: Sequence[str] = ()
 
+    def __post_init__(self) -> None:
+        kinds = {"lengths": Length, "angles": Angle, "lines": Line, "notes": str}
+        for name, kind in kinds.items():
+            given = getattr(self, name)
+            if isinstance(given, str) or not all(isinstance(each, kind) for each in given):
+                what = "of texts" if kind is str else f"of {kind.__name__}"
+                raise TypeError(f"{name} of a sketch must be a sequence {what}, got {given!r}")
+
 
 def rectangle(centre: complex, width: float, height: float) -> Outline:
     """The corners of a level rectangle `width` by `height` [m], anticlockwise from the lower left."""

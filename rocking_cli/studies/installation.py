@@ -19,7 +19,7 @@ from rocking_cli.plugins.registry import Plugins
 from rocking_cli.studies.compiling import CALLED
 
 OURS = "rocking-cli"
-WITHOUT = ("dev", "docs", "bench")
+WITHOUT = ("dev", "docs", "bench", "release")
 """Extras that add nothing to a command."""
 
 

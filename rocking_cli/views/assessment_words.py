@@ -219,7 +219,7 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
 def _trusted(result: MotionResult) -> str:
     runs = result.histories
     best = runs["nonlinear"]
-    itself = "The nonlinear model is the structure itself, and its numbers are quoted here."
+    itself = "The nonlinear model follows the structure without linearising it, and its numbers are quoted here."
     called = {name: f"the {model}" for name, model in MODELS.items()}
     grades = {each.grade for each in agreements(runs).values()}
     if disagree(runs):

@@ -44,6 +44,7 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
         Table("", heads, cells, numbers=range(1, len(heads))),
     ]
     parts += [f"{row.name}: {in_words(row.margin)}" for row in rows] if len(rows) <= FEW else []
+    parts += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(_data(mechanism, rows, polarity, around), parts)
 
 

@@ -208,7 +208,9 @@ def view(
         parts = _tables(f"{title}, under the record", found.runs, found.neighbours, etas)
         parts += ["", *_tables(f"{title}, under its pulse alone", {1: found.to_pulse}, {}, etas)]
         parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse))
-    return View({**data, "notes": [*doubts, *notes]}, [*parts, restitution_used(mechanism, blocks), *notes])
+    caution = [f"Caution: {mechanism.caution}"] if mechanism.caution else []
+    said = [*parts, restitution_used(mechanism, blocks), *notes, *caution]
+    return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
 def runs_view(title: str, runs: Runs) -> View:
