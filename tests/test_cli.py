@@ -559,7 +559,10 @@ def test_the_units_offered_are_those_the_readers_know():
 
 @pytest.mark.parametrize("command", ["respond", "margin"])
 def test_where_a_mechanism_is_not_on_the_safe_side_the_verdict_says_so_too(command):
+    from rocking_cli.structure import load_structure
+
     wall = EXAMPLES / "wall.yaml"
-    said = run(command, wall, "--pulse", "sine:0.4g:0.8s", "--neighbours", 2).stdout
+    said = " ".join(run(command, wall, "--pulse", "sine:0.4g:0.8s", "--neighbours", 2).stdout.split())
     assert f"Caution: {load_structure(wall).caution}" in said
-    assert "Caution" not in run(command, EXAMPLES / "block.yaml", "--pulse", "sine:0.4g:0.8s", "--neighbours", 2).stdout
+    block = EXAMPLES / "block.yaml"
+    assert "Caution" not in run(command, block, "--pulse", "sine:0.4g:0.8s", "--neighbours", 2).stdout
