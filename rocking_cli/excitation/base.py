@@ -105,13 +105,13 @@ class GroundMotion:
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Ground velocity at the samples [m/s], from zero: exact for straight lines between them."""
+        """Ground velocity at the samples [m/s], from zero, exact for straight lines between them."""
         a = self.acceleration
         return from_zero(self.dt * (a[:-1] + a[1:]) / 2)
 
     @property
     def displacement(self) -> NDArray[np.float64]:
-        """Ground displacement at the samples [m], from zero: exact for straight lines between them."""
+        """Ground displacement at the samples [m], from zero, exact for straight lines between them."""
         a, v, dt = self.acceleration, self.velocity, self.dt
         return from_zero(dt * (v[:-1] + dt * (2 * a[:-1] + a[1:]) / 6))
 
