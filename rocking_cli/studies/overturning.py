@@ -134,7 +134,7 @@ def overturning_map(
     Parameters
     ----------
     structure : PulsedModel
-        What is shaken; see `linear_block` and `shaken`.
+        What is shaken; see `linear_block` and `pulsed_model`.
     shape : Pulse
         The shape of the pulses; see `parse_shape`.
     omega, a : ndarray
