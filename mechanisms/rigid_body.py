@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from math import pi, radians
-from typing import Annotated, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import (
@@ -20,14 +20,13 @@ from rocking_cli.core import (
     Outline,
     Reals,
     Sketch,
+    Vertex,
     geometry_error,
     length,
     polygon,
     quantity,
 )
 
-Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
-Vertex = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 SAME = 1e-9  # of the polygon's size: points that are nearer are one
 LEVEL = 1e-6  # of its width or height, the smaller: nobody measures finer how level two corners are
 MOST = 10_000  # corners

@@ -9,6 +9,10 @@ from rocking_cli.core.equivalence import Equivalence as Equivalence
 from rocking_cli.core.equivalence import EquivalentBlock as EquivalentBlock
 from rocking_cli.core.equivalence import equivalent_block as equivalent_block
 from rocking_cli.core.equivalence import greatest_restitution as greatest_restitution
+from rocking_cli.core.fields import Vertex as Vertex
+from rocking_cli.core.fields import geometry_error as geometry_error
+from rocking_cli.core.fields import length as length
+from rocking_cli.core.fields import quantity as quantity
 from rocking_cli.core.kinematics import Direction as Direction
 from rocking_cli.core.kinematics import Reals as Reals
 from rocking_cli.core.kinematics import RigidMotion as RigidMotion
@@ -16,9 +20,6 @@ from rocking_cli.core.kinematics import four_bar as four_bar
 from rocking_cli.core.kinematics import four_bar_limit as four_bar_limit
 from rocking_cli.core.kinematics import rotation as rotation
 from rocking_cli.core.mechanism import Mechanism as Mechanism
-from rocking_cli.core.mechanism import geometry_error as geometry_error
-from rocking_cli.core.mechanism import length as length
-from rocking_cli.core.mechanism import quantity as quantity
 from rocking_cli.core.sketch import Angle as Angle
 from rocking_cli.core.sketch import Hinge as Hinge
 from rocking_cli.core.sketch import Length as Length

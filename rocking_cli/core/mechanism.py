@@ -6,35 +6,21 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Annotated, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from pydantic import Field, ValidationError
 
 from rocking_cli.core import equilibrium
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.coefficients import Coefficients, coefficients
+from rocking_cli.core.fields import Described, Name, Restitution
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Sketch
 from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
-from rocking_cli.text import cut, is_one_line
-from rocking_cli.units import UnitError, read, split
 
-
-def _shown_as_it_is(name: str) -> str:
-    if not name.strip():
-        raise ValueError("is empty")
-    if not is_one_line(name):
-        raise ValueError(f"must be printable characters in one line, got {cut(repr(name))}")
-    return name
-
-
-Restitution = Annotated[float, Field(gt=0, le=1)]
-Name = Annotated[str, AfterValidator(_shown_as_it_is)]
-"""What a user calls something: shown on terminals, in pictures and on pages."""
 ANSWERS = (
     "bodies", "motion", "limit", "sketch", "coefficients", "kinetic_inertia", "potential_energy", "uplift",
     "critical_rotation", "restitution_from_kinematics", "eta",
@@ -43,79 +29,8 @@ ANSWERS = (
 POWERS = {"m": 1, "m2": 2, "m3": 3}  # of a length, by the unit of a field
 
 
-def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
-    """A field of a mechanism: what it is, its unit and symbol, an example for `rocking new`, and its bounds.
-
-    Parameters
-    ----------
-    description : str
-        What the field is, a few words.
-    unit : str
-        Its SI unit, or degrees where the field's name says so; empty for a pure number. A bare number is in this
-        unit, and a text such as `800 mm` may be in any of the same kind, see `rocking_cli.units`.
-    symbol : str
-        The paper's symbol.
-    example : any
-        A value that works, printed by `rocking new`.
-    **bounds
-        Passed to `pydantic.Field`: `gt`, `ge`, `lt`, `le`, `default`, ...
-    """
-    return Field(
-        description=description, examples=[example], json_schema_extra={"unit": unit, "symbol": symbol}, **bounds
-    )
-
-
-def length(description: str, *, symbol: str = "", example: Any = None, **bounds: Any) -> Any:
-    """A `quantity` in metres: more than 0, and at most a million, so that nothing overflows.
-
-    Metres that were meant as millimetres pass: see `rocking_cli.core.size`.
-    """
-    return quantity(description, unit="m", symbol=symbol, example=example, gt=0, le=1e6, **bounds)
-
-
-def geometry_error(field: str, message: str) -> PydanticCustomError:
-    """An error for a validator to raise when fields that are fine one by one do not fit together.
-
-    Parameters
-    ----------
-    field : str
-        The field to point at.
-    message : str
-        What is wrong and what would be right.
-    """
-    # Pydantic formats the message: braces are its own.
-    return PydanticCustomError("geometry", "{reason}", {"reason": message, "field": field})
-
-
 def _is_mass(unit: object) -> bool:
     return isinstance(unit, str) and re.match(r"(kg|t)\b", unit) is not None
-
-
-def in_unit(value: Any, unit: str) -> Any:
-    """A value, or lists of them, with every text such as `800 mm` replaced by its number in a unit.
-
-    What is no such text stays as it is. Raises `ValidationError` with every text whose unit is wrong, and its place.
-    """
-    wrong: list[InitErrorDetails] = []
-
-    def number(each: Any, place: tuple[int, ...]) -> Any:
-        if isinstance(each, list | tuple):
-            items = [number(item, (*place, k)) for k, item in enumerate(each)]
-            return tuple(items) if isinstance(each, tuple) else items
-        parts = split(each) if isinstance(each, str) else None
-        if parts is None or not parts[1]:
-            return each
-        try:
-            return read(each, unit)
-        except UnitError as error:
-            said = PydanticCustomError("unit", "{reason}", {"reason": error.message, "hint": error.hint})
-            wrong.append(InitErrorDetails(type=said, loc=place, input=each))
-            return each
-
-    found = number(value, ())
-    if wrong:
-        raise ValidationError.from_exception_data("quantity", wrong)
-    return found
 
 
 def _multiplied(value: Any, factor: float) -> Any:
@@ -125,16 +40,14 @@ def _multiplied(value: Any, factor: float) -> Any:
     return value * factor if isinstance(value, float) else value
 
 
-class DirectionalRestitution(BaseModel):
+class DirectionalRestitution(Described):
     """Coefficients of restitution that differ between the two impacts."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     positive_to_negative: Restitution = Field(description="eta of an impact that ends positive rotation")
     negative_to_positive: Restitution = Field(description="eta of an impact that ends negative rotation")
 
 
-class Mechanism(BaseModel, ABC):
+class Mechanism(Described, ABC):
     """A rocking structure with one degree of freedom.
 
     A plugin subclasses it, declares its geometry as fields made with `quantity`, and says in `bodies`, `motion`
@@ -143,8 +56,6 @@ class Mechanism(BaseModel, ABC):
 
     Where a structure gives no masses its total mass is 1 kg, so that inertias and moments are per kilogram.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     mechanism: ClassVar[str]
     """The name of the mechanism, that of its entry point."""
@@ -188,15 +99,6 @@ class Mechanism(BaseModel, ABC):
         extras = {key: info.json_schema_extra for key, info in type(self).model_fields.items()}
         of_mass = [key for key, extra in extras.items() if isinstance(extra, dict) and _is_mass(extra.get("unit"))]
         return any(getattr(self, key) is not None for key in of_mass)
-
-    @field_validator("*", mode="before")
-    @classmethod
-    def _with_a_unit(cls, value: Any, info: ValidationInfo) -> Any:
-        """Every field that has a unit takes texts with units."""
-        if not isinstance(value, str | list | tuple):
-            return value
-        extra = cls.model_fields[info.field_name or ""].json_schema_extra
-        return in_unit(value, str(extra["unit"])) if isinstance(extra, dict) and extra.get("unit") else value
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""

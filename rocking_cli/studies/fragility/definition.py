@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, TypeVar
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError
 
-from rocking_cli.core.mechanism import Name, Restitution
+from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.io.field_problems import place_of, problems
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text

@@ -7,7 +7,7 @@ from typing import Any, Self, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, model_validator
 
-from rocking_cli.core.mechanism import geometry_error
+from rocking_cli.core.fields import geometry_error
 from rocking_cli.io.yaml_file import Place, spell
 
 Sound = Callable[..., bool]

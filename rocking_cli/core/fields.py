@@ -1,0 +1,120 @@
+"""Fields of what users describe: quantities with units, lengths and names, and errors that point at a field."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+from rocking_cli.text import cut, is_one_line
+from rocking_cli.units import UnitError, read, split
+
+
+def _shown_as_it_is(name: str) -> str:
+    if not name.strip():
+        raise ValueError("is empty")
+    if not is_one_line(name):
+        raise ValueError(f"must be printable characters in one line, got {cut(repr(name))}")
+    return name
+
+
+Restitution = Annotated[float, Field(gt=0, le=1)]
+Name = Annotated[str, AfterValidator(_shown_as_it_is)]
+"""What a user calls something: shown on terminals, in pictures and on pages."""
+
+
+def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
+    """A field of a mechanism: what it is, its unit and symbol, an example for `rocking new`, and its bounds.
+
+    Parameters
+    ----------
+    description : str
+        What the field is, a few words.
+    unit : str
+        Its SI unit, or degrees where the field's name says so; empty for a pure number. A bare number is in this
+        unit, and a text such as `800 mm` may be in any of the same kind, see `rocking_cli.units`.
+    symbol : str
+        The paper's symbol.
+    example : any
+        A value that works, printed by `rocking new`.
+    **bounds
+        Passed to `pydantic.Field`: `gt`, `ge`, `lt`, `le`, `default`, ...
+    """
+    return Field(
+        description=description, examples=[example], json_schema_extra={"unit": unit, "symbol": symbol}, **bounds
+    )
+
+
+def length(description: str, *, symbol: str = "", example: Any = None, **bounds: Any) -> Any:
+    """A `quantity` in metres: more than 0, and at most a million, so that nothing overflows.
+
+    Metres that were meant as millimetres pass: see `rocking_cli.core.size`.
+    """
+    return quantity(description, unit="m", symbol=symbol, example=example, gt=0, le=1e6, **bounds)
+
+
+def geometry_error(field: str, message: str) -> PydanticCustomError:
+    """An error for a validator to raise when fields that are fine one by one do not fit together.
+
+    Parameters
+    ----------
+    field : str
+        The field to point at.
+    message : str
+        What is wrong and what would be right.
+    """
+    # Pydantic formats the message: braces are its own.
+    return PydanticCustomError("geometry", "{reason}", {"reason": message, "field": field})
+
+
+def in_unit(value: Any, unit: str) -> Any:
+    """A value, or lists of them, with every text such as `800 mm` replaced by its number in a unit.
+
+    What is no such text stays as it is. Raises `ValidationError` with every text whose unit is wrong, and its place.
+    """
+    wrong: list[InitErrorDetails] = []
+
+    def number(each: Any, place: tuple[int, ...]) -> Any:
+        if isinstance(each, list | tuple):
+            items = [number(item, (*place, k)) for k, item in enumerate(each)]
+            return tuple(items) if isinstance(each, tuple) else items
+        parts = split(each) if isinstance(each, str) else None
+        if parts is None or not parts[1]:
+            return each
+        try:
+            return read(each, unit)
+        except UnitError as error:
+            said = PydanticCustomError("unit", "{reason}", {"reason": error.message, "hint": error.hint})
+            wrong.append(InitErrorDetails(type=said, loc=place, input=each))
+            return each
+
+    found = number(value, ())
+    if wrong:
+        raise ValidationError.from_exception_data("quantity", wrong)
+    return found
+
+
+class Described(BaseModel):
+    """What a user describes by fields: unknown ones are refused, and one that has a unit takes texts with units."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _with_a_unit(cls, value: Any, info: ValidationInfo) -> Any:
+        """Every field that has a unit takes texts with units."""
+        if not isinstance(value, str | list | tuple):
+            return value
+        extra = cls.model_fields[info.field_name or ""].json_schema_extra
+        return in_unit(value, str(extra["unit"])) if isinstance(extra, dict) and extra.get("unit") else value
+
+
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+Vertex = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
+"""A point of the plane [x, y]."""
+
+
+def point(description: str, **bounds: Any) -> Any:
+    """A `quantity` for a point [x, y] in metres, in the coordinates of the picture of the structure."""
+    return quantity(description, unit="m", example=[0.0, 0.0], **bounds)
