@@ -69,21 +69,27 @@ class AsymmetricFrame(Mechanism):
         by_density = [self.density, self.depth]
         by_mass = [self.left_mass, self.beam_mass, self.right_mass]
         given = [value is not None for value in by_density + by_mass]
-        if given not in ([True] * 2 + [False] * 3, [False] * 2 + [True] * 3):
+        if self.mass is None and given not in ([True] * 2 + [False] * 3, [False] * 2 + [True] * 3):
             raise geometry_error(
                 "density",
                 "give density and depth, or left_mass, beam_mass and right_mass: all of one set, none of the other",
             )
+        if self.mass is not None and any(given):
+            raise geometry_error("mass", "goes with no other mass: leave out density, depth and the three masses")
         return self
+
+    def total_mass(self) -> float | None:
+        """Its bodies have the masses of their density, or their own."""
+        return self.mass
 
     def bodies(self) -> Sequence[Body]:
         width, top, span = self.column_width, self.left_height, self.spacing
         areas = (width * self.left_height, (span + width) * self.beam_depth, width * self.right_height)
-        if self.density is not None and self.depth is not None:
-            masses = tuple(self.density * self.depth * area for area in areas)
-        else:
-            assert self.left_mass is not None and self.beam_mass is not None and self.right_mass is not None
+        if self.left_mass is not None and self.beam_mass is not None and self.right_mass is not None:
             masses = (self.left_mass, self.beam_mass, self.right_mass)
+        else:
+            per_area = (self.density or 1.0) * (self.depth or 1.0)
+            masses = (per_area * areas[0], per_area * areas[1], per_area * areas[2])
         return (
             box("left column AB", masses[0], width, self.left_height, 1j * top / 2),
             box("beam BC", masses[1], span + width, self.beam_depth, span / 2 + 1j * (top + self.beam_depth / 2)),

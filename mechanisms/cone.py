@@ -51,6 +51,12 @@ class Cone(SingleBody):
             about_base = (3 * r**2 / 20 + h**2 / 10) * (1 - k**5) / (1 - k**3)
         return (Body("cone", 1.0, about_base - level**2, 1j * level),)
 
+    def volume(self) -> float:
+        """Of the solid it is, whatever its depth; a shell has none without its thickness."""
+        if self.kind == "shell":
+            return super().volume()
+        return pi * self.base_radius**2 * self.height / 3 * (1 - (self.inner_ratio or 0.0) ** 3)
+
     def feet(self) -> tuple[complex, complex]:
         return -self.base_radius + 0j, self.base_radius + 0j
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import atan2, pi
 from typing import ClassVar
 
@@ -57,6 +57,15 @@ class SymmetricFrame(Mechanism):
             box("columns", of_columns, self.column_width, self.column_height, 1j * h),
             Body("beam", 1 - of_columns, 0.0, self._axes[-1] / 2 + 2j * h + 0.5j * self.column_width),
         )
+
+    def alike(self) -> Mapping[str, int]:
+        return {"columns": self.columns}
+
+    def volume(self) -> float:
+        """Of columns as deep as `depth`, and of a beam of the same density."""
+        if self.depth is None:
+            return super().volume()
+        return self.depth * self.column_width * self.column_height * self.columns * (1 + self.mass_ratio)
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         foot = complex(direction * self.column_width / 2)

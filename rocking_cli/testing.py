@@ -272,7 +272,7 @@ def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
     for direction in Direction:
         here = f"in the {direction.label} direction"
         at = partial(_of_bodies, structure, direction=direction)
-        lam, phi_cr = equilibrium.uplift_acceleration(at), _phi_cr(structure, direction)
+        lam, phi_cr = equilibrium.uplift_acceleration(at, structure.gravity), _phi_cr(structure, direction)
         _agree(f"uplift {here}", structure.uplift(direction), lam)
         _agree(f"critical_rotation {here}", structure.critical_rotation(direction), phi_cr)
 
@@ -489,7 +489,7 @@ def _of_bodies(structure: Mechanism, phi: Reals, direction: Direction) -> Coeffi
 def _phi_cr(structure: Mechanism, direction: Direction) -> float:
     """The critical rotation by bodies and motions alone [rad]."""
     return equilibrium.critical_rotation(
-        partial(_of_bodies, structure, direction=direction), structure.limit(direction)
+        partial(_of_bodies, structure, direction=direction), structure.limit(direction), structure.gravity
     )
 
 

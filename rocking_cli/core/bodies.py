@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
@@ -46,6 +46,13 @@ class Body:
                 )
         if not abs(self.centroid) < inf:
             raise ValueError(f"the centroid of body {self.name!r} is at {self.centroid:g} m: it must be finite")
+
+
+def weighed(bodies: Sequence[Body], factor: float) -> Sequence[Body]:
+    """The same bodies with all masses and inertias multiplied."""
+    if factor == 1.0:
+        return bodies
+    return [replace(body, mass=factor * body.mass, inertia=factor * body.inertia) for body in bodies]
 
 
 def box(name: str, mass: float, width: float, height: float, centroid: complex) -> Body:

@@ -1,12 +1,14 @@
 """The coefficients of the equation of motion of any mechanism, from its bodies and their motions.
 
-I phi.. + J phi.^2 + g G = -s B u_g''        [paper, Eq. 8, with the signs of Lagrange's equation]
+I phi.. + J phi.^2 + g G + Q = -s B u_g''        [paper, Eq. 8, with the signs of Lagrange's equation]
+
+Q is the moment of what does not scale with g, such as a tie; a bare mechanism has none.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -37,6 +39,9 @@ class Coefficients:
         Derivatives of G and B [kg m/rad].
     V : ndarray
         Potential energy over g, from rest [kg m].
+    Q, dQ, U : ndarray, optional
+        Moment of forces that do not scale with g, restoring while positive [N m], its derivative, and their energy
+        from rest [J]; zero unless given.
     """
 
     phi: Reals
@@ -47,6 +52,22 @@ class Coefficients:
     dG: Reals
     dB: Reals
     V: Reals
+    Q: Reals = field(default_factory=lambda: np.zeros(0))
+    dQ: Reals = field(default_factory=lambda: np.zeros(0))
+    U: Reals = field(default_factory=lambda: np.zeros(0))
+
+    def __post_init__(self) -> None:
+        for name in ("Q", "dQ", "U"):
+            if getattr(self, name).shape != self.phi.shape:
+                object.__setattr__(self, name, np.zeros_like(self.phi))
+
+    def restoring(self, gravity: float) -> Reals:
+        """V'/g = G + Q/g [kg m]."""
+        return self.G + self.Q / gravity
+
+    def stiffness(self, gravity: float) -> Reals:
+        """V''/g = G' + Q'/g [kg m/rad]."""
+        return self.dG + self.dQ / gravity
 
 
 def coefficients(

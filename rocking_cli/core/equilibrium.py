@@ -13,29 +13,36 @@ from rocking_cli.errors import MechanismError
 SCAN_POINTS = 513  # where the first sign change of G is looked for; far finer than any linkage turns
 
 
-def uplift_acceleration(at: Callable[[Reals], Coefficients]) -> float:
-    """Uplift acceleration over g, lambda = G(0)/B(0) [paper, Eq. 10].
+class NoCriticalRotation(MechanismError):
+    """The motion reaches its kinematic limit before the structure is in unstable equilibrium."""
+
+
+def uplift_acceleration(at: Callable[[Reals], Coefficients], gravity: float) -> float:
+    """Uplift acceleration over g, lambda = V'(0)/(g B(0)) [paper, Eq. 10, where V' = g G].
 
     Parameters
     ----------
     at : callable
         Coefficients over an array of rotations.
+    gravity : float
+        [m/s2].
 
     Raises
     ------
     MechanismError
-        If the structure does not stand (G(0) <= 0) or the ground cannot start the mechanism (B(0) <= 0).
+        If the structure does not stand (V'(0) <= 0) or the ground cannot start the mechanism (B(0) <= 0).
     """
     rest = at(np.zeros(1))
-    if not rest.G[0] > 0:
+    restoring = float(rest.restoring(gravity)[0])
+    if not restoring > 0:
         raise MechanismError("the structure cannot stand: its weight does not hold this mechanism closed at rest")
     if not rest.B[0] > 0:
         raise MechanismError("no horizontal ground acceleration starts this mechanism in this direction")
-    return float(rest.G[0] / rest.B[0])  # Eq. 10
+    return float(restoring / rest.B[0])  # Eq. 10
 
 
-def critical_rotation(at: Callable[[Reals], Coefficients], limit: float) -> float:
-    """First rotation of unstable equilibrium: G = 0 with G' < 0 [rad; paper, Eq. 9].
+def critical_rotation(at: Callable[[Reals], Coefficients], limit: float, gravity: float) -> float:
+    """First rotation of unstable equilibrium: V' = 0 with V'' < 0 [rad; paper, Eq. 9].
 
     Parameters
     ----------
@@ -43,16 +50,18 @@ def critical_rotation(at: Callable[[Reals], Coefficients], limit: float) -> floa
         Coefficients over an array of rotations.
     limit : float
         Kinematic limit of the mechanism [rad].
+    gravity : float
+        [m/s2].
 
     Raises
     ------
-    MechanismError
+    NoCriticalRotation
         If the mechanism reaches its limit before it is in unstable equilibrium.
     """
     grid = np.linspace(0.0, limit, SCAN_POINTS)[:-1]
-    falls = np.flatnonzero(at(grid).G <= 0)
+    falls = np.flatnonzero(at(grid).restoring(gravity) <= 0)
     if falls.size == 0 or falls[0] == 0:
-        raise MechanismError(
+        raise NoCriticalRotation(
             f"no unstable equilibrium (G = 0) between rest and the kinematic limit of {limit:.4g} rad: "
             "the mechanism does not overturn by its own weight"
         )
@@ -60,7 +69,7 @@ def critical_rotation(at: Callable[[Reals], Coefficients], limit: float) -> floa
     phi = (low + high) / 2
     for _ in range(100):  # Newton kept inside the bracket
         here = at(np.array([phi]))
-        value, slope = float(here.G[0]), float(here.dG[0])
+        value, slope = float(here.restoring(gravity)[0]), float(here.stiffness(gravity)[0])
         low, high = (phi, high) if value > 0 else (low, phi)
         step = phi - value / slope if slope else low
         step = step if low < step < high else (low + high) / 2

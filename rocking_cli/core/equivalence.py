@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from math import isclose, sqrt
 
 import numpy as np
 
-from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
+from rocking_cli.core.statics import Statics, statics
 from rocking_cli.errors import MechanismError, PluginError, RockingError
 from rocking_cli.plugins.errors import plugin_error
 
-STEPS = 128  # to the critical rotation, between which a mechanism is held to move without jumps
 AGREEMENT = 1e-9  # relative difference below which the two directions count as the same
+
+
+class NoEquivalentBlock(MechanismError):
+    """A structure that stands and rocks, but as no single block does."""
 
 
 @dataclass(frozen=True)
@@ -91,18 +96,30 @@ def equivalent_block(mechanism: Mechanism) -> Equivalence:
     Raises
     ------
     MechanismError
-        If the structure does not stand, has no critical rotation or is beyond the range of numbers, or the plugin
-        fails.
+        If the structure does not stand or is beyond the range of numbers, or the plugin fails.
+    NoEquivalentBlock
+        If a tie leaves it no critical rotation, or a restoring moment that does not fall all the way to it.
 
     Notes
     -----
     DeJong and Dimitrakopoulos (2014), Eqs. 9-20: local equivalence at the unstable equilibrium.
     """
+    with _held_to_numbers(mechanism):
+        return Equivalence(_one_direction(mechanism, Direction.POSITIVE), _one_direction(mechanism, Direction.NEGATIVE))
+
+
+def both_statics(mechanism: Mechanism) -> tuple[Statics, Statics]:
+    """The moments of both directions, positive first. Raises as `equivalent_block`, without need of one."""
+    with _held_to_numbers(mechanism):
+        return statics(mechanism, Direction.POSITIVE), statics(mechanism, Direction.NEGATIVE)
+
+
+@contextmanager
+def _held_to_numbers(mechanism: Mechanism) -> Iterator[None]:
+    """Say of an error of arithmetic whose it is: of sizes beyond the range of numbers, or of the plugin."""
     try:
         with np.errstate(all="raise", under="ignore"):
-            return Equivalence(
-                _one_direction(mechanism, Direction.POSITIVE), _one_direction(mechanism, Direction.NEGATIVE)
-            )
+            yield
     except ArithmeticError as error:
         raise _beyond_range(error) from error
     except PluginError as error:
@@ -138,12 +155,15 @@ def greatest_restitution(mechanism: Mechanism, direction: Direction) -> float:
 
 
 def _one_direction(mechanism: Mechanism, direction: Direction) -> EquivalentBlock:
-    lam = mechanism.uplift(direction)  # Eq. 10
-    phi_cr = mechanism.critical_rotation(direction)  # Eq. 9
-    on_the_way = mechanism.coefficients(np.linspace(0.0, phi_cr, STEPS + 1), direction)
-    check_continuous(mechanism.mechanism, direction, on_the_way)
+    found = statics(mechanism, direction)
+    if found.phi_cr is None or found.why_no_block is not None:
+        raise NoEquivalentBlock(
+            f"no single block is equivalent to it in the {direction.label} direction: {found.why_no_block}"
+        )
+    lam, phi_cr = found.lambda_, found.phi_cr
     critical = mechanism.coefficients(np.array([phi_cr]), direction)
-    I_eq, G_eq, B_eq = float(critical.I[0]), -float(critical.dG[0]), float(critical.B[0])  # Eq. 13
+    I_eq, B_eq = float(critical.I[0]), float(critical.B[0])  # Eq. 13
+    G_eq = -float(critical.stiffness(mechanism.gravity)[0])  # Eq. 13, with -V''(phi_cr)/g in place of -G'
     kappa1 = B_eq / G_eq  # Eq. 15
     lambda_lin = phi_cr / kappa1  # Eqs. 18-19
     kappa2 = phi_cr / lam  # Eq. 20

@@ -4,28 +4,39 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, partial, wraps
+from inspect import isfunction
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from rocking_cli.core import equilibrium
-from rocking_cli.core.bodies import Body
+from rocking_cli.core.attached import Attached, Follow, PointMass
+from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
+from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
-from rocking_cli.core.fields import Described, Name, Restitution
+from rocking_cli.core.fields import Described, Name, Restitution, geometry_error, quantity
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
+from rocking_cli.core.loads import Load
 from rocking_cli.core.restitution import kinematic_restitution
-from rocking_cli.core.sketch import Sketch
+from rocking_cli.core.sketch import Outline, Sketch
+from rocking_cli.core.ties import Tie
 from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
-    "bodies", "motion", "limit", "sketch", "coefficients", "kinetic_inertia", "potential_energy", "uplift",
-    "critical_rotation", "restitution_from_kinematics", "eta",
+    "bodies", "motion", "limit", "sketch", "alike", "volume", "total_mass", "coefficients", "kinetic_inertia",
+    "potential_energy", "uplift",    "critical_rotation", "restitution_from_kinematics", "eta",
 )  # fmt: skip
 """The methods of `Mechanism` in which a plugin says or overrides what its mechanics is."""
+OF_THE_BARE = (
+    "coefficients", "kinetic_inertia", "potential_energy", "uplift", "critical_rotation", "restitution_from_kinematics",
+)  # fmt: skip
+"""Those whose overrides are closed forms of the bare mechanism: with loads or ties the general solvers answer."""
+LATER = {"dampers": "a damper", "inerters": "an inerter"}
+"""What structures will have one day, and is refused by name until then."""
 POWERS = {"m": 1, "m2": 2, "m3": 3}  # of a length, by the unit of a field
 
 
@@ -77,10 +88,26 @@ class Mechanism(Described, ABC):
     restitution: Restitution | DirectionalRestitution | None = Field(
         None, description="coefficient of restitution eta; absent: from kinematics"
     )
+    density: float | None = quantity(
+        "density; with depth it gives the masses", unit="kg/m3", default=None, gt=0, le=1e6
+    )
+    depth: float | None = quantity("size out of plane", unit="m", default=None, gt=0, le=1e6)
+    mass: float | None = quantity("mass of the whole structure", unit="kg", default=None, gt=0, le=1e15)
+    loads: list[Load] | None = Field(None, max_length=1000, description="masses and forces it carries; see Loads")
+    ties: list[Tie] | None = Field(None, max_length=1000, description="ties, tendons and springs; see Ties")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _not_yet(cls, data: Any) -> Any:
+        for key in LATER:
+            if isinstance(data, dict) and key in data and key not in cls.model_fields:
+                raise geometry_error(key, f"{LATER[key]} is not in this version: leave it out")
+        return data
 
     def __init__(self, /, **fields: Any) -> None:
         try:
             super().__init__(**fields)
+            self._hold_together()
         except ValidationError as error:
             from rocking_cli.io.field_problems import of_arguments
 
@@ -117,13 +144,50 @@ class Mechanism(Described, ABC):
             If a validator of the plugin fails in any other way.
         """
         with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
-            return cls.model_validate(dict(fields))
+            made = cls.model_validate(dict(fields))
+            made._hold_together()
+            return made
+
+    def _hold_together(self) -> None:
+        """Hold its masses, and what hangs on it, against its bodies; raises `ValidationError` of the fields."""
+        try:
+            if self.mass is not None and self.density is not None:
+                raise Refused((), "mass", "give mass, or density and depth: one of them")
+            self._mass_factor  # noqa: B018 - a density without a volume is refused here
+            if not (self.loads or self.ties):
+                return
+            if not self.has_mass:
+                key = "loads" if self.loads else "ties"
+                raise Refused((), key, "the structure has no masses: give density and depth, or its mass")
+            limits = {direction: self.limit(direction) for direction in Direction}
+            follow = {direction: partial(self._followed, direction=direction) for direction in Direction}
+            for loc, thing in self._hung:
+                check_stretched(loc, thing, follow, limits)
+            self._check_stands()
+        except Refused as error:
+            raise as_validation_error([error], self.mechanism) from error
+
+    def _check_stands(self) -> None:
+        """Refuse loads and ties under which the structure does not stand though it stands by itself."""
+        for direction in Direction:
+            here = self.coefficients(np.zeros(1), direction)
+            own = coefficients(np.zeros(1), direction, self.bodies(), self.motion(np.zeros(1), direction))
+            if own.G[0] > 0 and not here.restoring(self.gravity)[0] > 0:
+                raise Refused(
+                    (),
+                    "loads" if self.loads else "ties",
+                    f"the structure cannot stand under them: at rest they turn it in the {direction.label} direction "
+                    f"with {-here.restoring(self.gravity)[0] * self.gravity:.4g} N m more than its weight holds",
+                )
 
     @classmethod
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
         """What a subclass says of its own mechanics is guarded: whatever fails there is an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
         guard(cls, ANSWERS, _failed)
+        for name in OF_THE_BARE:
+            if isfunction(own := vars(cls).get(name)):
+                setattr(cls, name, _of_the_bare(own))
 
     def enlarged(self, factor: float) -> Self:
         """A structure of another size: every field in m, m2 or m3 is multiplied, all else stays.
@@ -136,19 +200,23 @@ class Mechanism(Described, ABC):
         Returns
         -------
         Mechanism
-            Masses and loads that are given as such do not grow with it, so that it need not behave alike.
+            Masses and loads that are given as such do not grow with it, so that it need not behave alike; where loads
+            and ties are is multiplied.
 
         Raises
         ------
         pydantic.ValidationError
             If a field is then out of its bounds.
         """
-        changed = {}
+        changed: dict[str, Any] = {}
         for key, field in type(self).model_fields.items():
             unit = field.json_schema_extra.get("unit") if isinstance(field.json_schema_extra, dict) else None
             power = POWERS.get(str(unit))
             if power is not None:
                 changed[key] = _multiplied(getattr(self, key), factor**power)
+        for key in ("loads", "ties"):
+            if things := getattr(self, key):
+                changed[key] = [thing.enlarged(factor) for thing in things]
         return self.model_copy(update=changed)
 
     @abstractmethod
@@ -167,31 +235,100 @@ class Mechanism(Described, ABC):
         """What a picture shows beside the bodies and their motion; optional, by default nothing."""
         return Sketch()
 
+    def alike(self) -> Mapping[str, int]:
+        """Of bodies that stand for several which move alike: how many, by their names; by default none does."""
+        return {}
+
+    def volume(self) -> float:
+        """The volume that `density` makes the mass of [m3]: by default that of the outlines, `depth` deep."""
+        sketch = self.sketch()
+        area = 0.0
+        for body in self.bodies():
+            known: Sequence[Outline] = sketch.outlines.get(body.name, ()) if sketch.uniform else ()
+            shapes = [body.outline] if body.outline else known
+            if not shapes:
+                raise Refused((), "density", f"the shape of its {body.name} is not known: give its mass instead")
+            area += sum(abs(_area(shape)) for shape in shapes)
+        if self.depth is None:
+            raise Refused((), "depth", "is missing: density needs the size out of plane")
+        return area * self.depth
+
+    def total_mass(self) -> float | None:
+        """The mass of the whole structure by the file [kg]; None where `bodies` have theirs, or there is none."""
+        if self.mass is not None or self.density is None:
+            return self.mass
+        return self.density * self.volume()
+
+    @cached_property
+    def _mass_factor(self) -> float:
+        """What the masses of `bodies` are multiplied by."""
+        total = self.total_mass()
+        return 1.0 if total is None else total / sum(body.mass for body in self.bodies())
+
+    def weighed(self) -> Sequence[Body]:
+        """The bodies with the masses of the file."""
+        return weighed(self.bodies(), self._mass_factor)
+
+    @cached_property
+    def _hung(self) -> Sequence[tuple[Loc, Attached]]:
+        """What hangs on it, each with its place among the fields."""
+        if not (self.loads or self.ties):
+            return ()
+        carrier = Carrier.of(self.bodies(), self.sketch(), self.alike())
+        return tuple(attach(carrier, self.loads or [], self.ties or []))
+
+    @property
+    def attached(self) -> Sequence[Attached]:
+        """What hangs on it, as its equation of motion sees it."""
+        return [thing for _, thing in self._hung]
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether it is the mechanism alone: without masses of the file, loads and ties."""
+        return self.total_mass() is None and not self._hung
+
+    def _followed(self, phi: Reals, direction: Direction) -> Follow:
+        return followed(self.bodies(), self.motion(phi, direction), phi.shape)
+
     def coefficients(self, phi: Reals, direction: Direction) -> Coefficients:
-        """Coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8]."""
+        """Coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8].
+
+        With what hangs on the structure: see `rocking_cli.core.attached`.
+        """
         phi = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
-        return coefficients(phi, direction, self.bodies(), self.motion(phi, direction))
+        bodies, motions = self.weighed(), self.motion(phi, direction)
+        total = coefficients(phi, direction, bodies, motions)
+        if self._hung:
+            follow = followed(bodies, motions, phi.shape)
+            for thing in self.attached:
+                thing.act(total, direction, follow)
+        return total
 
     def kinetic_inertia(self, phi: Reals, direction: Direction) -> Reals:
         """I(phi) [kg m2], shape (n,): the kinetic energy is I phi.^2 / 2."""
         return self.coefficients(phi, direction).I
 
     def potential_energy(self, phi: Reals, direction: Direction) -> Reals:
-        """V(phi) [J], shape (n,), zero at rest."""
-        return self.gravity * self.coefficients(phi, direction).V
+        """V(phi) [J], shape (n,), zero at rest; with what is stored in ties."""
+        here = self.coefficients(phi, direction)
+        return self.gravity * here.V + here.U
 
     def uplift(self, direction: Direction) -> float:
         """lambda: the ground acceleration that starts rocking, over g [paper, Eq. 10]."""
-        return equilibrium.uplift_acceleration(partial(self.coefficients, direction=direction))
+        return equilibrium.uplift_acceleration(partial(self.coefficients, direction=direction), self.gravity)
 
     def critical_rotation(self, direction: Direction) -> float:
-        """phi_cr: the rotation of unstable equilibrium [rad; paper, Eq. 9]."""
-        return equilibrium.critical_rotation(partial(self.coefficients, direction=direction), self.limit(direction))
+        """phi_cr: the rotation of unstable equilibrium [rad; paper, Eq. 9]; `NoCriticalRotation` without one."""
+        return equilibrium.critical_rotation(
+            partial(self.coefficients, direction=direction), self.limit(direction), self.gravity
+        )
 
     def restitution_from_kinematics(self, direction: Direction) -> float:
         """The eta of an impact that ends motion in `direction`, from the kinematics alone; it may be <= 0."""
         rest = np.zeros(1)
-        return kinematic_restitution(self.bodies(), self.motion(rest, direction), self.motion(rest, direction.opposite))
+        motions = self.motion(rest, direction), self.motion(rest, direction.opposite)
+        masses = [thing for thing in self.attached if isinstance(thing, PointMass)]
+        return kinematic_restitution(self.weighed(), *motions, masses)
 
     def eta(self, direction: Direction) -> float:
         """The eta of an impact that ends motion in `direction`: the user's, else that of the kinematics."""
@@ -199,6 +336,23 @@ class Mechanism(Described, ABC):
             given = self.restitution
             return given.positive_to_negative if direction > 0 else given.negative_to_positive
         return self.restitution if self.restitution is not None else self.restitution_from_kinematics(direction)
+
+
+def _of_the_bare(own: Callable[..., Any]) -> Callable[..., Any]:
+    """A method that answers for the bare mechanism, and leaves all else to the general solver of its name."""
+    general = getattr(Mechanism, own.__name__)
+
+    @wraps(own)
+    def answer(self: Mechanism, *args: Any, **named: Any) -> Any:
+        return own(self, *args, **named) if self.is_bare else general(self, *args, **named)
+
+    return answer
+
+
+def _area(shape: Sequence[complex]) -> float:
+    """Signed area of a polygon [m2]."""
+    z = np.asarray(shape) - shape[0]
+    return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
 
 
 def _failed(cls: type, method: str) -> str:

@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isclose
 
+from rocking_cli.core.attached import PointMass
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import RigidMotion
 
 
-def kinematic_restitution(bodies: Sequence[Body], before: Sequence[RigidMotion], after: Sequence[RigidMotion]) -> float:
+def kinematic_restitution(
+    bodies: Sequence[Body],
+    before: Sequence[RigidMotion],
+    after: Sequence[RigidMotion],
+    loads: Sequence[PointMass] = (),
+) -> float:
     """Ratio eta of the rotation rates after and before an impact.
 
     The velocity before the impact is projected on the mechanism that follows, in the mass inner product:
@@ -23,6 +29,8 @@ def kinematic_restitution(bodies: Sequence[Body], before: Sequence[RigidMotion],
         Bodies that are rigid in both mechanisms.
     before, after : sequence of RigidMotion
         Their motions in the two directions; the first entry of each is at rest (phi = 0).
+    loads : sequence of PointMass
+        Masses on these bodies, whose shares enter the inner product; a tie or a force is no part of it.
 
     Returns
     -------
@@ -34,6 +42,12 @@ def kinematic_restitution(bodies: Sequence[Body], before: Sequence[RigidMotion],
         u, v = old.carry(body.centroid)[1][0], new.carry(body.centroid)[1][0]
         mixed += body.mass * (u.conjugate() * v).real + body.inertia * old.dpsi[0] * new.dpsi[0]
         own += body.mass * abs(v) ** 2 + body.inertia * new.dpsi[0] ** 2
+    by_name = {body.name: pair for body, pair in zip(bodies, zip(before, after, strict=True), strict=True)}
+    for load in loads:
+        old, new = by_name[load.spot.body or ""]
+        u, v = (complex(motion.carry(load.spot.at)[1][0]) for motion in (old, new))
+        mixed += load.product(u, v)
+        own += load.product(v, v)
     return float(-mixed / own)
 
 

@@ -49,8 +49,9 @@ def problems(
 def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: str) -> list[Problem]:
     """The errors of a validation of arguments in Python, each with the name of its argument."""
     found: dict[Place, Problem] = {}
+    known = _names(model)
     for error in errors:
-        place: Place = tuple(part for part in error["loc"] if part in model.model_fields or isinstance(part, int))
+        place: Place = tuple(part for part in error["loc"] if part in known or isinstance(part, int))
         place = place or tuple(error["loc"][:1])
         if error["type"] == "geometry":
             place = (*place, error["ctx"]["field"])
@@ -158,10 +159,21 @@ def _fields(model: type[BaseModel], place: Place) -> dict[str, Any]:
     """The fields that may stand at a place, of whichever models it may hold."""
     models: list[Any] = [model]
     for part in place:
-        held = [each.model_fields[part].annotation for each in models if part in each.model_fields]
+        held = [inner[part].annotation for each in models if part in (inner := _spelt(each))]
         if held:  # else it is a place in a list, or a key that the user chooses
             models = [inner for annotation in held for inner in _models(annotation)]
-    return {name: info for each in models for name, info in each.model_fields.items()}
+    return {name: info for each in models for name, info in _spelt(each).items()}
+
+
+def _spelt(model: type[BaseModel]) -> dict[str, Any]:
+    """The fields of a model by the names that users write."""
+    return {info.alias or name: info for name, info in model.model_fields.items()}
+
+
+def _names(model: type[BaseModel]) -> set[str]:
+    """The names of all fields of a model, and of the models they hold."""
+    inner = [_names(each) for info in model.model_fields.values() for each in _models(info.annotation)]
+    return {*_spelt(model), *model.model_fields}.union(*inner)
 
 
 def _models(annotation: Any) -> list[type[BaseModel]]:

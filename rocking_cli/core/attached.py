@@ -1,0 +1,250 @@
+"""What hangs on a mechanism beside its own bodies, as the equation of motion sees it.
+
+    (I + ...) phi.. + (J + ...) phi.^2 + (g + v_g'') G + Q = -s B u_g'',   Q = N L' - F.r'
+
+A load adds its mass to I, J, G and B by its shares; a tie and a force add to Q, which does not scale with g.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Protocol
+
+import numpy as np
+
+from rocking_cli.core.coefficients import Coefficients
+from rocking_cli.core.kinematics import Direction, Points, Reals
+
+TOGETHER = 1e-9  # m, and of the distance from the origin: points that are nearer at rest are one
+NEAR = 1e-6  # rad or so: two points that met at rest are still so near that their distance is its derivative times phi
+
+
+class Path(NamedTuple):
+    """Where a point goes over the rotations: its place and first two derivatives in phi, each shape (n,)."""
+
+    z: Points
+    dz: Points
+    ddz: Points
+
+
+class Spot(NamedTuple):
+    """A point of a body, or of the ground (None), by its place at rest [m]."""
+
+    body: str | None
+    at: complex
+
+
+Follow = Callable[[Spot], Path]
+"""Gives the path of a point."""
+
+
+class Attached(Protocol):
+    """Something that hangs on a mechanism."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        ...
+
+    def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
+        """Add its share to coefficients."""
+        ...
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A load whose mass counts by three shares: for horizontal and vertical inertia, and as weight.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    spot : Spot
+        Where it acts.
+    mass : float
+        [kg].
+    horizontal, vertical, weight : float
+        Shares of the mass, 0 to 1.
+    """
+
+    name: str
+    spot: Spot
+    mass: float
+    horizontal: float = 1.0
+    vertical: float = 1.0
+    weight: float = 1.0
+
+    def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
+        """Add it to I, J, G, B and V."""
+        z, dz, ddz = follow(self.spot)
+        across, up, down = (self.mass * share for share in (self.horizontal, self.vertical, self.weight))
+        total.I[:] += across * dz.real**2 + up * dz.imag**2
+        total.J[:] += across * dz.real * ddz.real + up * dz.imag * ddz.imag
+        total.G[:] += down * dz.imag
+        total.dG[:] += down * ddz.imag
+        total.V[:] += down * (z.imag - self.spot.at.imag)
+        total.B[:] += direction * across * dz.real
+        total.dB[:] += direction * across * ddz.real
+
+    def product(self, one: complex, other: complex) -> float:
+        """The mass inner product of two velocities of its point."""
+        return self.mass * (self.horizontal * one.real * other.real + self.vertical * one.imag * other.imag)
+
+
+@dataclass(frozen=True)
+class ConstantForce:
+    """A force of constant size and direction, such as the thrust of a vault; friction turns with the motion.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    spot : Spot
+        Where it acts.
+    force : complex
+        Fx + i Fy [N]; of friction, as it acts while the mechanism rocks in the positive direction.
+    friction : bool
+        Whether its horizontal part is against the motion in either direction.
+    only : Direction, optional
+        The direction of rocking in which it acts; None: in both.
+    """
+
+    name: str
+    spot: Spot
+    force: complex
+    friction: bool = False
+    only: Direction | None = None
+
+    def in_direction(self, direction: Direction) -> complex:
+        """The force while the mechanism rocks in a direction [N]."""
+        if self.only is not None and direction is not self.only:
+            return 0j
+        return complex(direction * self.force.real, self.force.imag) if self.friction else self.force
+
+    def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
+        """Add -F.r' to Q."""
+        z, dz, ddz = follow(self.spot)
+        force = self.in_direction(direction)
+        total.Q[:] -= _dot(force, dz)
+        total.dQ[:] -= _dot(force, ddz)
+        total.U[:] -= _dot(force, z - self.spot.at)
+
+
+Sense = Literal["tension", "compression"]
+
+
+@dataclass(frozen=True)
+class Spring:
+    """An elastic tie along a path of points: N = N0 + k e, in tension only, in compression only, or both.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    spots : sequence of Spot
+        Two or more; its length is the sum of the pieces between them.
+    stiffness, prestress : float
+        k [N/m], and N0 at rest [N], tension positive.
+    only : {"tension", "compression"}, optional
+        In which sense it can act.
+    count : float
+        How many of them there are.
+    """
+
+    name: str
+    spots: Sequence[Spot]
+    stiffness: float
+    prestress: float = 0.0
+    only: Sense | None = None
+    count: float = 1.0
+
+    def elongation(self, follow: Follow) -> tuple[Reals, Reals, Reals]:
+        """e = L - L(0) [m] and the first two derivatives of L, each shape (n,)."""
+        paths = [follow(spot) for spot in self.spots]
+        e, first, second = (np.zeros(paths[0].z.shape) for _ in range(3))
+        for one, other, here, there in zip(self.spots, self.spots[1:], paths, paths[1:], strict=False):
+            rest = abs(other.at - one.at)
+            if rest <= TOGETHER * (1 + abs(one.at)):
+                rest = 0.0
+            d, dd, ddd = there.z - here.z, there.dz - here.dz, there.ddz - here.ddz
+            span, speed = np.abs(d), np.abs(dd)
+            met = span <= NEAR * speed if rest == 0.0 else np.zeros(span.shape, bool)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                rate = np.where(met, speed, _dot(d, dd) / span)  # L' = dr.dr'/L
+                bend = np.where(met, _dot(dd, ddd) / speed, (speed**2 + _dot(d, ddd) - rate**2) / span)
+            still = span + speed == 0  # points that stay together
+            e += span - rest
+            first += np.where(still, 0.0, rate)
+            second += np.where(still, 0.0, bend)
+        return e, first, second
+
+    def force(self, e: Reals) -> Reals:
+        """N of one of them at an elongation [N]."""
+        n = self.prestress + self.stiffness * e
+        if self.only == "tension":
+            return np.maximum(n, 0.0)
+        return np.minimum(n, 0.0) if self.only == "compression" else n
+
+    def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
+        """Add N L' to Q."""
+        e, first, second = self.elongation(follow)
+        n = self.force(e)
+        slope = np.where(n != 0, self.stiffness, 0.0) if self.only is not None else self.stiffness
+        total.Q[:] += self.count * n * first
+        total.dQ[:] += self.count * (slope * first**2 + n * second)
+        total.U[:] += self.count * self._energy(e)
+
+    def slack_at(self, e: Reals) -> Reals:
+        """What changes its sign where it goes slack or comes into play; without zeros if it never does."""
+        return self.prestress + self.stiffness * e if self.only is not None else np.ones_like(e)
+
+    def _energy(self, e: Reals) -> Reals:
+        """The integral of N from rest [J]."""
+        if self.only is None or self.stiffness == 0:
+            return self.prestress * e + self.stiffness * e**2 / 2
+        before, now = (self.force(at) ** 2 / (2 * self.stiffness) for at in (np.zeros_like(e), e))
+        return now - before
+
+
+@dataclass(frozen=True)
+class SpringBed:
+    """Springs all along a face of a body, from each of its points to where that rests: k ds each.
+
+    Their moment is that of two springs at the points of Gauss, exactly: the squared distance is quadratic along the
+    face of a rigid body.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    start, end : Spot
+        The ends of the face, of one body.
+    modulus : float
+        [N/m per metre].
+    count : float
+        How many of them there are.
+    """
+
+    name: str
+    start: Spot
+    end: Spot
+    modulus: float
+    count: float = 1.0
+
+    @property
+    def springs(self) -> list[Spring]:
+        """The two springs that act as it does."""
+        middle, half = (self.start.at + self.end.at) / 2, (self.end.at - self.start.at) / 2
+        each = self.modulus * abs(half) * self.count
+        places = (middle - half / np.sqrt(3), middle + half / np.sqrt(3))
+        return [Spring(self.name, (Spot(None, at), Spot(self.start.body, at)), each) for at in places]
+
+    def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
+        """Add its moment to Q."""
+        for spring in self.springs:
+            spring.act(total, direction, follow)
+
+
+def _dot(u: complex | Points, v: Points) -> Reals:
+    return np.asarray((np.conj(u) * v).real)

@@ -1,0 +1,183 @@
+"""From what users hang on a structure to what its equation of motion sees: each thing held against its bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from pydantic import ValidationError
+from pydantic_core import InitErrorDetails
+
+from rocking_cli.core.attached import Attached, Follow, Path, Spot, Spring, SpringBed
+from rocking_cli.core.bodies import Body
+from rocking_cli.core.fields import geometry_error
+from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
+from rocking_cli.core.loads import Load
+from rocking_cli.core.sketch import Outline, Sketch
+from rocking_cli.core.ties import Tie
+from rocking_cli.text import did_you_mean
+
+OUTSIDE = 1e-6  # of the size of a body: how far outside it a point may be by rounding
+LOOKED_AT = 129  # rotations at which it is seen whether a tie stretches
+STRETCHED = 1e-9  # of the length of its path, or of a metre: what counts as stretching
+
+Loc = tuple[str | int, ...]
+
+
+class Refused(ValueError):
+    """Something that does not fit the structure it hangs on; see `as_validation_error`."""
+
+    def __init__(self, loc: Loc, field: str, reason: str) -> None:
+        self.loc, self.field, self.reason = loc, field, reason
+        super().__init__(reason)
+
+
+def as_validation_error(refused: Sequence[Refused], title: str) -> ValidationError:
+    """What was refused, as errors of the fields it stands in."""
+    return ValidationError.from_exception_data(
+        title,
+        [InitErrorDetails(type=geometry_error(one.field, one.reason), loc=one.loc, input=None) for one in refused],
+    )
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """The bodies of a mechanism that things may hang on.
+
+    Parameters
+    ----------
+    bodies : mapping of str to Body
+        By their names.
+    outlines : mapping of str to sequence of Outline
+        Shapes of those whose shape is known.
+    alike : mapping of str to int
+        Of those that stand for several: how many.
+    """
+
+    bodies: Mapping[str, Body]
+    outlines: Mapping[str, Sequence[Outline]]
+    alike: Mapping[str, int]
+
+    @classmethod
+    def of(cls, bodies: Sequence[Body], sketch: Sketch, alike: Mapping[str, int]) -> Carrier:
+        """The carrier of a mechanism; shapes that are drawn at will do not count."""
+        shapes = {body.name: [body.outline] for body in bodies if body.outline}
+        return cls(
+            {body.name: body for body in bodies}, {**(sketch.outlines if sketch.uniform else {}), **shapes}, alike
+        )
+
+    def body(self, name: str | None, loc: Loc) -> str:
+        """The body that is meant. Raises `Refused`."""
+        known = ", ".join(self.bodies)
+        if name is None:
+            if len(self.bodies) > 1:
+                raise Refused(loc, "body", f"is missing: say which body, of {known}")
+            return next(iter(self.bodies))
+        if name not in self.bodies:
+            guess = did_you_mean(name, list(self.bodies))
+            raise Refused(loc, "body", f"there is no body {name!r}: {guess or f'known: {known}'}")
+        return name
+
+    def spot(self, name: str | None, point: complex, loc: Loc, field: str) -> Spot:
+        """A point of a body. Raises `Refused` if it lies outside it."""
+        body = self.body(name, loc)
+        shapes = self.outlines.get(body, ())
+        if shapes and not any(_holds(np.asarray(shape), point) for shape in shapes):
+            corners = np.concatenate([np.asarray(shape) for shape in shapes])
+            low, high = corners.real.min(), corners.real.max()
+            bottom, top = corners.imag.min(), corners.imag.max()
+            raise Refused(
+                loc,
+                field,
+                f"[{point.real:g}, {point.imag:g}] lies outside {body}, whose corners are from x = {low:.4g} to "
+                f"{high:.4g} m and from y = {bottom:.4g} to {top:.4g} m: coordinates are those of `rocking draw`",
+            )
+        return Spot(body, point)
+
+    def count(self, body: str, *, each: bool) -> int:
+        """How many a thing on a body stands for."""
+        return self.alike.get(body, 1) if each else 1
+
+
+def attach(carrier: Carrier, loads: Sequence[Load], ties: Sequence[Tie]) -> Iterator[tuple[Loc, Attached]]:
+    """What the equation of motion sees of loads and ties, each with its place among the fields. Raises `Refused`."""
+    names: set[str] = set()
+    for k, load in enumerate(loads):
+        loc: Loc = ("loads", k)
+        _own_name(load.name, names, loc)
+        body = carrier.spot(load.body, complex(*load.at), loc, "at").body or ""
+        yield loc, load.attached(body, carrier.count(body, each=load.each))
+    for k, tie in enumerate(ties):
+        loc = ("ties", k)
+        _own_name(tie.name, names, loc)
+        spots = list(_spots(carrier, tie, loc))
+        bodies = [spot.body for spot in spots if spot.body is not None]
+        if not bodies:
+            raise Refused(loc, "from", "both ends are on the ground: nothing stretches it")
+        yield loc, tie.attached(spots, carrier.count(bodies[0], each=tie.each))
+
+
+def _own_name(name: str, names: set[str], loc: Loc) -> None:
+    if name in names:
+        raise Refused(loc, "name", f"{name!r} is there already: give each load and tie its own name")
+    names.add(name)
+
+
+def _spots(carrier: Carrier, tie: Tie, loc: Loc) -> Iterator[Spot]:
+    if tie.bed is not None:
+        for field, end in (("from", tie.bed.start), ("to", tie.bed.end)):
+            yield carrier.spot(tie.bed.body, complex(*end), (*loc, "bed"), field)
+        return
+    for k, place in enumerate(tie.places):
+        where: Loc = (*loc, "path", k) if tie.path is not None else (*loc, ("from", "to")[k])
+        if place.ground is not None:
+            yield Spot(None, place.point)
+        else:
+            yield carrier.spot(place.body, place.point, where, "at")
+
+
+def check_stretched(loc: Loc, tie: Attached, follow: Mapping[Direction, Callable[[Reals], Follow]], limits: Mapping[
+    Direction, float]) -> None:  # fmt: skip
+    """Refuse a tie that no motion ever stretches, or in the one sense in which it can act."""
+    springs = tie.springs if isinstance(tie, SpringBed) else [tie] if isinstance(tie, Spring) else []
+    for spring in springs:
+        long = max(1.0, *(abs(b.at - a.at) for a, b in pairwise(spring.spots)))
+        for direction, limit in limits.items():
+            e, _, _ = spring.elongation(follow[direction](np.linspace(0.0, limit, LOOKED_AT)[:-1]))
+            counts = spring.force(e) != 0 if spring.only is not None else np.abs(e) > STRETCHED * long
+            if (counts & (np.abs(e) > STRETCHED * long)).any():
+                return
+    if springs:
+        sense = f" in {springs[0].only}" if springs[0].only else ""
+        raise Refused(
+            loc, "name", f"nothing stretches {tie.name!r}{sense}: no motion of the structure changes its length"
+        )
+
+
+def followed(bodies: Sequence[Body], motions: Sequence[RigidMotion], shape: tuple[int, ...]) -> Follow:
+    """The paths of points of bodies over the rotations of their motions; the ground stays."""
+    by_name = {body.name: motion for body, motion in zip(bodies, motions, strict=True)}
+
+    def follow(spot: Spot) -> Path:
+        if spot.body is None:
+            still = np.zeros(shape, np.complex128)
+            return Path(still + spot.at, still, still)
+        return Path(*by_name[spot.body].carry(spot.at))
+
+    return follow
+
+
+def _holds(corners: np.ndarray, point: complex) -> bool:
+    """Whether a point is in a polygon, or next to its edge."""
+    a, b = corners, np.roll(corners, -1)
+    edge = b - a
+    long = np.where(edge == 0, 1.0, np.abs(edge) ** 2)
+    along = np.clip(((point - a) * edge.conj()).real / long, 0.0, 1.0)
+    if np.abs(point - a - along * edge).min() <= OUTSIDE * float(np.abs(corners - corners.mean()).max()):
+        return True
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = a.real + (point.imag - a.imag) / edge.imag * edge.real
+    spans = (a.imag > point.imag) != (b.imag > point.imag)
+    return bool(np.count_nonzero(spans & (point.real < crossing)) % 2)

@@ -1,0 +1,69 @@
+"""Loads of a structure, as users give them: masses it carries or drags along, and forces."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from rocking_cli.core.attached import ConstantForce, PointMass, Spot
+from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, point, quantity
+
+Share = Annotated[float, Field(ge=0, le=1)]
+Newtons = Annotated[float, Field(ge=-1e12, le=1e12)]
+FLOORS: dict[str, dict[str, float]] = {
+    "borne": {"vertical": 1 / 3, "weight": 1 / 2},
+    "sliding": {"horizontal": 0.0, "vertical": 1 / 3, "weight": 1 / 2},
+    "dragged": {"horizontal": 1.0, "vertical": 1 / 3, "weight": 1 / 2},
+}
+"""Shares of a floor that is borne at its far end too: it turns about that end, and slides here or is dragged along."""
+
+
+class Load(Described):
+    """A mass or a constant force at a point of a body.
+
+    A mass counts by three shares, each 1 unless given: in the horizontal and the vertical inertia, and as weight.
+    A force has no inertia.
+    """
+
+    name: Name = Field(description="what to call it")
+    mass: float | None = quantity("its mass", unit="kg", example=1000.0, default=None, gt=0, le=1e12)
+    force: Annotated[list[Newtons], Field(min_length=2, max_length=2)] | None = quantity(
+        "a constant force [Fx, Fy], to the right and up", unit="N", example=[0.0, -1000.0], default=None
+    )
+    at: Vertex = point("where it acts")
+    body: Name | None = Field(None, description="the body it acts on, by its name in the picture; of one, left out")
+    horizontal: Share | None = Field(None, description="share of the mass that moves sideways with the body")
+    vertical: Share | None = Field(None, description="share that moves up with it")
+    weight: Share | None = Field(None, description="share of the weight that the body carries")
+    floor: Literal["borne", "sliding", "dragged"] | None = Field(
+        None, description="sets the shares of a floor that is borne at its far end too: its mass is that of all of it"
+    )
+    each: bool = Field(False, description="whether each of several bodies that move alike has one")
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        if (self.mass is None) == (self.force is None):
+            raise geometry_error("mass", "give a mass or a force: one of them")
+        shares = [key for key in ("horizontal", "vertical", "weight") if getattr(self, key) is not None]
+        if self.force is not None and (shares or self.floor is not None):
+            raise geometry_error(shares[0] if shares else "floor", "a force has no mass to share")
+        if self.floor is not None:
+            for key in shares:
+                if key in FLOORS[self.floor]:
+                    raise geometry_error(key, f"floor: {self.floor} sets it already: give one or the other")
+        return self
+
+    def attached(self, body: str, count: float) -> PointMass | ConstantForce:
+        """What the equation of motion sees of `count` such loads."""
+        spot = Spot(body, complex(*self.at))
+        if self.force is not None:
+            return ConstantForce(self.name, spot, count * complex(*self.force))
+        assert self.mass is not None
+        shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
+        given = {key: value for key, value in shares.items() if value is not None}
+        return PointMass(self.name, spot, count * self.mass, **{**FLOORS.get(self.floor or "", {}), **given})
+
+    def enlarged(self, factor: float) -> Load:
+        """The same load on a structure of another size: only where it acts is multiplied."""
+        return self.model_copy(update={"at": [factor * each for each in self.at]})

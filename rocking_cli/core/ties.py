@@ -1,0 +1,163 @@
+"""Ties of a structure, as users give them: bars, cables and tendons, and springs along a face."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import ConfigDict, Field, model_validator
+
+from rocking_cli.core.attached import Spot, Spring, SpringBed
+from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, point, quantity
+
+LATER = {
+    "yield": "a yield force",
+    "break": "an elongation at which it breaks",
+    "damper": "a damper",
+    "inerter": "an inerter",
+    "exponent": "the exponent of a damper",
+}
+"""What a tie will have one day, and is refused by name until then."""
+
+
+class Place(Described):
+    """A point of the ground, or of a body."""
+
+    ground: Vertex | None = point("a point of the ground", default=None)
+    body: Name | None = Field(None, description="a body, by its name in the picture; of one, left out")
+    at: Vertex | None = point("a point of that body", default=None)
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        if (self.ground is None) == (self.at is None):
+            raise geometry_error("ground", "give {ground: [x, y]} or {body: NAME, at: [x, y]}")
+        if self.ground is not None and self.body is not None:
+            raise geometry_error("body", "a point of the ground has no body")
+        return self
+
+    @property
+    def point(self) -> complex:
+        """Where it is at rest [m]."""
+        return complex(*(self.ground or self.at or ()))
+
+    def enlarged(self, factor: float) -> Place:
+        """The same place of a structure of another size."""
+        moved = {key: [factor * each for each in value] for key in ("ground", "at") if (value := getattr(self, key))}
+        return self.model_copy(update=moved)
+
+
+class Face(Described):
+    """A straight face of a body, along which there are springs to the ground."""
+
+    model_config = ConfigDict(validate_by_name=True)
+
+    body: Name | None = Field(None, description="the body, by its name in the picture; of one, left out")
+    start: Vertex = point("one end of the face", alias="from")
+    end: Vertex = point("its other end", alias="to")
+
+    def enlarged(self, factor: float) -> Face:
+        """The same face of a structure of another size."""
+        moved = {key: [factor * each for each in getattr(self, key)] for key in ("start", "end")}
+        return self.model_copy(update=moved)
+
+
+class Tie(Described):
+    """An elastic tie between two points, along a path of more, or a bed of springs along a face."""
+
+    model_config = ConfigDict(validate_by_name=True)
+
+    name: Name = Field(description="what to call it")
+    start: Place | None = Field(None, alias="from", description="where it begins")
+    end: Place | None = Field(None, alias="to", description="where it ends")
+    path: Annotated[list[Place], Field(min_length=2, max_length=100)] | None = Field(
+        None, description="instead of both: the points it runs over, such as a tendon in a duct"
+    )
+    bed: Face | None = Field(None, description="instead of both: a face with springs from each point to where it rests")
+    stiffness: float | None = quantity("its stiffness", unit="N/m", example=1e6, default=None, ge=0, le=1e15)
+    area: float | None = quantity("area of its section", unit="m2", example=5e-4, default=None, gt=0, le=1e6)
+    modulus: float | None = quantity(
+        "its modulus of elasticity; of a bed, stiffness per metre and metre", unit="Pa", example=2e11, default=None,
+        gt=0, le=1e15,
+    )  # fmt: skip
+    length: float | None = quantity(
+        "length over which it stretches; left out, that of its path", unit="m", default=None, gt=0, le=1e6
+    )
+    prestress: float = quantity("its force at rest, tension positive", unit="N", default=0.0, ge=-1e12, le=1e12)
+    only: Literal["tension", "compression"] | None = Field(None, description="the one sense in which it can act")
+    each: bool = Field(False, description="whether each of several bodies that move alike has one")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _not_yet(cls, data: Any) -> Any:
+        for key in LATER:
+            if isinstance(data, dict) and key in data:
+                raise geometry_error(key, f"{LATER[key]} of a tie is not in this version: leave it out")
+        return data
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        ways = [self.start is not None or self.end is not None, self.path is not None, self.bed is not None]
+        if sum(ways) != 1 or (ways[0] and (self.start is None or self.end is None)):
+            raise geometry_error("from", "give from and to, or a path of points, or a bed: one of them")
+        if self.bed is not None:
+            self._check_bed()
+        else:
+            self._check_bar()
+        return self
+
+    def _check_bed(self) -> None:
+        for key in ("stiffness", "area", "length", "only", "prestress"):
+            if getattr(self, key):
+                raise geometry_error(key, "a bed has a modulus and nothing else")
+        if self.modulus is None:
+            raise geometry_error("modulus", "a bed needs its modulus, N/m per metre of the face")
+
+    def _check_bar(self) -> None:
+        bar = [self.area, self.modulus]
+        if (self.stiffness is None) == (None in bar) or (self.stiffness is not None and bar != [None, None]):
+            raise geometry_error("stiffness", "give stiffness, or area and modulus: one of them")
+        if self.stiffness is not None and self.length is not None:
+            raise geometry_error("length", "a stiffness needs no length: give it with area and modulus")
+        if self.stiffness is None and self.length is None and self.span == 0:
+            raise geometry_error("length", "its ends are together at rest: give the length over which it stretches")
+        if (self.only == "tension" and self.prestress < 0) or (self.only == "compression" and self.prestress > 0):
+            raise geometry_error("prestress", f"it acts in {self.only} only: its force at rest must be of that sense")
+
+    @property
+    def places(self) -> list[Place]:
+        """The points it runs over; none of a bed."""
+        if self.start is not None and self.end is not None:
+            return [self.start, self.end]
+        return list(self.path or [])
+
+    @property
+    def span(self) -> float:
+        """Its length at rest [m]."""
+        points = [place.point for place in self.places]
+        return sum(abs(b - a) for a, b in pairwise(points))
+
+    @property
+    def k(self) -> float:
+        """Its stiffness [N/m]."""
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.area is not None and self.modulus is not None
+        return self.area * self.modulus / (self.length or self.span)
+
+    def attached(self, spots: list[Spot], count: float) -> Spring | SpringBed:
+        """What the equation of motion sees of `count` such ties over these points; of a bed, the ends of its face."""
+        if self.bed is not None:
+            assert self.modulus is not None
+            return SpringBed(self.name, spots[0], spots[1], self.modulus, count)
+        return Spring(self.name, tuple(spots), self.k, self.prestress, self.only, count)
+
+    def enlarged(self, factor: float) -> Tie:
+        """The same tie on a structure of another size: where it runs is multiplied, its stiffness and force stay."""
+        moved: dict[str, Any] = {
+            key: value.enlarged(factor) for key in ("start", "end", "bed") if (value := getattr(self, key)) is not None
+        }
+        if self.path is not None:
+            moved["path"] = [place.enlarged(factor) for place in self.path]
+        if self.bed is None:
+            moved |= {"stiffness": self.k, "area": None, "modulus": None, "length": None}
+        return self.model_copy(update=moved)
