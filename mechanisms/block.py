@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import pi
+from math import cos, pi, sin
 from typing import ClassVar
 
 from mechanisms._single_body import SingleBody
@@ -30,6 +30,13 @@ class Block(SingleBody):
 
     def limit(self, direction: Direction) -> float:
         return pi / 2  # it lies on its side
+
+    def rebound_from_impacts(self) -> float | None:
+        """Housner's impacts in sequence [Sorrentino, Al Shawa and Decanini 2011]; none with masses on it."""
+        if any(load.mass is not None for load in self.loads or ()):
+            return None
+        sine, cosine = sin(self.alpha(Direction.POSITIVE)), cos(self.alpha(Direction.POSITIVE))
+        return (1 - 1.5 * sine**2) ** 2 * abs(1 - 1.5 * cosine**2)
 
     def outlines(self) -> Sequence[Outline]:
         return (rectangle(0.5j * self.height, self.width, self.height),)

@@ -7,6 +7,8 @@ from rocking_cli.core.bodies import polygon as polygon
 from rocking_cli.core.coefficients import Coefficients as Coefficients
 from rocking_cli.core.equivalence import Equivalence as Equivalence
 from rocking_cli.core.equivalence import EquivalentBlock as EquivalentBlock
+from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock
+from rocking_cli.core.equivalence import both_statics as both_statics
 from rocking_cli.core.equivalence import equivalent_block as equivalent_block
 from rocking_cli.core.equivalence import greatest_restitution as greatest_restitution
 from rocking_cli.core.fields import Vertex as Vertex
@@ -28,3 +30,5 @@ from rocking_cli.core.sketch import Outline as Outline
 from rocking_cli.core.sketch import Sketch as Sketch
 from rocking_cli.core.sketch import disc as disc
 from rocking_cli.core.sketch import rectangle as rectangle
+from rocking_cli.core.statics import Statics as Statics
+from rocking_cli.core.statics import statics as statics

@@ -196,8 +196,8 @@ class Spring:
         total.U[:] += self.count * self._energy(e)
 
     def slack_at(self, e: Reals) -> Reals:
-        """What changes its sign where it goes slack or comes into play; without zeros if it never does."""
-        return self.prestress + self.stiffness * e if self.only is not None else np.ones_like(e)
+        """What changes its sign where it goes slack or comes into play, if it acts in one sense only [N]."""
+        return self.prestress + self.stiffness * e
 
     def _energy(self, e: Reals) -> Reals:
         """The integral of N from rest [J]."""
@@ -244,6 +244,11 @@ class SpringBed:
         """Add its moment to Q."""
         for spring in self.springs:
             spring.act(total, direction, follow)
+
+
+def springs_of(thing: Attached) -> Sequence[Spring]:
+    """The elastic ties that a thing acts as; none of a load or a force."""
+    return [thing] if isinstance(thing, Spring) else thing.springs if isinstance(thing, SpringBed) else []
 
 
 def _dot(u: complex | Points, v: Points) -> Reals:

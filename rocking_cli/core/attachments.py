@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 from pydantic_core import InitErrorDetails
 
-from rocking_cli.core.attached import Attached, Follow, Path, Spot, Spring, SpringBed
+from rocking_cli.core.attached import Attached, Follow, Path, Spot, springs_of
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.fields import geometry_error
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
@@ -141,7 +141,7 @@ def _spots(carrier: Carrier, tie: Tie, loc: Loc) -> Iterator[Spot]:
 def check_stretched(loc: Loc, tie: Attached, follow: Mapping[Direction, Callable[[Reals], Follow]], limits: Mapping[
     Direction, float]) -> None:  # fmt: skip
     """Refuse a tie that no motion ever stretches, or in the one sense in which it can act."""
-    springs = tie.springs if isinstance(tie, SpringBed) else [tie] if isinstance(tie, Spring) else []
+    springs = springs_of(tie)
     for spring in springs:
         long = max(1.0, *(abs(b.at - a.at) for a, b in pairwise(spring.spots)))
         for direction, limit in limits.items():

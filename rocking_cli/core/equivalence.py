@@ -66,7 +66,7 @@ class EquivalentBlock:
 
 @dataclass(frozen=True)
 class Equivalence:
-    """The equivalent blocks of both directions."""
+    """The equivalent blocks of both directions; of a structure that rocks to one side only, that of this side twice."""
 
     positive: EquivalentBlock
     negative: EquivalentBlock
@@ -105,13 +105,15 @@ def equivalent_block(mechanism: Mechanism) -> Equivalence:
     DeJong and Dimitrakopoulos (2014), Eqs. 9-20: local equivalence at the unstable equilibrium.
     """
     with _held_to_numbers(mechanism):
-        return Equivalence(_one_direction(mechanism, Direction.POSITIVE), _one_direction(mechanism, Direction.NEGATIVE))
+        blocks = [_one_direction(mechanism, direction) for direction in mechanism.directions]
+        return Equivalence(blocks[0], blocks[-1])
 
 
 def both_statics(mechanism: Mechanism) -> tuple[Statics, Statics]:
     """The moments of both directions, positive first. Raises as `equivalent_block`, without need of one."""
     with _held_to_numbers(mechanism):
-        return statics(mechanism, Direction.POSITIVE), statics(mechanism, Direction.NEGATIVE)
+        found = [statics(mechanism, direction) for direction in mechanism.directions]
+        return found[0], found[-1]
 
 
 @contextmanager

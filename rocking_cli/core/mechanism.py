@@ -7,13 +7,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from inspect import isfunction
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from rocking_cli.core import equilibrium
-from rocking_cli.core.attached import Attached, Follow, PointMass
+from rocking_cli.core.attached import Attached, Follow, PointMass, Spring, springs_of
 from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
@@ -28,7 +28,7 @@ from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
     "bodies", "motion", "limit", "sketch", "alike", "volume", "total_mass", "coefficients", "kinetic_inertia",
-    "potential_energy", "uplift",    "critical_rotation", "restitution_from_kinematics", "eta",
+    "potential_energy", "uplift", "rebound_from_impacts",    "critical_rotation", "restitution_from_kinematics", "eta",
 )  # fmt: skip
 """The methods of `Mechanism` in which a plugin says or overrides what its mechanics is."""
 OF_THE_BARE = (
@@ -93,6 +93,10 @@ class Mechanism(Described, ABC):
     )
     depth: float | None = quantity("size out of plane", unit="m", default=None, gt=0, le=1e6)
     mass: float | None = quantity("mass of the whole structure", unit="kg", default=None, gt=0, le=1e15)
+    one_sided: Literal["positive", "negative"] | None = Field(
+        None, description="the only direction it rocks in, such as away from side walls that it leans on"
+    )
+    rebound: float | None = quantity("rate after an impact on them over that before", default=None, ge=0, lt=1)
     loads: list[Load] | None = Field(None, max_length=1000, description="masses and forces it carries; see Loads")
     ties: list[Tie] | None = Field(None, max_length=1000, description="ties, tendons and springs; see Ties")
 
@@ -115,6 +119,21 @@ class Mechanism(Described, ABC):
 
     # As pydantic marks its own: files and copies are validated without it, and place their errors themselves.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @property
+    def directions(self) -> Sequence[Direction]:
+        """The directions it can rock in."""
+        return list(Direction) if self.one_sided is None else [Direction[self.one_sided.upper()]]
+
+    @property
+    def sides(self) -> tuple[Direction, Direction]:
+        """The directions that stand for positive and negative motion: where there is one only, for both."""
+        return self.directions[0], self.directions[-1]
+
+    @property
+    def rocks_both_ways(self) -> bool:
+        """Whether no support keeps it to one side."""
+        return self.one_sided is None
 
     @property
     def has_mass(self) -> bool:
@@ -153,13 +172,14 @@ class Mechanism(Described, ABC):
         try:
             if self.mass is not None and self.density is not None:
                 raise Refused((), "mass", "give mass, or density and depth: one of them")
+            self._check_one_sided()
             self._mass_factor  # noqa: B018 - a density without a volume is refused here
             if not (self.loads or self.ties):
                 return
             if not self.has_mass:
                 key = "loads" if self.loads else "ties"
                 raise Refused((), key, "the structure has no masses: give density and depth, or its mass")
-            limits = {direction: self.limit(direction) for direction in Direction}
+            limits = {direction: self.limit(direction) for direction in self.directions}
             follow = {direction: partial(self._followed, direction=direction) for direction in Direction}
             for loc, thing in self._hung:
                 check_stretched(loc, thing, follow, limits)
@@ -167,9 +187,18 @@ class Mechanism(Described, ABC):
         except Refused as error:
             raise as_validation_error([error], self.mechanism) from error
 
+    def _check_one_sided(self) -> None:
+        if self.one_sided is None and self.rebound is not None:
+            raise Refused((), "rebound", "goes with one_sided: without it the structure rocks on to the other side")
+        if self.one_sided is not None and self.restitution is not None:
+            raise Refused((), "restitution", "where one_sided holds it gives rebound instead: the rate thrown back")
+        if self.one_sided is not None and self.rebound is None and self.rebound_from_impacts() is None:
+            reason = "is missing: only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
+            raise Refused((), "rebound", reason)
+
     def _check_stands(self) -> None:
         """Refuse loads and ties under which the structure does not stand though it stands by itself."""
-        for direction in Direction:
+        for direction in self.directions:
             here = self.coefficients(np.zeros(1), direction)
             own = coefficients(np.zeros(1), direction, self.bodies(), self.motion(np.zeros(1), direction))
             if own.G[0] > 0 and not here.restoring(self.gravity)[0] > 0:
@@ -283,6 +312,17 @@ class Mechanism(Described, ABC):
         return [thing for _, thing in self._hung]
 
     @property
+    def springs(self) -> Sequence[Spring]:
+        """The elastic ones among its ties."""
+        return [spring for thing in self.attached for spring in springs_of(thing)]
+
+    def slackness(self, phi: Reals, direction: Direction) -> Reals:
+        """For each tie that acts in one sense only: what is zero where it goes slack, shape (ties, n)."""
+        follow = self._followed(np.asarray(phi, dtype=np.float64), direction)
+        rows = [each.slack_at(each.elongation(follow)[0]) for each in self.springs if each.only is not None]
+        return np.array(rows).reshape(len(rows), np.size(phi))
+
+    @property
     def is_bare(self) -> bool:
         """Whether it is the mechanism alone: without masses of the file, loads and ties."""
         return self.total_mass() is None and not self._hung
@@ -330,8 +370,18 @@ class Mechanism(Described, ABC):
         masses = [thing for thing in self.attached if isinstance(thing, PointMass)]
         return kinematic_restitution(self.weighed(), *motions, masses)
 
+    def rebound_from_impacts(self) -> float | None:
+        """The rebound of its shape from a theory of impacts in sequence; by default there is none."""
+        return None
+
     def eta(self, direction: Direction) -> float:
-        """The eta of an impact that ends motion in `direction`: the user's, else that of the kinematics."""
+        """The eta of an impact that ends motion in `direction`: the user's, else that of the kinematics.
+
+        Where it rocks to one side only, that is the rebound.
+        """
+        if not self.rocks_both_ways:
+            rebound = self.rebound if self.rebound is not None else self.rebound_from_impacts()
+            return 0.0 if rebound is None else rebound
         if isinstance(self.restitution, DirectionalRestitution):
             given = self.restitution
             return given.positive_to_negative if direction > 0 else given.negative_to_positive

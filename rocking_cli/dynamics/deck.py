@@ -83,10 +83,11 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
     from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
 
     structures, records = [], []
-    cells = 0
+    cells = held = 0
     for model in models:
-        structures.append((cells, len(model.forces), model.is_linear))
+        structures.append((cells, len(model.forces), model.is_linear, held if len(model.held) else -1))
         cells += len(model.forces)
+        held += len(model.held)
     us, vs, aheads, v_aheads = _Row(), _Row(), _Row(), _Row()
     any_vertical = any(motion is not None and motion.vertical is not None for motion in motions)
     for motion in motions:
@@ -104,6 +105,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         _joined([model.forces for model in models]),
         _joined([model.angles for model in models]),
         _joined([model.certain for model in models]),
+        _joined([model.held for model in models]),
         np.array(records),
         us.joined(),
         vs.joined(),

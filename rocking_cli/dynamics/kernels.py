@@ -4,9 +4,10 @@ A direction of rocking is an index d (0 positive, 1 negative) with sign s. A mot
 sqrt(I) dphi along it, and w = q. the root of twice the kinetic energy. In this coordinate the inertia is one, and
 Lagrange's equation has no velocity term:
 
-    q.. = -((g + v_g'') G(q) + s B(q) u_g'') / sqrt(I(q))        [Eq. 8]
+    q.. = -((g + v_g'') G(q) + Q(q) + s B(q) u_g'') / sqrt(I(q))        [Eq. 8]
 
-so two tables describe a mechanism, and Nystrom's methods for q.. = f(t, q) apply. The linear model is q = phi; without
+so two tables describe a mechanism, and Nystrom's methods for q.. = f(t, q) apply: G + Q/g and B. Under vertical ground
+motion a third one says how much of the first, Q/g, does not follow g + v_g''. The linear model is q = phi; without
 vertical ground motion it is advanced in closed form.
 
 All of it stands in one file because the compiled code is kept by file: a function elsewhere could go stale.
@@ -14,7 +15,7 @@ All of it stands in one file because the compiled code is kept by file: a functi
 
 from __future__ import annotations
 
-from math import cosh, inf, isfinite, nan, sinh, sqrt
+from math import cosh, isfinite, nan, sinh, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +23,8 @@ import numpy as np
 from rocking_cli.dynamics.compiled import compile_inline, compile_kernel
 
 # Columns of `numbers`, one row a direction.
-LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY = range(10)
-COLUMNS = 10
+LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED = range(12)
+COLUMNS = 12
 # Columns of `records`, one row a ground motion: first sample and number of samples of either component, and of the
 # strongest that is still to come; intervals.
 U_FIRST, U_SIZE, V_FIRST, V_SIZE, AHEAD_FIRST, AHEAD_SIZE, DT, V_DT = range(8)
@@ -55,15 +56,19 @@ COINCIDE = 1e-9  # of an interval: samples of two components closer than this ar
 class Deck(NamedTuple):
     """Structures and ground motions, one after the other, that any number of histories are of."""
 
-    structures: np.ndarray  # int (m, 3): first row and number of rows of the tables of each, and whether it is linear
+    # int (m, 4): first row and number of rows of the tables of each, whether it is linear, and its first row in `held`,
+    # which is -1 where all of its forces scale with g.
+    structures: np.ndarray
     numbers: np.ndarray  # (m, 2, COLUMNS): see the columns above
-    # (cells, 2, 8): in each cell, for either direction, the cubics of G/sqrt(I) and B/sqrt(I), and of phi and dphi/dq,
-    # powers 0 to 3 of the place in the cell.
+    # (cells, 2, 8): in each cell, for either direction, the cubics of (G + Q/g)/sqrt(I) and B/sqrt(I), and of phi and
+    # dphi/dq, powers 0 to 3 of the place in the cell.
     forces: np.ndarray
     angles: np.ndarray
     certain: (
         np.ndarray
     )  # (cells, 2): largest ground acceleration, over g, that cannot stop an outward motion from there
+    # (cells, 2, 5): the cubic of Q/(g sqrt(I)), which does not scale with g, and the largest Q/(g |B|) still to come
+    held: np.ndarray
     records: np.ndarray  # (k, 8): see the columns above
     u: np.ndarray  # horizontal ground acceleration of all records [m/s2], straight between samples, zero after the last
     v: np.ndarray  # vertical ground acceleration
@@ -88,6 +93,7 @@ class Structure(NamedTuple):
     forces: np.ndarray
     angles: np.ndarray
     certain: np.ndarray
+    held: np.ndarray  # of no rows where all of its forces scale with g
 
 
 class Motion(NamedTuple):
@@ -113,6 +119,14 @@ class Law(NamedTuple):
     kappa_g: float
     q_cr: float
     q_end: float
+    gravity: float
+
+
+class Forces(NamedTuple):
+    """The force tables of a structure: what scales with g and the ground, and how much of it g + v_g'' leaves alone."""
+
+    scaled: np.ndarray
+    held: np.ndarray
 
 
 class Ground(NamedTuple):
@@ -135,22 +149,36 @@ class State(NamedTuple):
 @compile_inline
 def law_of(exact, numbers, d):
     """The law of one direction."""
-    return Law(exact, d, numbers[d, PER_CELL], numbers[d, P], numbers[d, KAPPA_G], numbers[d, Q_CR], numbers[d, Q_END])
+    return Law(
+        exact,
+        d,
+        numbers[d, PER_CELL],
+        numbers[d, P],
+        numbers[d, KAPPA_G],
+        numbers[d, Q_CR],
+        numbers[d, Q_END],
+        numbers[d, GRAVITY],
+    )
 
 
 @compile_inline
 def force(forces, law, q, push, g):
     """q.. by the tables; beyond their ends the outermost cubic goes on smoothly."""
+    scaled, held = forces
     place = q * law.per_cell
-    k = min(max(int(place), 0), forces.shape[0] - 1)
+    k = min(max(int(place), 0), scaled.shape[0] - 1)
     d = law.d
     x = place - k
     # One cubic of both forces: they need not wait for x.
-    a0 = g * forces[k, d, 0] + push * forces[k, d, 4]
-    a1 = g * forces[k, d, 1] + push * forces[k, d, 5]
-    a2 = g * forces[k, d, 2] + push * forces[k, d, 6]
-    a3 = g * forces[k, d, 3] + push * forces[k, d, 7]
-    return -(a0 + x * a1 + x * x * (a2 + x * a3))
+    a0 = g * scaled[k, d, 0] + push * scaled[k, d, 4]
+    a1 = g * scaled[k, d, 1] + push * scaled[k, d, 5]
+    a2 = g * scaled[k, d, 2] + push * scaled[k, d, 6]
+    a3 = g * scaled[k, d, 3] + push * scaled[k, d, 7]
+    f = -(a0 + x * a1 + x * x * (a2 + x * a3))
+    if held.shape[0] > 0:
+        rest = held[k, d, 0] + x * (held[k, d, 1] + x * (held[k, d, 2] + x * held[k, d, 3]))
+        f -= (law.gravity - g) * rest
+    return f
 
 
 @compile_inline
@@ -397,7 +425,7 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
 
     Parameters
     ----------
-    forces, law, ground : ndarray, Law, Ground
+    forces, law, ground : Forces, Law, Ground
         What the motion obeys.
     t, tau, end : float
         Time of the sample, and from there the start and the end of the flight [s].
@@ -448,25 +476,39 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
 
 
 @compile_kernel
-def is_certain(structure, d, q, strongest):
-    """Whether an outward motion from q beyond phi_cr overturns whatever comes: nothing later can turn it back."""
+def is_certain(structure, d, q, strongest, weight):
+    """Whether an outward motion from q beyond phi_cr overturns whatever comes: nothing later can turn it back.
+
+    `weight` is the least (g + v_g'')/g to come: less weight pulls it over, while what ties it back stays.
+    """
     numbers = structure.numbers
+    if weight <= 0:
+        return False
+    held = structure.held.shape[0] > 0 and weight != 1
     if structure.linear:
-        return q >= numbers[d, Q_CR] + numbers[d, KAPPA_G] * strongest
+        return not held and q >= numbers[d, Q_CR] + numbers[d, KAPPA_G] * (strongest / weight)
     cell = min(int(q * numbers[d, PER_CELL]), structure.certain.shape[0] - 1)
-    return numbers[d, GRAVITY] * structure.certain[cell, d] >= strongest
+    if held:  # -w g G - Q = -w (g G + Q) - (1 - w) Q
+        strongest += (1 - weight) * numbers[d, GRAVITY] * structure.held[cell, d, 4]
+    return numbers[d, GRAVITY] * structure.certain[cell, d] >= strongest / weight
+
+
+@compile_inline
+def uplift(numbers, d, g):
+    """The ground acceleration that lifts a structure while g + v_g'' is g [m/s2]."""
+    return numbers[d, LAMBDA] * g + numbers[d, HELD] * (numbers[d, GRAVITY] - g)
 
 
 @compile_kernel
 def lifts_at(numbers, tau, end, u, ramp, g, grade):
     """When a structure at rest lifts between tau and end, and in which direction (-1: it does not).
 
-    It lifts where the ramp crosses the uplift acceleration lambda (g + v_g''), not at the sample. Without weight both
-    directions are open: it takes the first, or the one with more behind it.
+    It lifts where the ramp crosses the uplift acceleration [(g + v_g'') G + Q]/B, not at the sample. Without weight
+    both directions are open: it takes the first, or the one with more behind it.
     """
     lifted, most = -1, 0.0
     for d in range(2):
-        threshold = numbers[d, LAMBDA] * (g + grade * tau)
+        threshold = uplift(numbers, d, g + grade * tau)
         excess = (2.0 * d - 1.0) * (u + ramp * tau) - threshold
         if excess > MARGIN * abs(threshold) and excess > most:
             lifted, most = d, excess
@@ -474,10 +516,10 @@ def lifts_at(numbers, tau, end, u, ramp, g, grade):
         return tau, lifted
     first = end
     for d in range(2):
-        threshold = numbers[d, LAMBDA] * (g + grade * end)
+        threshold = uplift(numbers, d, g + grade * end)
         then = (2.0 * d - 1.0) * (u + ramp * end) - threshold
         if then > MARGIN * abs(threshold):
-            now = (2.0 * d - 1.0) * (u + ramp * tau) - numbers[d, LAMBDA] * (g + grade * tau)
+            now = (2.0 * d - 1.0) * (u + ramp * tau) - uplift(numbers, d, g + grade * tau)
             crossing = min(max(tau - (end - tau) * now / (then - now), tau), end)
             if lifted < 0 or crossing < first:
                 first, lifted = crossing, d
@@ -513,9 +555,10 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, samples):
     """
     tau, end, state, h = flight
     nothing = np.zeros(MARKS)
+    forces = Forces(structure.forces, structure.held)
     s = 1.0 - 2.0 * law.d
     while drawn < samples.phi.size and drawn * dt <= t + end:
-        _, tau, state, h = fly(structure.forces, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing)
+        _, tau, state, h = fly(forces, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing)
         phi, speed = angle(structure, law.d, state.q)
         samples.phi[drawn], samples.rate[drawn] = s * phi, s * state.w * speed
         drawn += 1
@@ -528,7 +571,8 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
 
     It begins at rest, with q = `start`. Returns how it ended.
     """
-    linear, numbers, forces, _, _ = structure
+    linear, numbers = structure.linear, structure.numbers
+    forces = Forces(structure.forces, structure.held)
     u, factor, dt, v, v_factor, v_dt, ahead, v_ahead = motion
     every, phi_out, rate_out, impacts = samples
     marks[:] = nan
@@ -648,9 +692,10 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
                     if n < impacts.shape[0]:
                         impacts[n, 0], impacts[n, 1], impacts[n, 2] = t + tau, s, -w * numbers[d, RATE]
                     marks[IMPACTS] += 1
-                    w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[1 - d, RATE]  # Eq. 6, on phi.
-                    d = 1 - d
-                    s = -s
+                    side = d if numbers[d, ONE_SIDED] else 1 - d  # a rebound keeps its direction
+                    w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[side, RATE]  # Eq. 6, on phi.
+                    d = side
+                    s = 1.0 - 2.0 * d
                     law = law_of(exact, numbers, d)
                     q, known = 0.0, False
                     _, lifted = lifts_at(numbers, tau, tau, u0, ramp, g, grade)
@@ -666,10 +711,8 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
             idle += 1
         if not resting and w >= 0 and q > law.q_cr:
             strongest = ahead[k] * abs(factor) if k < ahead.size else 0.0
-            if k < v_ahead.size and v_ahead[k] > 0:  # less weight to pull it over
-                weight = 1 - v_ahead[k] * v_factor / gravity
-                strongest = strongest / weight if weight > 0 else inf
-            if is_certain(structure, d, q, strongest):
+            weight = 1 - v_ahead[k] * v_factor / gravity if k < v_ahead.size and v_ahead[k] > 0 else 1.0
+            if is_certain(structure, d, q, strongest, weight):
                 marks[ENDED], marks[SIDE] = t, d
                 return OVERTURNED
         if marks[IMPACTS] - before > most_impacts or idle > IDLE:
@@ -725,7 +768,15 @@ def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
         numbers = numbers_of(deck.numbers[m], what)
         cells = slice(deck.structures[m, 0], deck.structures[m, 0] + deck.structures[m, 1])
         linear = deck.structures[m, 2] == 1
-        structure = Structure(linear, numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells])
+        held = deck.structures[m, 3]
+        structure = Structure(
+            linear,
+            numbers,
+            deck.forces[cells],
+            deck.angles[cells],
+            deck.certain[cells],
+            deck.held[held : held + deck.structures[m, 1]] if held >= 0 else deck.held[:0],
+        )
         of, size = deck.records[r], what[SIZE]
         horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
         vertical = slice(int(of[V_FIRST]), int(of[V_FIRST]) + int(of[V_SIZE]))

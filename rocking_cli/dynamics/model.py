@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import sqrt
 from typing import Literal
 
 import numpy as np
@@ -14,11 +15,13 @@ from rocking_cli.core import (
     Equivalence,
     EquivalentBlock,
     Mechanism,
+    both_statics,
     equivalent_block,
     greatest_restitution,
 )
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.restitution import why_none
+from rocking_cli.core.statics import Statics
 from rocking_cli.dynamics.tables import Table, tabulate
 from rocking_cli.errors import InputError, Problem
 
@@ -28,6 +31,10 @@ MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
 FALLEN = 1e6  # rad: no acceleration turns a linear block back from there; without weight one might, beyond all meaning
 ALIKE = 1e-9  # of the largest: tables of two directions that differ by rounding alone
+NOT_HELD = np.zeros((0, 2, 5))
+# Columns of `numbers`: the kernel's own names, which numba would have to be loaded for.
+LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED = range(12)
+COLUMNS = 12
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 
@@ -42,9 +49,13 @@ class Model:
     structure : str
         What to call the structure.
     phi_cr : tuple of float
-        Critical rotation in the positive and the negative direction [rad].
-    numbers, forces, angles, certain : ndarray
-        See `rocking_cli.dynamics.kernels.run`.
+        Critical rotation in the positive and the negative direction [rad], or the limit where there is none.
+    numbers, forces, angles, certain, held : ndarray
+        See `rocking_cli.dynamics.kernels.Deck`; `held` has no rows where all forces scale with g.
+    ends_at_limit : tuple of bool
+        Whether a direction has no critical rotation: `phi_cr` then is the kinematic limit, the only end it has.
+    one_sided : Direction, optional
+        The only direction it rocks in: an impact throws it back, and its restitution is the rebound.
     tables : tuple of Table, optional
         What the arrays are made of, if nonlinear.
     uplift_error : float
@@ -61,29 +72,32 @@ class Model:
     forces: Reals
     angles: Reals
     certain: Reals
+    held: Reals
     tables: tuple[Table, Table] | None = None
+    ends_at_limit: tuple[bool, bool] = (False, False)
+    one_sided: Direction | None = None
     uplift_error: float = 0.0
     most_eta: tuple[float, float] = (1.0, 1.0)
 
     @property
     def p(self) -> float:
         """Frequency parameter [rad/s], of two different directions the larger."""
-        return float(self.numbers[:, 7].max())
+        return float(self.numbers[:, P].max())
 
     @property
     def gravity(self) -> float:
         """Acceleration of gravity [m/s2]."""
-        return float(self.numbers[0, -1])
+        return float(self.numbers[0, GRAVITY])
 
     @property
     def lambda_(self) -> tuple[float, float]:
         """Uplift acceleration over g in the positive and the negative direction."""
-        return float(self.numbers[0, 0]), float(self.numbers[1, 0])
+        return float(self.numbers[0, LAMBDA]), float(self.numbers[1, LAMBDA])
 
     @property
     def eta(self) -> tuple[float, float]:
         """Restitution of impacts that end motion in the positive and in the negative direction."""
-        return float(self.numbers[0, 2]), float(self.numbers[1, 2])
+        return float(self.numbers[0, ETA]), float(self.numbers[1, ETA])
 
     @property
     def is_linear(self) -> bool:
@@ -123,54 +137,102 @@ def build_model(mechanism: Mechanism, name: ModelName) -> Model:
 
 def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) -> list[Model]:
     """Prepare several models of a structure; see `build_model`."""
-    equivalence = equivalent_block(mechanism)
-    return [build(mechanism, equivalence, name) for name in names]
+    equivalence = equivalent_block(mechanism) if set(names) != {"nonlinear"} else None
+    return [build(mechanism, both_statics(mechanism), equivalence, name) for name in names]
 
 
-def build(mechanism: Mechanism, equivalence: Equivalence, name: ModelName) -> Model:
-    """Prepare one model of a structure whose equivalent blocks are known; see `build_model`."""
+def build(
+    mechanism: Mechanism, statics: tuple[Statics, Statics], equivalence: Equivalence | None, name: ModelName
+) -> Model:
+    """Prepare one model of a structure from its statics, and a linear one from its blocks; see `build_model`."""
     label = mechanism.name or mechanism.mechanism
-    blocks = (equivalence.positive, equivalence.negative)
-    for direction, block in zip(Direction, blocks, strict=True):
-        if block.eta <= 0:
+    etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
+    for direction, eta in zip(mechanism.sides, etas, strict=True):
+        if eta <= 0 and mechanism.rocks_both_ways:
             raise InputError(
                 Problem(
-                    f"{mechanism.name or 'structure'}: the kinematics give {block.eta:.4g} for an impact that ends "
-                    f"motion in the {direction.label} direction: {why_none(block.eta)}",
+                    f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends "
+                    f"motion in the {direction.label} direction: {why_none(eta)}",
                     field="restitution",
                     hint="give a measured value as restitution, a number in (0, 1]",
                 )
             )
     if name == "nonlinear":
-        model = _nonlinear(label, mechanism, blocks)
+        model = _nonlinear(label, mechanism, statics, etas)
     else:
-        model = linear_model(label, name, blocks, mechanism.gravity)
+        assert equivalence is not None
+        model = linear_model(label, name, (equivalence.positive, equivalence.negative), mechanism.gravity)
+        if mechanism.attached:
+            model = _with_held(model, mechanism, (equivalence.positive, equivalence.negative))
     most_eta = greatest_restitution(mechanism, Direction.POSITIVE), greatest_restitution(mechanism, Direction.NEGATIVE)
-    return replace(model, most_eta=most_eta)
+    model = replace(model, most_eta=most_eta)
+    return model if mechanism.rocks_both_ways else _one_sided(model, mechanism.directions[0])
 
 
-def _nonlinear(label: str, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:
-    tables = tabulate(mechanism)
-    numbers = [
-        [
-            block.lambda_,
-            table.q(block.phi_cr),
-            block.eta,
-            table.rest_rate,
-            REST_RATE * block.p * block.phi_cr / table.rest_rate,
-            table.end,
-            1 / table.cell,
-            block.p,
-            0.0,  # linear models only
-            mechanism.gravity,
-        ]
-        for block, table in zip(blocks, tables, strict=True)
-    ]
+def _one_sided(model: Model, direction: Direction) -> Model:
+    """The same model, which the ground never lifts in the other direction, and which an impact throws back."""
+    numbers = model.numbers.copy()
+    numbers[0 if direction < 0 else 1, LAMBDA] = np.inf
+    numbers[:, ONE_SIDED] = 1.0
+    return replace(model, numbers=numbers, one_sided=direction)
+
+
+def _nonlinear(label: str, mechanism: Mechanism, statics: tuple[Statics, Statics], etas: tuple[float, float]) -> Model:
+    tables = tabulate(mechanism, statics)
+    numbers = []
+    for direction, side, table, eta in zip(mechanism.sides, statics, tables, etas, strict=True):
+        p = _rate(mechanism, direction, side)
+        row = np.zeros(COLUMNS)
+        row[LAMBDA] = side.lambda_
+        row[Q_CR] = table.q(side.reference) if side.phi_cr is not None else table.end
+        row[ETA], row[RATE] = eta, table.rest_rate
+        row[REST] = REST_RATE * p * side.reference / table.rest_rate
+        row[Q_END], row[PER_CELL], row[P], row[GRAVITY] = table.end, 1 / table.cell, p, mechanism.gravity
+        row[HELD] = _held_at_rest(mechanism, direction)
+        numbers.append(row)
     forces, angles, certain = (
         np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
     )
-    phi_cr = blocks[0].phi_cr, blocks[1].phi_cr
-    return Model("nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables=tables)
+    tied = any(table.held.size for table in tables)
+    held = np.stack([_rows(table.held, len(table.forces)) for table in tables], axis=1) if tied else NOT_HELD
+    phi_cr = statics[0].reference, statics[1].reference
+    ends = statics[0].phi_cr is None, statics[1].phi_cr is None
+    return Model(
+        "nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, held, tables=tables, ends_at_limit=ends
+    )
+
+
+def _rows(held: Reals, count: int) -> Reals:
+    return held if held.size else np.zeros((count, 5))
+
+
+def _rate(mechanism: Mechanism, direction: Direction, statics: Statics) -> float:
+    """How fast a motion of a direction changes [rad/s]: p, or where there is no block one of the moment at rest."""
+    at = mechanism.coefficients(np.array([0.0, statics.reference]), direction)
+    if statics.phi_cr is not None and (stiffness := -float(at.stiffness(mechanism.gravity)[1])) > 0:
+        return sqrt(mechanism.gravity * stiffness / float(at.I[1]))  # Eq. 17
+    return sqrt(mechanism.gravity * float(at.restoring(mechanism.gravity)[0]) / (float(at.I[0]) * statics.reference))
+
+
+def _held_at_rest(mechanism: Mechanism, direction: Direction) -> float:
+    """The part of lambda that does not scale with g: Q(0)/(g B(0))."""
+    rest = mechanism.coefficients(np.zeros(1), direction)
+    return float(rest.Q[0] / (mechanism.gravity * rest.B[0]))
+
+
+def _with_held(model: Model, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:
+    """A linear model of a tied structure: of its moment near phi_cr the part that vertical motion leaves alone.
+
+    I_eq x.. = -(g G' + Q') x - v_g'' (G + G' x) - s B u_g'', x = phi - phi_cr.
+    """
+    held, numbers = np.zeros((1, 2, 5)), model.numbers.copy()
+    for d, (direction, block) in enumerate(zip(mechanism.sides, blocks, strict=True)):
+        at = mechanism.coefficients(np.array([block.phi_cr]), direction)
+        slope = float(at.dQ[0]) / (mechanism.gravity * block.I_eq)
+        held[0, d, 0] = float(at.Q[0]) / (mechanism.gravity * block.I_eq) - slope * block.phi_cr
+        held[0, d, 1] = slope
+        numbers[d, HELD] = held[0, d, 0] / model.forces[0, d, 4]
+    return replace(model, held=held, numbers=numbers)
 
 
 def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, EquivalentBlock], gravity: float) -> Model:
@@ -191,23 +253,15 @@ def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equ
     numbers, forces = [], np.zeros((1, 2, 8))
     for d, block in enumerate(blocks):
         kappa = block.kappa1 if name == "linear1" else block.kappa2
-        numbers.append(
-            [
-                block.phi_cr / kappa,
-                block.phi_cr,
-                block.eta,
-                1.0,
-                REST_RATE * block.p * block.phi_cr,
-                FALLEN,
-                1.0,
-                block.p,
-                kappa / gravity,
-                gravity,
-            ]
-        )
+        row = np.zeros(COLUMNS)
+        row[LAMBDA], row[Q_CR], row[ETA], row[RATE] = block.phi_cr / kappa, block.phi_cr, block.eta, 1.0
+        row[REST], row[Q_END], row[PER_CELL] = REST_RATE * block.p * block.phi_cr, FALLEN, 1.0
+        row[P], row[KAPPA_G], row[GRAVITY] = block.p, kappa / gravity, gravity
+        numbers.append(row)
         stiffness = block.p**2 / gravity
         forces[0, d, [0, 1, 4]] = stiffness * block.phi_cr, -stiffness, stiffness * kappa  # Eq. 12
     angles = np.tile([0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (1, 2, 1))
     phi_cr = blocks[0].phi_cr, blocks[1].phi_cr
     error = uplift_error(Equivalence(*blocks)) if name == "linear1" else 0.0
-    return Model(name, label, phi_cr, np.array(numbers), forces, angles, np.zeros((1, 2)), uplift_error=error)
+    certain = np.zeros((1, 2))
+    return Model(name, label, phi_cr, np.array(numbers), forces, angles, certain, NOT_HELD, uplift_error=error)

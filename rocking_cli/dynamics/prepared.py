@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from rocking_cli.core import Equivalence, Mechanism, equivalent_block
+from rocking_cli.core import Equivalence, Mechanism, Statics, both_statics, equivalent_block
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -40,6 +40,12 @@ class Prepared:
         with self._named():
             return equivalent_block(self.mechanism)
 
+    @cached_property
+    def statics(self) -> tuple[Statics, Statics]:
+        """Its moments in both directions, also where no block is equivalent. Raises `MechanismError`, naming it."""
+        with self._named():
+            return both_statics(self.mechanism)
+
     @property
     def p(self) -> float:
         """Frequency parameter [rad/s], of two different directions the larger."""
@@ -49,14 +55,14 @@ class Prepared:
     def uplift(self) -> tuple[float, float]:
         """The ground acceleration that lifts it to the positive and the negative direction [standard gravity]."""
         unit = self.mechanism.gravity / STANDARD_GRAVITY
-        return self.equivalence.positive.lambda_ * unit, self.equivalence.negative.lambda_ * unit
+        return self.statics[0].lambda_ * unit, self.statics[1].lambda_ * unit
 
     def model(self, name: ModelName) -> Model:
         """One of its models. Raises `InputError` or `MechanismError` if it cannot be built."""
         if name not in self._models:
-            equivalence = self.equivalence
+            statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
             with self._named():
-                self._models[name] = build(self.mechanism, equivalence, name)
+                self._models[name] = build(self.mechanism, statics, equivalence, name)
         return self._models[name]
 
     def models(self, names: Sequence[ModelName] = MODELS) -> list[Model]:

@@ -5,13 +5,16 @@ Cubics with exact slopes at both ends of every cell. Near a lock, where the iner
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.coefficients import check_continuous
+from rocking_cli.core.statics import Statics
 
 Reals = NDArray[np.float64]
 TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, of thick short arches to 3e-11
@@ -26,11 +29,14 @@ class Table:
     Parameters
     ----------
     forces : ndarray, shape (n, 8)
-        In each cell the cubics of G/sqrt(I) and B/sqrt(I), powers 0 to 3 of the place in the cell.
+        In each cell the cubics of (G + Q/g)/sqrt(I) and B/sqrt(I), powers 0 to 3 of the place in the cell.
     angles : ndarray, shape (n, 8)
         Likewise phi [rad] and dphi/dq = 1/sqrt(I).
     certain : ndarray, shape (n,)
         From the start of each cell on, the ground acceleration over g that no more stops an outward motion.
+    held : ndarray, shape (n, 5)
+        The cubic of Q/(g sqrt(I)), the part of the first force that does not scale with g, and from the start of each
+        cell on the largest Q/(g |B|); of no rows if nothing ties the structure.
     nodes : ndarray, shape (n + 1,)
         phi at the ends of the cells [rad].
     cell : float
@@ -40,6 +46,7 @@ class Table:
     forces: Reals
     angles: Reals
     certain: Reals
+    held: Reals
     nodes: Reals
     cell: float
 
@@ -63,12 +70,45 @@ class Table:
         return self.cell * float(k + x)
 
 
-def tabulate(mechanism: Mechanism) -> tuple[Table, Table]:
-    """Tabulate both directions of a mechanism, positive first, from rest to its kinematic limits."""
+def tabulate(mechanism: Mechanism, statics: Sequence[Statics]) -> tuple[Table, Table]:
+    """Tabulate both directions of a mechanism, positive first, from rest to its kinematic limits.
+
+    Where it rocks to one side only, its table stands for both.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    statics : sequence of Statics
+        Of both directions.
+    """
     # A linkage may lock far beyond phi_cr, while its coefficients change within phi_cr.
-    reach = max(mechanism.limit(direction) / mechanism.critical_rotation(direction) for direction in Direction)
+    reach = max(each.limit / each.reference for each in statics)
     cells = int(min(max(TO_CRITICAL * reach, FEWEST), MOST))
-    return _one_direction(mechanism, Direction.POSITIVE, cells), _one_direction(mechanism, Direction.NEGATIVE, cells)
+    bends = np.concatenate([_bends(mechanism, direction, cells) for direction in mechanism.directions])
+    if bends.size:
+        # Where a tie goes slack the force has a corner, which no cubic follows: as near to a node as can be had.
+        counts = np.arange(cells, 2 * cells)
+        place = counts[:, None] * bends
+        cells = int(counts[np.abs(place - np.round(place)).max(axis=1).argmin()])
+    tables = [_one_direction(mechanism, direction, cells) for direction in mechanism.directions]
+    return tables[0], tables[-1]
+
+
+def _bends(mechanism: Mechanism, direction: Direction, cells: int) -> Reals:
+    """Where ties go slack or come into play, as shares of the range of q in a direction."""
+    shares = []
+    slack = partial(mechanism.slackness, direction=direction)
+    if len(slack(np.zeros(1))):
+        phi, _ = _even_steps(mechanism, direction, cells)
+        sign = slack(phi) > 0
+        for row, k in zip(*np.nonzero(sign[:, :-1] != sign[:, 1:]), strict=True):
+            low, high = phi[k], phi[k + 1]
+            for _ in range(50):
+                middle = (low + high) / 2
+                low, high = (middle, high) if (slack(np.array([middle]))[row, 0] > 0) == sign[row, k] else (low, middle)
+            shares.append((k + (low - phi[k]) / (phi[k + 1] - phi[k])) / cells)
+    return np.array(shares)
 
 
 def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Table:
@@ -76,13 +116,27 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Ta
     at = mechanism.coefficients(phi, direction)
     c = 1 / np.sqrt(at.I)
     dc = -at.J * c**4  # over q, as all slopes here; I' = 2 J
-    forces = [_cubics(width, y * c, dy * c**2 + y * dc) for y, dy in ((at.G, at.dG), (at.B, at.dB))]
-    # An outward motion gains energy as long as -g G - s B u >= 0, and does so for good where that holds up to the end.
-    with np.errstate(divide="ignore"):
-        enough = np.where(at.G < 0, -at.G / np.abs(at.B), -1.0)
+
+    def over_root(y: Reals, dy: Reals) -> Reals:
+        return _cubics(width, y * c, dy * c**2 + y * dc)
+
+    gravity = mechanism.gravity
+    restoring = at.restoring(gravity)
+    forces = [over_root(restoring, at.stiffness(gravity)), over_root(at.B, at.dB)]
+    # An outward motion gains energy as long as -V' - s B u >= 0, and does so for good where that holds up to the end.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        enough = np.where(restoring < 0, -restoring / np.abs(at.B), -1.0)
+        most_held = np.where(at.Q > 0, at.Q / (gravity * np.abs(at.B)), 0.0)
     certain = np.minimum.accumulate(enough[::-1])[::-1]
+    to_come = np.maximum.accumulate(most_held[::-1])[::-1]
+    held = np.column_stack([over_root(at.Q / gravity, at.dQ / gravity), to_come[:-1]])
     return Table(
-        np.hstack(forces), np.hstack([_cubics(width, phi, c), _cubics(width, c, dc)]), certain[:-1], phi, width
+        np.hstack(forces),
+        np.hstack([_cubics(width, phi, c), _cubics(width, c, dc)]),
+        certain[:-1],
+        held if at.Q.any() else held[:0],
+        phi,
+        width,
     )
 
 
