@@ -83,13 +83,13 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
     from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
 
     structures, records = [], []
-    cells = held = 0
+    cells = 0
     for model in models:
-        structures.append((cells, len(model.forces), model.is_linear, held if len(model.held) else -1))
+        structures.append((cells, len(model.forces), model.is_linear))
         cells += len(model.forces)
-        held += len(model.held)
     us, vs, aheads, v_aheads = _Row(), _Row(), _Row(), _Row()
     any_vertical = any(motion is not None and motion.vertical is not None for motion in motions)
+    tied = any_vertical and any(len(model.held) for model in models)
     for motion in motions:
         up = motion.vertical if motion is not None else None
         u, dt = (motion.acceleration, motion.dt) if motion is not None else (NOTHING, RELEASE_DT)
@@ -102,16 +102,25 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
     return kernels.Deck(
         np.array(structures, dtype=np.int64),
         np.array([model.numbers for model in models]),
-        _joined([model.forces for model in models]),
+        _joined([_three_forces(model) if tied else model.forces for model in models]),
         _joined([model.angles for model in models]),
         _joined([model.certain for model in models]),
-        _joined([model.held for model in models]),
+        _joined([model.held[..., 4] if len(model.held) else np.zeros(model.forces.shape[:2]) for model in models])
+        if tied
+        else np.empty((0, 2)),
         np.array(records),
         us.joined(),
         vs.joined(),
         aheads.joined(),
         v_aheads.joined(),
     )
+
+
+def _three_forces(model: Model) -> Reals:
+    """The forces of a model in a table that has what vertical motion leaves alone behind them."""
+    cells = len(model.forces)
+    held = model.held[..., :4] if len(model.held) else np.zeros((cells, 2, 4))
+    return np.concatenate([model.forces.reshape(cells, 2, 2, 4), held[:, :, None, :]], axis=2)
 
 
 class _Row:

@@ -56,19 +56,17 @@ COINCIDE = 1e-9  # of an interval: samples of two components closer than this ar
 class Deck(NamedTuple):
     """Structures and ground motions, one after the other, that any number of histories are of."""
 
-    # int (m, 4): first row and number of rows of the tables of each, whether it is linear, and its first row in `held`,
-    # which is -1 where all of its forces scale with g.
-    structures: np.ndarray
+    structures: np.ndarray  # int (m, 3): first row and number of rows of the tables of each, and whether it is linear
     numbers: np.ndarray  # (m, 2, COLUMNS): see the columns above
     # (cells, 2, 8): in each cell, for either direction, the cubics of (G + Q/g)/sqrt(I) and B/sqrt(I), and of phi and
-    # dphi/dq, powers 0 to 3 of the place in the cell.
+    # dphi/dq, powers 0 to 3 of the place in the cell. Where vertical motion meets a tie, forces are of (cells, 2, 3, 4)
+    # with that of Q/(g sqrt(I)) behind: the kernel is compiled for each, and without it costs nothing more.
     forces: np.ndarray
     angles: np.ndarray
     certain: (
         np.ndarray
     )  # (cells, 2): largest ground acceleration, over g, that cannot stop an outward motion from there
-    # (cells, 2, 5): the cubic of Q/(g sqrt(I)), which does not scale with g, and the largest Q/(g |B|) still to come
-    held: np.ndarray
+    held: np.ndarray  # (cells, 2): the largest Q/(g |B|) still to come; of no rows where `forces` are of two
     records: np.ndarray  # (k, 8): see the columns above
     u: np.ndarray  # horizontal ground acceleration of all records [m/s2], straight between samples, zero after the last
     v: np.ndarray  # vertical ground acceleration
@@ -93,7 +91,7 @@ class Structure(NamedTuple):
     forces: np.ndarray
     angles: np.ndarray
     certain: np.ndarray
-    held: np.ndarray  # of no rows where all of its forces scale with g
+    held: np.ndarray
 
 
 class Motion(NamedTuple):
@@ -120,13 +118,6 @@ class Law(NamedTuple):
     q_cr: float
     q_end: float
     gravity: float
-
-
-class Forces(NamedTuple):
-    """The force tables of a structure: what scales with g and the ground, and how much of it g + v_g'' leaves alone."""
-
-    scaled: np.ndarray
-    held: np.ndarray
 
 
 class Ground(NamedTuple):
@@ -164,21 +155,22 @@ def law_of(exact, numbers, d):
 @compile_inline
 def force(forces, law, q, push, g):
     """q.. by the tables; beyond their ends the outermost cubic goes on smoothly."""
-    scaled, held = forces
     place = q * law.per_cell
-    k = min(max(int(place), 0), scaled.shape[0] - 1)
+    k = min(max(int(place), 0), forces.shape[0] - 1)
     d = law.d
     x = place - k
+    if forces.ndim == 4:
+        a0 = g * forces[k, d, 0, 0] + push * forces[k, d, 1, 0] + (law.gravity - g) * forces[k, d, 2, 0]
+        a1 = g * forces[k, d, 0, 1] + push * forces[k, d, 1, 1] + (law.gravity - g) * forces[k, d, 2, 1]
+        a2 = g * forces[k, d, 0, 2] + push * forces[k, d, 1, 2] + (law.gravity - g) * forces[k, d, 2, 2]
+        a3 = g * forces[k, d, 0, 3] + push * forces[k, d, 1, 3] + (law.gravity - g) * forces[k, d, 2, 3]
+        return -(a0 + x * a1 + x * x * (a2 + x * a3))
     # One cubic of both forces: they need not wait for x.
-    a0 = g * scaled[k, d, 0] + push * scaled[k, d, 4]
-    a1 = g * scaled[k, d, 1] + push * scaled[k, d, 5]
-    a2 = g * scaled[k, d, 2] + push * scaled[k, d, 6]
-    a3 = g * scaled[k, d, 3] + push * scaled[k, d, 7]
-    f = -(a0 + x * a1 + x * x * (a2 + x * a3))
-    if held.shape[0] > 0:
-        rest = held[k, d, 0] + x * (held[k, d, 1] + x * (held[k, d, 2] + x * held[k, d, 3]))
-        f -= (law.gravity - g) * rest
-    return f
+    b0 = g * forces[k, d, 0] + push * forces[k, d, 4]
+    b1 = g * forces[k, d, 1] + push * forces[k, d, 5]
+    b2 = g * forces[k, d, 2] + push * forces[k, d, 6]
+    b3 = g * forces[k, d, 3] + push * forces[k, d, 7]
+    return -(b0 + x * b1 + x * x * (b2 + x * b3))
 
 
 @compile_inline
@@ -425,7 +417,7 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
 
     Parameters
     ----------
-    forces, law, ground : Forces, Law, Ground
+    forces, law, ground : ndarray, Law, Ground
         What the motion obeys.
     t, tau, end : float
         Time of the sample, and from there the start and the end of the flight [s].
@@ -489,7 +481,7 @@ def is_certain(structure, d, q, strongest, weight):
         return not held and q >= numbers[d, Q_CR] + numbers[d, KAPPA_G] * (strongest / weight)
     cell = min(int(q * numbers[d, PER_CELL]), structure.certain.shape[0] - 1)
     if held:  # -w g G - Q = -w (g G + Q) - (1 - w) Q
-        strongest += (1 - weight) * numbers[d, GRAVITY] * structure.held[cell, d, 4]
+        strongest += (1 - weight) * numbers[d, GRAVITY] * structure.held[cell, d]
     return numbers[d, GRAVITY] * structure.certain[cell, d] >= strongest / weight
 
 
@@ -555,10 +547,9 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, samples):
     """
     tau, end, state, h = flight
     nothing = np.zeros(MARKS)
-    forces = Forces(structure.forces, structure.held)
     s = 1.0 - 2.0 * law.d
     while drawn < samples.phi.size and drawn * dt <= t + end:
-        _, tau, state, h = fly(forces, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing)
+        _, tau, state, h = fly(structure.forces, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing)
         phi, speed = angle(structure, law.d, state.q)
         samples.phi[drawn], samples.rate[drawn] = s * phi, s * state.w * speed
         drawn += 1
@@ -571,8 +562,7 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
 
     It begins at rest, with q = `start`. Returns how it ended.
     """
-    linear, numbers = structure.linear, structure.numbers
-    forces = Forces(structure.forces, structure.held)
+    linear, numbers, forces, _, _, _ = structure
     u, factor, dt, v, v_factor, v_dt, ahead, v_ahead = motion
     every, phi_out, rate_out, impacts = samples
     marks[:] = nan
@@ -768,15 +758,8 @@ def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
         numbers = numbers_of(deck.numbers[m], what)
         cells = slice(deck.structures[m, 0], deck.structures[m, 0] + deck.structures[m, 1])
         linear = deck.structures[m, 2] == 1
-        held = deck.structures[m, 3]
-        structure = Structure(
-            linear,
-            numbers,
-            deck.forces[cells],
-            deck.angles[cells],
-            deck.certain[cells],
-            deck.held[held : held + deck.structures[m, 1]] if held >= 0 else deck.held[:0],
-        )
+        held = deck.held[cells] if deck.held.shape[0] > 0 else deck.held
+        structure = Structure(linear, numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells], held)
         of, size = deck.records[r], what[SIZE]
         horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
         vertical = slice(int(of[V_FIRST]), int(of[V_FIRST]) + int(of[V_SIZE]))
