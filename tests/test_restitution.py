@@ -315,8 +315,9 @@ def test_given_numbers_for_each_impact_win_and_are_not_swapped(as_mapping):
 def test_a_restitution_outside_0_to_1_is_refused(eta):
     with pytest.raises(InputError, match="restitution"):
         Block(width=0.7, height=2.8, restitution=eta)
-    with pytest.raises(ValueError, match="positive_to_negative"):
-        DirectionalRestitution(positive_to_negative=eta, negative_to_positive=0.9)
+    both = {"positive_to_negative": eta, "negative_to_positive": 0.9}
+    with pytest.raises(InputError, match="positive_to_negative"):
+        Block(width=0.7, height=2.8, restitution=both)
 
 
 # What is said of it

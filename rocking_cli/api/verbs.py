@@ -70,7 +70,7 @@ def _models(given: str | Sequence[str] | None) -> tuple[ModelName, ...]:
     return chosen  # type: ignore[return-value]
 
 
-def equiv(structure: Structure) -> Answer[Equivalence]:
+def equiv(structure: Structure) -> Answer[Equivalence | None]:
     """The equivalent single rocking block of a structure, in both directions.
 
     Parameters
@@ -80,8 +80,9 @@ def equiv(structure: Structure) -> Answer[Equivalence]:
 
     Returns
     -------
-    Answer of Equivalence
-        `positive` and `negative` are the blocks; see `equivalent_block`.
+    Answer of Equivalence or None
+        `positive` and `negative` are the blocks; see `equivalent_block`. None where no single block is equivalent, of
+        which its sentences and `to_dict` say why.
 
     Examples
     --------
@@ -93,7 +94,7 @@ def equiv(structure: Structure) -> Answer[Equivalence]:
     from rocking_cli.views import equiv as views
 
     ready = _structure(structure)
-    mechanism, found = ready.mechanism, ready.equivalence
+    mechanism, found = ready.mechanism, ready.equivalence if ready.why_no_block is None else None
 
     def draw() -> Figure:
         from rocking_cli.plotting.structure import draw_structure
@@ -101,9 +102,7 @@ def equiv(structure: Structure) -> Answer[Equivalence]:
 
         return draw_structure(picture(mechanism), heading(mechanism))
 
-    return Answer(
-        "equivalent block", found, views.view(mechanism, found), lambda: views.table([(mechanism, found)]), draw
-    )
+    return Answer("equivalent block", found, views.view(ready), lambda: views.table([ready]), draw)
 
 
 def draw(structure: Structure, *, at: float = 1.0) -> Answer[Picture]:
@@ -219,7 +218,8 @@ def respond(
 
     ready = _structure(structure)
     shaking = _motion(motion).scaled(scale) if motion is not None else None
-    found = histories.respond(ready.mechanism, shaking, models=_models(models), release=release, tail=tail, rtol=rtol)
+    chosen = _models(models) if models is not None else ready.default_models
+    found = histories.respond(ready.mechanism, shaking, models=chosen, release=release, tail=tail, rtol=rtol)
     title = heading(ready.mechanism) + (f", {shaking.name}" if shaking is not None else "")
 
     def columns() -> Columns:
@@ -231,7 +231,7 @@ def respond(
 
         return draw_history(found, shaking, title, uplift=ready.uplift)
 
-    return MappingAnswer("response", found, runs_view(title, {1: found}), columns, figure)
+    return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism), columns, figure)
 
 
 def respond_each(

@@ -111,7 +111,7 @@ def command(
     read = [*files, *(str(path) for path in paths)]
     keep_apart([("--out", out)], read)
     structure = inputs.structure(files, asked.records)
-    given, refused = inputs.gather(paths, asked, structure.equivalence, several=several)
+    given, refused = inputs.gather(paths, asked, structure.p, several=several)
     if not given:
         ctx.exit(InputError.exit_code)
     places = motion_files.separate(out, given, several=several)
@@ -130,7 +130,7 @@ def command(
             refused += 1
             continue
         rows.append([motion.name, film.verdict, ABSENT if beside is None else percent(beside.overturned)])
-        one = view(structure.mechanism, structure.equivalence, film, beside, {**found, "file": str(place)})
+        one = view(structure, film, beside, {**found, "file": str(place)})
         if as_json or not several:
             terminal.show(one, as_json=as_json)
     if several and rows and not as_json:

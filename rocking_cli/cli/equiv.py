@@ -31,7 +31,7 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
     if as_json and as_csv:
         raise click.UsageError("--json and --csv exclude each other.")
     from rocking_cli.cli import structures
-    from rocking_cli.core import equivalent_block
+    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.errors import INCOMPLETE, MechanismError
     from rocking_cli.io.tables import write_csv
     from rocking_cli.views import equiv
@@ -40,12 +40,13 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
     found = []
     for mechanism in mechanisms:
         try:
-            found.append((mechanism, equivalent_block(mechanism)))
+            structure = Prepared(mechanism)
+            structure.statics, structure.why_no_block  # noqa: B018 - derived here, and kept
+            found.append(structure)
         except MechanismError as error:
-            named = MechanismError(f"{mechanism.name}: {error}")
             if len(mechanisms) == 1:
-                raise named from error
-            terminal.error(str(named))
+                raise
+            terminal.error(str(error))
             bad += 1
     if not found:
         ctx.exit(MechanismError.exit_code)
@@ -53,12 +54,12 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
         lines = io.BytesIO()
         write_csv(lines, [equiv.table(found)], digits=None)
         terminal.result(lines.getvalue().decode().rstrip("\n"))
-    for mechanism, equivalence in found:
+    for structure in found:
         if not as_csv:
-            terminal.show(equiv.view(mechanism, equivalence), as_json=as_json)
-        for each in equiv.warnings(mechanism, equivalence):
+            terminal.show(equiv.view(structure), as_json=as_json)
+        for each in equiv.warnings(structure):
             terminal.warning(each)
-        for each in equiv.notes(mechanism):
+        for each in equiv.notes(structure.mechanism):
             terminal.note(each)
     if bad:
         ctx.exit(INCOMPLETE)

@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 import click
+from click.core import ParameterSource
 
 from rocking_cli.cli import terminal
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.pictures import write_picture
+from rocking_cli.cli.quantities import Release
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -152,10 +154,16 @@ class History:
     """Which equations of motion, from where, how long and how exactly."""
 
     models: tuple[str, ...]
-    release: float | None
+    release: Release | None
     tail: float
     rtol: float
     with_pulse: str | None
+
+    @property
+    def by_default(self) -> bool:
+        """Whether nobody asked for these models: the option was left out."""
+        context = click.get_current_context()
+        return context.get_parameter_source("models") is ParameterSource.DEFAULT
 
     @property
     def names(self) -> tuple[ModelName, ...]:

@@ -12,7 +12,6 @@ from rocking_cli.excitation.scaled import Scaled
 
 if TYPE_CHECKING:
     from rocking_cli.cli.groups import GroundMotions, Vertical
-    from rocking_cli.core import Equivalence
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.measures import Measures
@@ -79,7 +78,7 @@ def make(specification: str) -> tuple[Pulse, GroundMotion]:
 
 def judge(
     motion: GroundMotion,
-    blocks: Equivalence,
+    p: float,
     scale: float | None,
     target_pga: float | None,
     target_pgv: float | None,
@@ -90,7 +89,7 @@ def judge(
 
     measured = measure(motion)
     if motion.format != "pulse":  # what a formula leaves the ground with is meant
-        _warn(motion, measured, blocks)
+        _warn(motion, measured, p)
     if motion.vertical is not None:
         motion_files.warn(motion.vertical, doubts(motion.vertical, measure(motion.vertical)))
     factor = motion_files.factor(motion, measured, scale, target_pga, target_pgv)
@@ -100,23 +99,21 @@ def judge(
     return factor
 
 
-def _warn(motion: GroundMotion, measured: Measures, blocks: Equivalence) -> None:
+def _warn(motion: GroundMotion, measured: Measures, p: float) -> None:
     from rocking_cli.excitation.doubts import coarse_for, doubts
 
-    p = max(blocks.positive.p, blocks.negative.p)
     motion_files.warn(motion, doubts(motion, measured) + coarse_for(motion, p))
 
 
 def gather(
-    paths: Sequence[Path], asked: GroundMotions, blocks: Equivalence, vertical: Vertical | None = None, *, several: bool
+    paths: Sequence[Path], asked: GroundMotions, p: float, vertical: Vertical | None = None, *, several: bool
 ) -> tuple[list[Scaled], int]:
-    """The motions that shake a structure, and how many of those asked for cannot be used.
+    """The motions that shake a structure of a frequency parameter `p`, and how many of those asked for cannot be used.
 
     A single one is introduced in full, and an error in it ends the command. Of `several` each is reported by itself.
     `vertical` may be the vertical component of a single one.
     """
     if several:
-        p = max(blocks.positive.p, blocks.negative.p)
         return motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, p, "this structure")
     pulse, file = None, None
     if asked.pulses:
@@ -127,4 +124,4 @@ def gather(
     if vertical is not None and vertical.vertical is not None:
         up = read_vertical(vertical.vertical, asked.dt, vertical.vertical_dt, asked.units, vertical.vertical_channel)
         motion = replace(motion, vertical=up)
-    return [Scaled(motion, judge(motion, blocks, *asked.scaling), pulse, file)], 0
+    return [Scaled(motion, judge(motion, p, *asked.scaling), pulse, file)], 0

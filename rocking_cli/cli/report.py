@@ -91,7 +91,7 @@ def command(
     given: list[Scaled] = []
     refused = 0
     if paths or asked.pulses:
-        given, refused = inputs.gather(paths, asked, structure.equivalence, several=several)
+        given, refused = inputs.gather(paths, asked, structure.p, several=several)
     bad += refused
     if bad and not given:
         ctx.exit(InputError.exit_code)

@@ -10,7 +10,7 @@ import click
 
 from rocking_cli.cli import complete, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, History, Near, Output, Vertical
-from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity
+from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity, Tilt
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.views.view import View, heading
@@ -43,12 +43,6 @@ def _models(ctx: click.Context, param: click.Parameter, value: str) -> tuple[str
     return chosen
 
 
-def _release(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not 0 < abs(value) < 1:
-        raise click.BadParameter(f"{value:g} is not a fraction of phi_cr between 0 and 1 (or 0 and -1).", ctx, param)
-    return value
-
-
 def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     if not FINEST_RTOL <= value < 1:
         raise click.BadParameter(
@@ -76,10 +70,9 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 )
 @click.option(
     "--release",
-    type=Finite(),
-    metavar="RATIO",
-    callback=_release,
-    help="Start at rest from this fraction of phi_cr; negative: anticlockwise.",
+    type=Tilt(),
+    metavar="TILT",
+    help="Start at rest from this fraction of phi_cr, or an angle such as 0.05rad; negative: anticlockwise.",
 )
 @click.option(
     "--model",
@@ -141,6 +134,7 @@ def command(
       rocking respond frame.yaml --record "records/*.AT2" --target-pga 0.4
       rocking respond --record accel.txt --dt 0.01 --units g --target-pga 0.4 --polarity both
       rocking respond arch.yaml --release 0.5
+      rocking respond column.yaml --release 0.05rad
       rocking respond frame.yaml --pulse ricker:0.4g:1.2s --polarity both
       rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
     """
@@ -164,16 +158,18 @@ def command(
     chosen: Sequence[Scaled | None] = [None]  # a free release
     refused = 0
     if asked:
-        chosen, refused = inputs.gather(paths, asked, structure.equivalence, vertical, several=several)
+        chosen, refused = inputs.gather(paths, asked, structure.p, vertical, several=several)
         if not chosen:
             ctx.exit(InputError.exit_code)
     outs, plots = (motion_files.separate(path, chosen, several=several) for path in (output.out, output.plot))
     if several:
         keep_apart([*(("--out", each) for each in outs), *(("--plot", each) for each in plots)], read)
     compile_first()
-    structure.models(history.names)
-    question = Question(asked.signs, history.release, history.tail, history.rtol, history.with_pulse, near.around)
-    job = _Job(structure, history.names, question, asked.polarity, several, impacts, output.as_json)
+    names = _names(structure, history)
+    structure.models(names)
+    release = history.release.ratio(structure) if history.release is not None else None
+    question = Question(asked.signs, release, history.tail, history.rtol, history.with_pulse, near.around)
+    job = _Job(structure, names, question, asked.polarity, several, impacts, output.as_json)
     with terminal.progress(len(outs), "motions") as advance:
         for each, out, plot in zip(chosen, outs, plots, strict=True):
             refused += not job.follow(each, out, plot)
@@ -189,7 +185,7 @@ def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -
         raise click.UsageError("--record and --pulse exclude each other.")
     if not asked and history.release is None:
         raise click.UsageError(
-            "Nothing to respond to: give --record FILE or --pulse PULSE, or --release RATIO, or both."
+            "Nothing to respond to: give --record FILE or --pulse PULSE, or --release TILT, or both."
         )
     if not asked and vertical.vertical is not None:
         raise click.UsageError("--vertical goes with a horizontal component: give --record FILE or --pulse PULSE.")
@@ -200,6 +196,15 @@ def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -
         raise click.UsageError("--with-pulse finds the pulse in a record: give --record FILE.")
     if history.with_pulse is not None and asked.polarity == "both":
         raise click.UsageError("--with-pulse and --polarity both exclude each other: ask for one after the other.")
+
+
+def _names(structure: Prepared, history: History) -> tuple[ModelName, ...]:
+    """The models to follow: those asked for, else those that do not mislead, and a word on the others."""
+    if not history.by_default:
+        return history.names
+    if len(structure.default_models) < len(history.names):
+        terminal.note(f"nonlinear history only: {structure.why_no_block or structure.misleading}")
+    return structure.default_models
 
 
 class _Job:
@@ -233,7 +238,7 @@ class _Job:
 
         self._structure, self._names, self._asked, self._polarity = structure, names, asked, polarity
         self._several, self._impacts, self._as_json = several, impacts, as_json
-        self._table = Several(structure.mechanism, structure.equivalence, names)
+        self._table = Several(structure, names)
         self._details: list[Table | str] = []
 
     def follow(self, given: Scaled | None, out: Path | None, plot: Path | None) -> bool:
@@ -256,10 +261,7 @@ class _Job:
         _say_which_pulse(found.fit)
         _write(found, out, plot, title, self._structure.uplift)
         doubts = structures.doubts(mechanism)
-        one = view(
-            found, mechanism, self._structure.equivalence, self._asked, self._polarity, title, doubts,
-            impacts=self._impacts,
-        )  # fmt: skip
+        one = view(found, self._structure, self._asked, self._polarity, title, doubts, impacts=self._impacts)
         if self._as_json or not self._several:
             terminal.show(one, as_json=self._as_json)
         elif self._impacts:

@@ -11,6 +11,7 @@ from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock
 from rocking_cli.core.equivalence import both_statics as both_statics
 from rocking_cli.core.equivalence import equivalent_block as equivalent_block
 from rocking_cli.core.equivalence import greatest_restitution as greatest_restitution
+from rocking_cli.core.equivalence import one_block as one_block
 from rocking_cli.core.fields import Vertex as Vertex
 from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length

@@ -179,6 +179,10 @@ class Spring:
             second += np.where(still, 0.0, bend)
         return e, first, second
 
+    @property
+    def _sense(self) -> float:
+        return -1.0 if self.only == "compression" else 1.0
+
     def force(self, e: Reals) -> Reals:
         """N of one of them at an elongation [N]."""
         n = self.prestress + self.stiffness * e
@@ -190,7 +194,9 @@ class Spring:
         """Add N L' to Q."""
         e, first, second = self.elongation(follow)
         n = self.force(e)
-        slope = np.where(n != 0, self.stiffness, 0.0) if self.only is not None else self.stiffness
+        # Taut from rest on, it acts as soon as it moves in its sense.
+        acts = (n != 0) | ((self.prestress + self.stiffness * e == 0) & (self._sense * first > 0))
+        slope = np.where(acts, self.stiffness, 0.0) if self.only is not None else self.stiffness
         total.Q[:] += self.count * n * first
         total.dQ[:] += self.count * (slope * first**2 + n * second)
         total.U[:] += self.count * self._energy(e)

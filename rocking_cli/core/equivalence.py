@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from math import isclose, sqrt
+from math import isclose, isnan, sqrt
 
 import numpy as np
 
@@ -44,6 +44,8 @@ class EquivalentBlock:
         Ratio of the rotation rates after and before an impact that ends motion in this direction.
     I_eq, G_eq, B_eq : float
         Linearised inertia [kg m2], restoring moment over g and per rad [kg m], and drive [kg m].
+    v_imp : float
+        The velocity step of the ground that just overturns it from rest, without linearisation [m/s].
     """
 
     p: float
@@ -58,6 +60,7 @@ class EquivalentBlock:
     I_eq: float
     G_eq: float
     B_eq: float
+    v_imp: float
 
     def as_dict(self) -> dict[str, float]:
         """The parameters under their public names (`lambda` for `lambda_`)."""
@@ -77,8 +80,19 @@ class Equivalence:
     @property
     def symmetric(self) -> bool:
         """Whether the two directions agree to rounding error."""
-        pairs = zip(self.positive.as_dict().values(), self.negative.as_dict().values(), strict=True)
-        return all(isclose(one, other, rel_tol=AGREEMENT, abs_tol=1e-12) for one, other in pairs)
+        return alike(self.positive, self.negative)
+
+
+def alike(one: EquivalentBlock | Statics, other: EquivalentBlock | Statics) -> bool:
+    """Whether two directions agree to rounding error."""
+    pairs = zip(asdict(one).values(), asdict(other).values(), strict=True)
+    return all(_agree(a, b) for a, b in pairs)
+
+
+def _agree(one: float | str | None, other: float | str | None) -> bool:
+    if isinstance(one, float) and isinstance(other, float):
+        return isclose(one, other, rel_tol=AGREEMENT, abs_tol=1e-12) or (isnan(one) and isnan(other))
+    return (one is None) == (other is None)  # texts have numbers in them that differ by rounding
 
 
 def equivalent_block(mechanism: Mechanism) -> Equivalence:
@@ -107,6 +121,12 @@ def equivalent_block(mechanism: Mechanism) -> Equivalence:
     with _held_to_numbers(mechanism):
         blocks = [_one_direction(mechanism, direction) for direction in mechanism.directions]
         return Equivalence(blocks[0], blocks[-1])
+
+
+def one_block(mechanism: Mechanism, direction: Direction) -> EquivalentBlock:
+    """The equivalent block of one direction. Raises as `equivalent_block`."""
+    with _held_to_numbers(mechanism):
+        return _one_direction(mechanism, direction)
 
 
 def both_statics(mechanism: Mechanism) -> tuple[Statics, Statics]:
@@ -182,4 +202,15 @@ def _one_direction(mechanism: Mechanism, direction: Direction) -> EquivalentBloc
         I_eq=I_eq,
         G_eq=G_eq,
         B_eq=B_eq,
+        v_imp=impulse_velocity(mechanism, direction, phi_cr),
     )
+
+
+def impulse_velocity(mechanism: Mechanism, direction: Direction, phi_cr: float) -> float:
+    """The velocity step of the ground that just overturns a structure from rest [m/s].
+
+    The step gives it the rate B(0) v/I(0), and its energy just reaches phi_cr.
+    """
+    at = mechanism.coefficients(np.array([0.0, phi_cr]), direction)
+    stored = mechanism.gravity * at.V[1] + at.U[1]
+    return sqrt(2 * float(at.I[0]) * float(stored)) / float(at.B[0])

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from inspect import isfunction
-from typing import Any, ClassVar, Literal, Self
+from math import sqrt
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
@@ -17,7 +18,7 @@ from rocking_cli.core.attached import Attached, Follow, PointMass, Spring, sprin
 from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
-from rocking_cli.core.fields import Described, Name, Restitution, geometry_error, quantity
+from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.loads import Load
 from rocking_cli.core.restitution import kinematic_restitution
@@ -37,6 +38,7 @@ OF_THE_BARE = (
 """Those whose overrides are closed forms of the bare mechanism: with loads or ties the general solvers answer."""
 LATER = {"dampers": "a damper", "inerters": "an inerter"}
 """What structures will have one day, and is refused by name until then."""
+ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
 POWERS = {"m": 1, "m2": 2, "m3": 3}  # of a length, by the unit of a field
 
 
@@ -51,11 +53,14 @@ def _multiplied(value: Any, factor: float) -> Any:
     return value * factor if isinstance(value, float) else value
 
 
+Eta = Annotated[float, Field(gt=0, le=5)]  # how much it may be at most depends on the structure
+
+
 class DirectionalRestitution(Described):
     """Coefficients of restitution that differ between the two impacts."""
 
-    positive_to_negative: Restitution = Field(description="eta of an impact that ends positive rotation")
-    negative_to_positive: Restitution = Field(description="eta of an impact that ends negative rotation")
+    positive_to_negative: Eta = Field(description="eta of an impact that ends positive rotation")
+    negative_to_positive: Eta = Field(description="eta of an impact that ends negative rotation")
 
 
 class Mechanism(Described, ABC):
@@ -85,7 +90,7 @@ class Mechanism(Described, ABC):
     gravity: float = Field(
         9.80665, gt=0, le=1000, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"}
     )
-    restitution: Restitution | DirectionalRestitution | None = Field(
+    restitution: Eta | DirectionalRestitution | None = Field(
         None, description="coefficient of restitution eta; absent: from kinematics"
     )
     density: float | None = quantity(
@@ -151,6 +156,10 @@ class Mechanism(Described, ABC):
         kept = {key: getattr(self, key) for key in self.model_fields_set}
         return type(self).from_fields({**kept, **(update or {})})
 
+    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
+        """What was given; the rest is as it is by default."""
+        return ((key, getattr(self, key)) for key in type(self).model_fields if key in self.model_fields_set)
+
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any]) -> Self:
         """The mechanism with these fields.
@@ -173,6 +182,7 @@ class Mechanism(Described, ABC):
             if self.mass is not None and self.density is not None:
                 raise Refused((), "mass", "give mass, or density and depth: one of them")
             self._check_one_sided()
+            self._check_restitution()
             self._mass_factor  # noqa: B018 - a density without a volume is refused here
             if not (self.loads or self.ties):
                 return
@@ -180,7 +190,7 @@ class Mechanism(Described, ABC):
                 key = "loads" if self.loads else "ties"
                 raise Refused((), key, "the structure has no masses: give density and depth, or its mass")
             limits = {direction: self.limit(direction) for direction in self.directions}
-            follow = {direction: partial(self._followed, direction=direction) for direction in Direction}
+            follow = {direction: partial(self.followed, direction=direction) for direction in Direction}
             for loc, thing in self._hung:
                 check_stretched(loc, thing, follow, limits)
             self._check_stands()
@@ -195,6 +205,19 @@ class Mechanism(Described, ABC):
         if self.one_sided is not None and self.rebound is None and self.rebound_from_impacts() is None:
             reason = "is missing: only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
             raise Refused((), "rebound", reason)
+
+    def _check_restitution(self) -> None:
+        """Refuse a restitution with which an impact would add energy."""
+        if self.restitution is None:
+            return
+        I_plus, I_minus = (float(self.kinetic_inertia(np.zeros(1), direction)[0]) for direction in Direction)
+        for direction, most in zip(Direction, (sqrt(I_plus / I_minus), sqrt(I_minus / I_plus)), strict=True):
+            if (eta := self.eta(direction)) > most * (1 + ROUNDING):
+                field = "restitution"
+                if isinstance(self.restitution, DirectionalRestitution):
+                    field = "positive_to_negative" if direction > 0 else "negative_to_positive"
+                reason = f"must be at most {most:.6g}, got {eta:g}: beyond it an impact adds energy"
+                raise Refused(() if field == "restitution" else ("restitution",), field, reason)
 
     def _check_stands(self) -> None:
         """Refuse loads and ties under which the structure does not stand though it stands by itself."""
@@ -318,7 +341,7 @@ class Mechanism(Described, ABC):
 
     def slackness(self, phi: Reals, direction: Direction) -> Reals:
         """For each tie that acts in one sense only: what is zero where it goes slack, shape (ties, n)."""
-        follow = self._followed(np.asarray(phi, dtype=np.float64), direction)
+        follow = self.followed(np.asarray(phi, dtype=np.float64), direction)
         rows = [each.slack_at(each.elongation(follow)[0]) for each in self.springs if each.only is not None]
         return np.array(rows).reshape(len(rows), np.size(phi))
 
@@ -327,7 +350,8 @@ class Mechanism(Described, ABC):
         """Whether it is the mechanism alone: without masses of the file, loads and ties."""
         return self.total_mass() is None and not self._hung
 
-    def _followed(self, phi: Reals, direction: Direction) -> Follow:
+    def followed(self, phi: Reals, direction: Direction) -> Follow:
+        """The paths of its points over rotations, shape (n,)."""
         return followed(self.bodies(), self.motion(phi, direction), phi.shape)
 
     def coefficients(self, phi: Reals, direction: Direction) -> Coefficients:

@@ -78,10 +78,10 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
     limit = mechanism.limit(direction)
     try:
         phi_cr: float | None = mechanism.critical_rotation(direction)  # Eq. 9
-    except NoCriticalRotation as error:
+    except NoCriticalRotation:
         if not mechanism.attached:
             raise
-        phi_cr, why = None, f"it has no critical rotation: {error}"
+        phi_cr, why = None, f"its restoring moment does not vanish before the kinematic limit of {limit:.4g} rad"
     way = np.linspace(0.0, limit if phi_cr is None else phi_cr, STEPS + 1)
     here = mechanism.coefficients(way if phi_cr is not None else way[:-1], direction)
     check_continuous(mechanism.mechanism, direction, here)

@@ -45,6 +45,9 @@ class History(Outcome[bool, int, float]):
         By how much the uplift acceleration of the model is off that of the structure, relative; see `Model`.
     p : float
         Frequency parameter [rad/s]: 1/p is the time in which a tilt near the critical one grows.
+    ends_at_limit : tuple of bool
+        Whether the positive and the negative direction have no critical rotation: ratios are then over the kinematic
+        limit, and overturning is reaching it.
     """
 
     model: ModelName
@@ -56,6 +59,12 @@ class History(Outcome[bool, int, float]):
     contact_lost: float | None = None
     uplift_error: float = 0.0
     p: float = float("nan")
+    ends_at_limit: tuple[bool, bool] = (False, False)
+
+    @property
+    def reference(self) -> str:
+        """What its ratios are over: the critical rotation, or the kinematic limit."""
+        return "kinematic limit" if any(self.ends_at_limit) else "critical rotation"
 
     @property
     def first_impact(self) -> float:
@@ -115,6 +124,8 @@ def respond(
         raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
     if release is not None and not 0 < abs(release) < 1:
         raise InputError(f"release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {release:g}")
+    if release is not None and not mechanism.rocks_both_ways and release * mechanism.directions[0] < 0:
+        raise InputError(f"release is against its side walls: it rocks in the {mechanism.one_sided} direction only")
     if not (np.isfinite(tail) and tail >= 0):
         raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
     check_rtol(rtol)
@@ -174,6 +185,7 @@ def follow(
         contact_lost=contact_lost(motion, model.gravity),
         uplift_error=model.uplift_error,
         p=model.p,
+        ends_at_limit=model.ends_at_limit,
     )
 
 

@@ -107,6 +107,8 @@ class Model:
     @cached_property
     def symmetric(self) -> bool:
         """Whether both directions are alike, so that a reversed motion does the same."""
+        if self.one_sided is not None:
+            return False
         pairs = ((self.numbers[0], self.numbers[1]), *((of[:, 0], of[:, 1]) for of in (self.forces, self.certain)))
         return all(np.allclose(one, other, rtol=0, atol=ALIKE * np.abs(one).max()) for one, other in pairs)
 
@@ -164,9 +166,10 @@ def build(
         model = linear_model(label, name, (equivalence.positive, equivalence.negative), mechanism.gravity)
         if mechanism.attached:
             model = _with_held(model, mechanism, (equivalence.positive, equivalence.negative))
+    if not mechanism.rocks_both_ways:
+        return _one_sided(model, mechanism.directions[0])
     most_eta = greatest_restitution(mechanism, Direction.POSITIVE), greatest_restitution(mechanism, Direction.NEGATIVE)
-    model = replace(model, most_eta=most_eta)
-    return model if mechanism.rocks_both_ways else _one_sided(model, mechanism.directions[0])
+    return replace(model, most_eta=most_eta)
 
 
 def _one_sided(model: Model, direction: Direction) -> Model:
@@ -174,7 +177,7 @@ def _one_sided(model: Model, direction: Direction) -> Model:
     numbers = model.numbers.copy()
     numbers[0 if direction < 0 else 1, LAMBDA] = np.inf
     numbers[:, ONE_SIDED] = 1.0
-    return replace(model, numbers=numbers, one_sided=direction)
+    return replace(model, numbers=numbers, one_sided=direction, most_eta=(1.0, 1.0))
 
 
 def _nonlinear(label: str, mechanism: Mechanism, statics: tuple[Statics, Statics], etas: tuple[float, float]) -> Model:

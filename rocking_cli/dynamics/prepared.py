@@ -7,7 +7,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from rocking_cli.core import Equivalence, Mechanism, Statics, both_statics, equivalent_block
+from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
+from rocking_cli.core.advice import uplift_error
+from rocking_cli.core.statics import STRAIGHT
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -46,10 +48,54 @@ class Prepared:
         with self._named():
             return both_statics(self.mechanism)
 
+    @cached_property
+    def why_no_block(self) -> str | None:
+        """Why no single block is equivalent to it, as a sentence; None if there is one in each direction."""
+        try:
+            self.equivalence  # noqa: B018 - it is kept
+        except NoEquivalentBlock as error:
+            return f"{error}"
+        return None
+
+    @cached_property
+    def misleading(self) -> str | None:
+        """Why its linear models mislead though there is a block, as a sentence; None if they do not, or there is none.
+
+        Only of structures that something hangs on: how far a bare one is from its block is said of each kappa.
+        """
+        if self.why_no_block is not None or not self.mechanism.attached:
+            return None
+        far = max(each.departure for each in self.statics)
+        off = uplift_error(self.equivalence)
+        if far > STRAIGHT:
+            return (
+                f"the linear models mislead: the restoring moment leaves the straight line to phi_cr by {far:.2g} of "
+                "its value at rest"
+            )
+        if abs(off) > STRAIGHT:
+            return (
+                "the linear models mislead: the uplift acceleration of the linearised mechanism is "
+                f"{1 + off:.3g} times its own"
+            )
+        return None
+
+    @property
+    def default_models(self) -> tuple[ModelName, ...]:
+        """The models to follow where nobody asks for some: the linear ones only where they do not mislead."""
+        return MODELS if self.why_no_block is None and self.misleading is None else ("nonlinear",)
+
+    @cached_property
+    def etas(self) -> tuple[float, float]:
+        """Restitution of an impact that ends positive and negative motion; the rebound where it rocks to one side."""
+        with self._named():
+            return self.mechanism.eta(self.mechanism.sides[0]), self.mechanism.eta(self.mechanism.sides[1])
+
     @property
     def p(self) -> float:
-        """Frequency parameter [rad/s], of two different directions the larger."""
-        return max(self.equivalence.positive.p, self.equivalence.negative.p)
+        """Frequency parameter [rad/s], of two different directions the larger; without a block, how fast it moves."""
+        if self.why_no_block is None:
+            return max(self.equivalence.positive.p, self.equivalence.negative.p)
+        return self.model("nonlinear").p
 
     @property
     def uplift(self) -> tuple[float, float]:
@@ -71,7 +117,8 @@ class Prepared:
 
     def with_eta(self, eta: float) -> Prepared:
         """The same structure with another restitution of every impact."""
-        return Prepared(self.mechanism.model_copy(update={"restitution": eta}), self.file)
+        field = "restitution" if self.mechanism.rocks_both_ways else "rebound"
+        return Prepared(self.mechanism.model_copy(update={field: eta}), self.file)
 
     @contextmanager
     def _named(self) -> Iterator[None]:
@@ -79,7 +126,8 @@ class Prepared:
         try:
             yield
         except MechanismError as error:
-            raise MechanismError(f"{self.name}: {error}") from error
+            kind = NoEquivalentBlock if isinstance(error, NoEquivalentBlock) else MechanismError
+            raise kind(f"{self.name}: {error}") from error
         except InputError as error:
             if self.file is None:
                 raise

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core import Direction, Mechanism, both_statics
 from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.statics import Statics
 
@@ -70,7 +70,7 @@ class Table:
         return self.cell * float(k + x)
 
 
-def tabulate(mechanism: Mechanism, statics: Sequence[Statics]) -> tuple[Table, Table]:
+def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> tuple[Table, Table]:
     """Tabulate both directions of a mechanism, positive first, from rest to its kinematic limits.
 
     Where it rocks to one side only, its table stands for both.
@@ -79,11 +79,11 @@ def tabulate(mechanism: Mechanism, statics: Sequence[Statics]) -> tuple[Table, T
     ----------
     mechanism : Mechanism
         The structure.
-    statics : sequence of Statics
-        Of both directions.
+    statics : sequence of Statics, optional
+        Of both directions, where they are known already.
     """
     # A linkage may lock far beyond phi_cr, while its coefficients change within phi_cr.
-    reach = max(each.limit / each.reference for each in statics)
+    reach = max(each.limit / each.reference for each in statics or both_statics(mechanism))
     cells = int(min(max(TO_CRITICAL * reach, FEWEST), MOST))
     bends = np.concatenate([_bends(mechanism, direction, cells) for direction in mechanism.directions])
     if bends.size:

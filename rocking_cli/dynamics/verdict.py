@@ -140,7 +140,7 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
     said += bearing(histories, {name: name for name in histories})
     if disagree(histories):
         said.append("Trust none of them alone: vary the motion.")
-    elif not run.overturned and run.peak_ratio > CLOSE:
+    elif not run.overturned and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
         said.append("That is close to overturning: vary the motion before relying on it.")
     still = [name for name, each in histories.items() if each.still_rocking]
     if still:
@@ -156,6 +156,9 @@ def _ends(run: History) -> str:
         return names.NO_UPLIFT
     if run.peak_ratio > 1:
         return f"{names.ROCKS}: it passes its critical rotation, to {run.peak_ratio:.4g} of it, and is brought back"
+    if any(run.ends_at_limit):
+        peak = max(run.peak_positive, run.peak_negative)
+        return f"{names.ROCKS} to {peak:.4g} rad, {run.peak_ratio:.4g} of its {run.reference}"
     return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation"
 
 
@@ -247,7 +250,7 @@ def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None
         said = f"both overturn, this one at {sizes[worse]:.4g} s, the other at {sizes[-worse]:.4g} s"
     else:
         worse = max(sizes, key=sizes.__getitem__)
-        said = f"it rocks to {sizes[worse]:.4g} of the critical rotation, the other to {sizes[-worse]:.4g}"
+        said = f"it rocks to {sizes[worse]:.4g} of the {runs[worse][model].reference}, the other to {sizes[-worse]:.4g}"
     return worse, f"Polarity {worse} governs {by_model}: {said}."
 
 

@@ -147,7 +147,7 @@ def compare(
     mechanism: Mechanism, equivalence: Equivalence, amplitudes: Sequence[float], accelerations: Sequence[float]
 ) -> tuple[list[Linearisation], list[Linearisation]]:
     """The curves and the values asked for, of one direction if both are alike; see `linearisation`."""
-    directions = [Direction.POSITIVE] if equivalence.symmetric else list(Direction)
+    directions = [mechanism.directions[0]] if equivalence.symmetric else list(Direction)
     r = np.linspace(0.01, 0.99, CURVE)
     a = np.geomspace(1.02, max(STRONGEST, *accelerations), CURVE)
 
@@ -181,7 +181,7 @@ def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) ->
         fallen = np.minimum(2 * short * np.sinh(u / 2) ** 2, critical * amplitude[:, None])
         top = critical - short
         fall = fallen * _mean(mechanism, direction, top - fallen, top, 0.0)
-        inertia = _coefficients(mechanism, direction, top - fallen, "I")
+        inertia = _inertia(mechanism, direction, top - fallen)
         slow: Reals = np.sqrt(inertia / (2 * mechanism.gravity * fall)) * short * np.sinh(u)
         return slow
 
@@ -226,7 +226,7 @@ def overturning_time(
             raise SolverError(
                 f"under {stuck[0]:.4g} times its uplift acceleration the mechanism does not overturn from rest"
             )
-        inertia = _coefficients(mechanism, direction, phi, "I")
+        inertia = _inertia(mechanism, direction, phi)
         slow: Reals = np.sqrt(inertia / (2 * mechanism.gravity * gain)) * critical * excess * np.sinh(u)
         return slow
 
@@ -234,18 +234,18 @@ def overturning_time(
 
 
 def _mean(mechanism: Mechanism, direction: Direction, low: Reals, high: Reals, push: Reals | float) -> Reals:
-    """Mean of G - push B between two rotations, without the cancellation of a difference of potentials."""
+    """Mean of V'/g - push B between two rotations, without the cancellation of a difference of potentials."""
     x, weight = np.polynomial.legendre.leggauss(INNER)
     phi = low[..., None] + (high - low)[..., None] * (1 + x) / 2
-    G, B = (_coefficients(mechanism, direction, phi, name) for name in ("G", "B"))
-    mean: Reals = (G - np.asarray(push)[..., None] * B) @ (weight / 2)
+    at = mechanism.coefficients(phi.ravel(), direction)
+    restoring, B = (values.reshape(phi.shape) for values in (at.restoring(mechanism.gravity), at.B))
+    mean: Reals = (restoring - np.asarray(push)[..., None] * B) @ (weight / 2)
     return mean
 
 
-def _coefficients(mechanism: Mechanism, direction: Direction, phi: Reals, name: str) -> Reals:
-    """A coefficient of Eq. 8 at rotations of any shape."""
-    values: Reals = getattr(mechanism.coefficients(phi.ravel(), direction), name)
-    return values.reshape(phi.shape)
+def _inertia(mechanism: Mechanism, direction: Direction, phi: Reals) -> Reals:
+    """I at rotations of any shape."""
+    return mechanism.coefficients(phi.ravel(), direction).I.reshape(phi.shape)
 
 
 def _integral(integrand: Callable[[Reals], Reals], until: Reals) -> Reals:

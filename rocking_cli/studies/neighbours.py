@@ -100,6 +100,8 @@ class Neighbours:
         The share that ends as the motion itself does, overturned or not.
     lifted : bool
         Whether any of them could lift the structure.
+    over : str
+        What the peaks are over: "phi_cr", or "of the limit" where a direction has no critical rotation.
     """
 
     around: Around
@@ -108,6 +110,7 @@ class Neighbours:
     peak_ratio: tuple[float, float, float]
     as_itself: float
     lifted: bool = True
+    over: str = "phi_cr"
 
     @property
     def sensitive(self) -> bool:
@@ -124,7 +127,7 @@ class Neighbours:
             return f"{said}."
         if high == 0:
             return f"{said}; at most one in six uplifts."
-        reached = {0.0: "does not uplift", np.inf: "overturns"}.get(middle, f"reaches {middle:.2g} phi_cr")
+        reached = {0.0: "does not uplift", np.inf: "overturns"}.get(middle, f"reaches {middle:.2g} {self.over}")
         most = "overturns" if np.isinf(high) else f"{high:.2g}"
         return f"{said}; the middle one {reached} (16 %: {low:.2g}, 84 %: {most})."
 
@@ -173,7 +176,9 @@ def neighbours(
     peaks = np.where(others, np.inf, found.peak_ratio[1:])
     # A value that was reached, never one between two: half of infinity is no rotation.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
-    return Neighbours(around, model.name, float(others.mean()), (low, middle, high), float((others == itself).mean()))
+    over = "of the limit" if any(model.ends_at_limit) else "phi_cr"
+    as_itself = float((others == itself).mean())
+    return Neighbours(around, model.name, float(others.mean()), (low, middle, high), as_itself, over=over)
 
 
 Severity = tuple[float, float, float]

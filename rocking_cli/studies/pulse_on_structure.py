@@ -23,8 +23,12 @@ Answer = ExactResponse | SampledHistory
 
 
 def sampled_histories(structure: Prepared, pulse: Pulse, polarity: int) -> dict[ModelName, SampledHistory]:
-    """Follow the models that have no exact answer: the nonlinear one, and all if the pulse has no segments."""
-    models = structure.models(["nonlinear"] if pulse.segments() else [*KAPPAS, "nonlinear"])
+    """Follow the models that have no exact answer: the nonlinear one, and all if the pulse has no segments.
+
+    Neither have they where a structure rocks to one side only.
+    """
+    exact = pulse.segments() and structure.mechanism.rocks_both_ways
+    models = structure.models(["nonlinear"] if exact else [*KAPPAS, "nonlinear"])
     return {model.name: sampled_history(model, pulse, polarity) for model in models}
 
 
@@ -58,8 +62,8 @@ def outcome(answer: Answer) -> ExactResponse | History:
 
 
 def closed_forms(structure: Prepared, pulse: Pulse) -> dict[str, ClosedForm]:
-    """Eqs. 41-42 with each kappa; none if the pulse is no full sine or the directions differ."""
-    if pulse.name != "sine" or not structure.equivalence.symmetric:
+    """Eqs. 41-42 with each kappa; none if the pulse is no full sine, the directions differ, or there is one only."""
+    if pulse.name != "sine" or not structure.equivalence.symmetric or not structure.mechanism.rocks_both_ways:
         return {}
     block = structure.equivalence.positive
     seen = scaled(structure.mechanism, block, pulse)

@@ -76,7 +76,7 @@ class PulsedModel:
     @property
     def symmetric(self) -> bool:
         """Whether both directions are alike, so that a reversed pulse does the same."""
-        return self.equivalence.symmetric
+        return self.equivalence.symmetric and self.model.one_sided is None
 
     @property
     def unit(self) -> float:
@@ -143,6 +143,8 @@ def pulsed_model(
         check_eta(eta)
         structure = structure.with_eta(eta)
     direction = weakest(structure.equivalence, shape, polarities)
+    if not structure.mechanism.rocks_both_ways:
+        direction = structure.mechanism.directions[0]
     given = structure.mechanism.restitution is not None
     return PulsedModel(structure.name, structure.model(model), structure.equivalence, direction, given)
 
@@ -197,7 +199,8 @@ def outcomes(
     pulse of 400 points to a period: amplitudes at which it overturns are right to some 1e-8 of their size, the peaks
     of motions that only just uplift to 1e-4.
     """
-    follow = _exactly if structure.model.is_linear and shape.segments() else _by_histories
+    exact = structure.model.is_linear and shape.segments() and structure.model.one_sided is None
+    follow = _exactly if exact else _by_histories
     # The reversed pulse does the same to a symmetric structure.
     first, *others = polarities[:1] if structure.symmetric else polarities
     found = follow(structure, shape, periods, amplitudes, first, progress)

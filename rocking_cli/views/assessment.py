@@ -34,7 +34,7 @@ def view(content: Assessment) -> View:
                 "headline": said.headline,
                 "answers": {item.question: item.answer for item in said.answers},
                 "doubts": list(said.doubts),
-                **runs_data(each.runs, each.neighbours, None),
+                **runs_data(each.runs, each.neighbours),
                 "polarity": each.polarity,
                 "margin": margin_data(each.margin),
                 "pulses": [fit_data(fit) for fit in each.fits],

@@ -3,77 +3,164 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import degrees
-from typing import Any
+from math import degrees, isclose
+from typing import Any, NamedTuple
 
-from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism
+from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one_block
 from rocking_cli.core.advice import preferred_kappa
+from rocking_cli.core.equivalence import AGREEMENT, alike
 from rocking_cli.core.restitution import why_none
+from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.views.parameters import PARAMETERS, values
+from rocking_cli.views.restitution import restitution_source
 from rocking_cli.views.view import Table, View, heading, number
 
 
-def view(mechanism: Mechanism, equivalence: Equivalence) -> View:
+def view(structure: Prepared) -> View:
     """The parameters of both directions, in one column where they agree, and which kappa to prefer."""
-    shown = [(name, values(block), preferred_kappa(block)) for name, block in _blocks(equivalence)]
+    mechanism, sides = structure.mechanism, _sides(structure)
     data = {
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
         "gravity": mechanism.gravity,
-        "symmetric": equivalence.symmetric,
+        "symmetric": _symmetric(structure),
+        "one_sided": mechanism.one_sided,
         "per_unit_mass": not mechanism.has_mass,
-        "restitution": "given" if mechanism.restitution is not None else "kinematics",
+        "restitution": restitution_source(mechanism),
         "caution": mechanism.caution or None,
-        "directions": {
-            name: {**block, "prefer": advice.prefer, "lambda_ratio": advice.ratio} for name, block, advice in shown
-        },
+        "misleading": structure.misleading,
+        "directions": {side.direction.label: _data(side) for side in sides},
     }
-    if equivalence.symmetric:
-        shown = [("value", *shown[0][1:])]
+    shown = sides[:1] if _symmetric(structure) else sides
     per_mass = "" if mechanism.has_mass else ", per unit mass"
+    columns = [values(side.block) if side.block is not None else _without(side) for side in shown]
     rows = [
         [
             each.key,
-            *(number(block[each.key]) for _, block, _ in shown),
+            *(number(column[each.key]) for column in columns),
             each.unit_of(mass=mechanism.has_mass),
             each.short + (per_mass if each.of_mass else ""),
         ]
         for each in PARAMETERS
     ]
-    columns = ["", *(name for name, _, _ in shown), "unit", "meaning"]
-    table = Table(heading(mechanism), columns, rows, numbers=range(1, len(shown) + 1))
-    said = [
-        f"{where}critical rotation {degrees(block['phi_cr']):.4g} deg. {advice.why}"
-        for where, (_, block, advice) in zip(_where(equivalence), shown, strict=False)
-    ]
-    said.append(
-        "Either kappa keeps phi_cr. That is all without an amplitude: `rocking error` compares free periods and "
-        "overturning times, `rocking respond` motions."
-    )
+    heads = ["", *(("value",) if len(shown) == 1 else (side.direction.label for side in shown)), "unit", "meaning"]
+    table = Table(heading(mechanism), heads, rows, numbers=range(1, len(shown) + 1))
+    where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
+    said = [f"{prefix}{_sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
+    if structure.why_no_block is None:
+        said.append(
+            "Either kappa keeps phi_cr. That is all without an amplitude: `rocking error` compares free periods and "
+            "overturning times, `rocking respond` motions."
+        )
+    said += [f"Caution: {structure.misleading}."] if structure.misleading else []
+    said += list(_hung(mechanism))
     said += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(data, [table, *said])
 
 
-def table(found: Sequence[tuple[Mechanism, Equivalence]]) -> dict[str, list[Any]]:
+class Side(NamedTuple):
+    """A direction of rocking: its moments, and the block that is equivalent to it if one is."""
+
+    direction: Direction
+    statics: Statics
+    block: EquivalentBlock | None
+    eta: float
+
+
+def _sides(structure: Prepared) -> list[Side]:
+    sides = []
+    for direction in structure.mechanism.directions:
+        k = 0 if direction > 0 else 1
+        statics = structure.statics[k]
+        block = structure.equivalence[direction] if structure.why_no_block is None else None
+        if block is None and statics.why_no_block is None:  # the other direction has none
+            block = one_block(structure.mechanism, direction)
+        sides.append(Side(direction, statics, block, structure.etas[k]))
+    return sides
+
+
+def _symmetric(structure: Prepared) -> bool:
+    """Whether one column serves for both directions."""
+    if structure.why_no_block is None:
+        return structure.equivalence.symmetric
+    return alike(*structure.statics) and isclose(*structure.etas, rel_tol=AGREEMENT)
+
+
+def _without(side: Side) -> dict[str, float]:
+    """What there is of the parameters where no block is equivalent; NaN for the rest."""
+    known = {"lambda": side.statics.lambda_, "eta": side.eta}
+    if side.statics.phi_cr is not None:
+        known["phi_cr"] = side.statics.phi_cr
+    return {each.key: known.get(each.key, float("nan")) for each in PARAMETERS}
+
+
+def _data(side: Side) -> dict[str, Any]:
+    """The parameters of a direction; null where there is no block."""
+    found: dict[str, Any] = values(side.block) if side.block is not None else _without(side)
+    advice = preferred_kappa(side.block) if side.block is not None else None
+    return {
+        **found,
+        "prefer": advice.prefer if advice is not None else None,
+        "lambda_ratio": advice.ratio if advice is not None else None,
+        "stiffening": side.statics.stiffening,
+        "limit": side.statics.limit,
+        "no_block": side.statics.why_no_block,
+    }
+
+
+def _sentence(side: Side) -> str:
+    if side.block is not None:
+        return f"critical rotation {degrees(side.block.phi_cr):.4g} deg. {preferred_kappa(side.block).why}"
+    statics = side.statics
+    grows = "grows" if statics.stiffening > 0 else "falls"
+    ends = (
+        f"a motion ends, if at all, at the kinematic limit of {statics.limit:.4g} rad"
+        if statics.phi_cr is None
+        else f"beyond {statics.phi_cr:.4g} rad it overturns"
+    )
+    return (
+        f"no single block is equivalent to it: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} g; from "
+        f"there its restoring moment {grows} by {abs(statics.stiffening):.4g} of itself per rad; {ends}. Nonlinear "
+        "histories follow it; linear models, closed forms and maps in p do not."
+    )
+
+
+def _hung(mechanism: Mechanism) -> Iterator[str]:
+    """Sentences on what hangs on a structure and holds it."""
+    if mechanism.attached:
+        names = ", ".join(dict.fromkeys(each.name for each in mechanism.attached))
+        yield f"With {names}."
+    if mechanism.one_sided is not None:
+        r = mechanism.eta(mechanism.directions[0])
+        how = "as given" if mechanism.rebound is not None else "by Housner's impacts in sequence"
+        yield f"It rocks in the {mechanism.one_sided} direction only, and rebounds with {r:.4g} of its rate, {how}."
+
+
+def table(found: Sequence[Prepared]) -> dict[str, list[Any]]:
     """The columns of several structures, a row for each direction."""
     rows: list[list[Any]] = []
-    for mechanism, equivalence in found:
-        for name, block in _blocks(equivalence):
-            per_mass = "no" if mechanism.has_mass else "yes"
-            rows.append([mechanism.name, mechanism.mechanism, name, *values(block).values(), per_mass])
+    for structure in found:
+        mechanism = structure.mechanism
+        per_mass = "no" if mechanism.has_mass else "yes"
+        for side in _sides(structure):
+            shown = values(side.block) if side.block is not None else _without(side)
+            rows.append([mechanism.name, mechanism.mechanism, side.direction.label, *shown.values(), per_mass])
     units = [f"{each.key} [{each.unit}]" if each.unit else each.key for each in PARAMETERS]
     names = ["name", "mechanism", "direction", *units, "per unit mass"]
     return {name: [row[k] for row in rows] for k, name in enumerate(names)}
 
 
-def warnings(mechanism: Mechanism, equivalence: Equivalence) -> Iterator[str]:
+def warnings(structure: Prepared) -> Iterator[str]:
     """What to be careful about in the parameters."""
-    for name, block in _blocks(equivalence)[: 1 if equivalence.symmetric else 2]:
-        if block.eta <= 0:
-            way = "" if equivalence.symmetric else f" ending {name} motion"
+    mechanism, one = structure.mechanism, _symmetric(structure)
+    if not mechanism.rocks_both_ways:
+        return
+    for side in _sides(structure)[: 1 if one else 2]:
+        if side.eta <= 0:
+            way = "" if one else f" ending {side.direction.label} motion"
             yield (
-                f"{mechanism.name}: the kinematics give eta = {block.eta:.4g}{way}: {why_none(block.eta)}; "
+                f"{mechanism.name}: the kinematics give eta = {side.eta:.4g}{way}: {why_none(side.eta)}; "
                 "histories need a measured restitution in the file"
             )
 
@@ -85,12 +172,3 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
             f"{mechanism.name}: lambda is over its own gravity of {mechanism.gravity:g} m/s2; records and PGA are in "
             f"standard gravity, {STANDARD_GRAVITY} m/s2"
         )
-
-
-def _where(equivalence: Equivalence) -> tuple[str, ...]:
-    """What a sentence on each direction begins with."""
-    return ("",) if equivalence.symmetric else ("positive: ", "negative: ")
-
-
-def _blocks(equivalence: Equivalence) -> tuple[tuple[str, EquivalentBlock], tuple[str, EquivalentBlock]]:
-    return ("positive", equivalence.positive), ("negative", equivalence.negative)

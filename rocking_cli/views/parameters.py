@@ -121,6 +121,14 @@ PARAMETERS = (
         lambda block: block.eta,
     ),
     Parameter(
+        "v_imp",
+        "m/s",
+        "v_imp",
+        "velocity step that just overturns it",
+        "Velocity step of the ground that just overturns the structure from rest, without linearisation.",
+        lambda block: block.v_imp,
+    ),
+    Parameter(
         "I_eq",
         "kg m2",
         "I_eq",

@@ -7,7 +7,7 @@ from math import nan
 from typing import Any
 
 from rocking_cli import names
-from rocking_cli.core import Direction
+from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
 from rocking_cli.dynamics.exact import ExactResponse
 from rocking_cli.dynamics.outcome import OneOutcome
@@ -19,7 +19,8 @@ from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
-from rocking_cli.views.response import pulse_data, restitution_data, restitution_used
+from rocking_cli.views.response import pulse_data
+from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import Table, View, heading, in_degrees, number
 
 
@@ -50,7 +51,7 @@ def view(
     data = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "pulse": {**pulse_data(pulse), "polarity": polarity if len(answers) == 1 else "both"},
-        "restitution": restitution_data(mechanism, equivalence),
+        "restitution": restitution_data(structure),
         "directions": seen,
         "closed_form": {name: closed_data(form, exact) for name, (form, exact) in _beside(closed, first).items()}
         or None,
@@ -71,12 +72,12 @@ def view(
         parts.append(f"Disregard linear1: its uplift acceleration is {uplift_in_words(unfit)}.")
     parts.append("")
     if not closed:
-        parts.append(_why_no_closed_form(pulse))
+        parts.append(_why_no_closed_form(mechanism, pulse))
     elif any(form.conditions["uplift"] for form in closed.values()):
         parts += _closed_parts(closed, first)
     else:
         parts.append(f"No closed form: by the equivalent blocks it {names.NO_UPLIFT} (a <= 1).")
-    return View(data, [*parts, restitution_used(mechanism, equivalence)])
+    return View(data, [*parts, restitution_used(structure)])
 
 
 def _data(answer: Answer, answers: Mapping[str, Answer]) -> dict[str, Any]:
@@ -189,7 +190,9 @@ def _trust(closed: ClosedForm, exact: ExactResponse) -> str:
     return f"{said}{how_far_off(closed, exact)}."
 
 
-def _why_no_closed_form(pulse: Pulse) -> str:
+def _why_no_closed_form(mechanism: Mechanism, pulse: Pulse) -> str:
+    if not mechanism.rocks_both_ways:
+        return "No closed form, and no exact answer: both are of a structure that rocks on to the other side."
     if pulse.name != "sine":
         said = "No closed form: Eqs. 41-42 are for a full sine."
         if not pulse.segments():

@@ -5,23 +5,43 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from math import isinf
-from typing import Any
+from typing import Any, NamedTuple
 
-from rocking_cli.core import Direction, Equivalence, Mechanism
-from rocking_cli.core.restitution import restitution_in_words
+from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
+from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.verdict import SENSE, agreements, governs, verdict
 from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Answer, Histories, Question, Runs
+from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import Table, View, in_degrees, number
 
 FIRST = 12  # impacts of a model in its table; the data have all
+
+
+class Shown(NamedTuple):
+    """What is shown of each history beside its outcome.
+
+    Parameters
+    ----------
+    watched : Watched or None
+        Points and ties, whose movement is shown.
+    etas : tuple of float, or None
+        Restitution of impacts that end positive and negative motion; with it the impacts are listed.
+    """
+
+    watched: Watched | None = None
+    etas: tuple[float, float] | None = None
+
+
+NOTHING_MORE = Shown()
 
 
 def record_data(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
@@ -70,11 +90,11 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
     }
 
 
-def runs_data(runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None) -> dict[str, Any]:
-    """Responses and neighbours, under their polarities if there are two; with the impacts if there are `etas`."""
+def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: Shown = NOTHING_MORE) -> dict[str, Any]:
+    """Responses and neighbours, under their polarities if there are two."""
     each = {
         str(polarity): {
-            "responses": histories_data(histories, etas),
+            "responses": histories_data(histories, shown),
             "agreement": agreement_data(histories),
             "neighbours": neighbours_data(near[polarity]) if polarity in near else None,
             "verdict": verdict(histories),
@@ -84,9 +104,9 @@ def runs_data(runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | No
     return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]}
 
 
-def histories_data(histories: Histories, etas: Equivalence | None) -> dict[str, Any]:
-    """The response of each model; with the impacts if there are `etas`."""
-    return {name: _history_data(run, etas) for name, run in histories.items()}
+def histories_data(histories: Histories, shown: Shown = NOTHING_MORE) -> dict[str, Any]:
+    """The response of each model."""
+    return {name: _history_data(run, shown) for name, run in histories.items()}
 
 
 def neighbours_data(near: Neighbours) -> dict[str, Any]:
@@ -116,26 +136,12 @@ def agreement_data(histories: Histories) -> dict[str, Any]:
     }
 
 
-def restitution_data(mechanism: Mechanism, etas: Equivalence) -> dict[str, Any]:
-    """The restitution that the histories used, and where it comes from."""
-    return {
-        "positive_to_negative": etas.positive.eta,
-        "negative_to_positive": etas.negative.eta,
-        "source": "kinematics" if mechanism.restitution is None else "given",
-    }
-
-
-def restitution_used(mechanism: Mechanism, etas: Equivalence) -> str:
-    """A sentence on that."""
-    return restitution_in_words([etas[each].eta for each in Direction], given=mechanism.restitution is not None)
-
-
 def ending(outcome: OneOutcome) -> str:
     """How a motion ended, as programs read it."""
     return "overturned" if outcome.overturned else "still_rocking" if outcome.still_rocking else "at_rest"
 
 
-def _history_data(history: History, etas: Equivalence | None) -> dict[str, Any]:
+def _history_data(history: History, shown: Shown) -> dict[str, Any]:
     found: dict[str, Any] = {
         "peak_positive": history.peak_positive,
         "peak_negative": history.peak_negative,
@@ -147,25 +153,39 @@ def _history_data(history: History, etas: Equivalence | None) -> dict[str, Any]:
         "impacts": history.impact_count,
         "outcome": ending(history),
         "contact_lost": history.contact_lost,
+        "ratio_of": "limit" if any(history.ends_at_limit) else "phi_cr",
     }
-    if etas is not None:
+    if shown.watched is not None:
+        found |= _movements_data(shown.watched.peaks(history))
+    if shown.etas is not None:
         found["impact_list"] = [
             {"time": time, "direction": direction.label, "rate_before": before, "rate_after": after}
-            for time, direction, before, after in _impacts(history, etas, len(history.impacts))
+            for time, direction, before, after in _impacts(history, shown.etas, len(history.impacts))
         ]
     return found
 
 
-def _impacts(history: History, etas: Equivalence, most: int) -> list[tuple[float, Direction, float, float]]:
+def _movements_data(moved: Movements) -> dict[str, Any]:
+    """How far points move, what ties bear, and how fast an impact is."""
+    return {
+        "impact_velocity": moved.impact_velocity,
+        "points": {
+            each.name: {"at": [each.at.real, each.at.imag], "horizontal": each.horizontal, "vertical": each.vertical}
+            for each in moved.points
+        },
+        "ties": {each.name: {"peak_force": each.force, "peak_elongation": each.elongation} for each in moved.ties},
+    }
+
+
+def _impacts(history: History, etas: tuple[float, float], most: int) -> list[tuple[float, Direction, float, float]]:
     """Time [s], direction that ends, and rates before and after [rad/s] of the first impacts."""
     rows = ((time, Direction(int(sign)), rate) for time, sign, rate in history.impacts[:most].tolist())
-    return [(time, direction, rate, etas[direction].eta * rate) for time, direction, rate in rows]
+    return [(time, direction, rate, etas[0 if direction > 0 else 1] * rate) for time, direction, rate in rows]
 
 
 def view(
     found: Answer,
-    mechanism: Mechanism,
-    blocks: Equivalence,
+    structure: Prepared,
     asked: Question,
     polarity: str,
     title: str,
@@ -179,8 +199,8 @@ def view(
     ----------
     found : Answer
         What became of the structure.
-    mechanism, blocks : Mechanism, Equivalence
-        The structure, and its equivalent blocks.
+    structure : Prepared
+        The structure.
     asked : Question
         What was asked.
     polarity : str
@@ -192,64 +212,80 @@ def view(
     impacts : bool
         Whether to list the impacts: the first in a table, all in the data.
     """
-    given, etas = found.given, blocks if impacts else None
+    mechanism, given = structure.mechanism, found.given
+    shown = Shown(Watched(mechanism), structure.etas if impacts else None)
     notes = vertical_notes(found.first, mechanism.gravity) if found.first is not None else []
     data: dict[str, Any] = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "record": record_data(given.motion, given.factor, polarity, given.pulse) if given else None,
         "release": asked.release,
-        "restitution": restitution_data(mechanism, blocks),
-        **runs_data(found.runs, found.neighbours, etas),
+        "restitution": restitution_data(structure),
+        **runs_data(found.runs, found.neighbours, shown),
     }
     if found.fit is None or found.to_pulse is None:
-        parts = _tables(title, found.runs, found.neighbours, etas)
+        parts = _tables(title, found.runs, found.neighbours, shown)
     else:
-        data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, etas)}
-        parts = _tables(f"{title}, under the record", found.runs, found.neighbours, etas)
-        parts += ["", *_tables(f"{title}, under its pulse alone", {1: found.to_pulse}, {}, etas)]
+        data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, shown)}
+        parts = _tables(f"{title}, under the record", found.runs, found.neighbours, shown)
+        parts += ["", *_tables(f"{title}, under its pulse alone", {1: found.to_pulse}, {}, shown)]
         parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse))
     caution = [f"Caution: {mechanism.caution}"] if mechanism.caution else []
-    said = [*parts, restitution_used(mechanism, blocks), *notes, *caution]
+    if structure.misleading and any(name != "nonlinear" for run in found.runs.values() for name in run):
+        caution.append(f"Caution: {structure.misleading}.")
+    said = [*parts, restitution_used(structure), *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
-def runs_view(title: str, runs: Runs) -> View:
+def runs_view(title: str, runs: Runs, mechanism: Mechanism) -> View:
     """Responses alone, under one polarity or both."""
-    return View(lambda: runs_data(runs, {}, None), _tables(title, runs, {}, None))
+    shown = Shown(Watched(mechanism))
+    return View(lambda: runs_data(runs, {}, shown), _tables(title, runs, {}, shown))
 
 
 def _tables(
-    title: str, runs: Runs, near: Mapping[int, Neighbours], etas: Equivalence | None
+    title: str, runs: Runs, near: Mapping[int, Neighbours], shown: Shown = NOTHING_MORE
 ) -> list[Table | str]:  # fmt: skip
-    """A table and sentences on each polarity, which of two governs, and the first impacts if there are `etas`."""
+    """A table and sentences on each polarity, and which of two governs."""
     parts: list[Table | str] = []
     for polarity, histories in runs.items():
         heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
-        parts += [_table(heading, histories), verdict(histories)]
+        parts += [_table(heading, histories, shown.watched), verdict(histories)]
         parts += [str(near[polarity])] if polarity in near else []
-        if etas is not None:
+        if shown.etas is not None:
             for name, run in histories.items():
-                parts += ["", *_impact_table(f"{heading}: impacts, {name}", run, etas)]
+                parts += ["", *_impact_table(f"{heading}: impacts, {name}", run, shown.etas)]
         parts += [""] if len(runs) > 1 else []
     return [*parts, governs(runs)[1]] if len(runs) > 1 else parts
 
 
-def _table(title: str, histories: Histories) -> Table:
+def _table(title: str, histories: Histories, watched: Watched | None) -> Table:
     runs = list(histories.values())
-
+    over = "limit" if any(runs[0].ends_at_limit) else "phi_cr"
     rows = [
         ["outcome", *(run.words for run in runs), ""],
-        ["peak / phi_cr", *(number(run.peak_ratio, 5) for run in runs), ""],
+        [f"peak / {over}", *(number(run.peak_ratio, 5) for run in runs), ""],
         ["peak, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
         ["peak, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
         ["first uplift", *(number(run.uplift_time, 5) for run in runs), "s"],
         ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
         ["impacts", *(str(run.impact_count) for run in runs), ""],
     ]
+    if watched is not None:
+        rows += _movement_rows([watched.peaks(run) for run in runs])
     return Table(title, ["", *(run.model for run in runs), "unit"], rows, numbers=range(1, len(runs) + 1))
 
 
-def _impact_table(title: str, history: History, etas: Equivalence) -> list[Table | str]:
+def _movement_rows(moved: Sequence[Movements]) -> list[list[str]]:
+    rows = [["impact velocity", *(number(each.impact_velocity, 4) for each in moved), "m/s"]]
+    for k, point in enumerate(moved[0].points):
+        rows.append([f"{point.name}, sideways", *(number(1000 * each.points[k].horizontal, 4) for each in moved), "mm"])
+    for k, tie in enumerate(moved[0].ties):
+        rows.append([f"{tie.name}, force", *(number(each.ties[k].force / 1000, 4) for each in moved), "kN"])
+        rows.append([f"{tie.name}, elongation", *(number(1000 * each.ties[k].elongation, 4) for each in moved), "mm"])
+    return rows
+
+
+def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:
     rows = [
         [f"{time:.4f}", SENSE[direction], number(before, 4), number(after, 4)]
         for time, direction, before, after in _impacts(history, etas, FIRST)

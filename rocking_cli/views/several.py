@@ -6,14 +6,14 @@ from collections.abc import Iterator, Sequence
 from math import isinf
 
 from rocking_cli import names
-from rocking_cli.core import Equivalence, Mechanism
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import percent
 from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
 from rocking_cli.studies.response import Answer, Histories
-from rocking_cli.views.response import restitution_used
+from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.view import ABSENT, Table, heading
 
 
@@ -22,15 +22,16 @@ class Several:
 
     Parameters
     ----------
-    mechanism, blocks : Mechanism, Equivalence
-        What is shaken, and its equivalent blocks.
+    structure : Prepared
+        What is shaken.
     models : tuple of str
         The models followed.
     """
 
-    def __init__(self, mechanism: Mechanism, blocks: Equivalence, models: Sequence[ModelName]) -> None:
-        self._title = heading(mechanism)
-        self._restitution = restitution_used(mechanism, blocks)
+    def __init__(self, structure: Prepared, models: Sequence[ModelName]) -> None:
+        self._title = heading(structure.mechanism)
+        self._over = "phi_cr" if not any(side.phi_cr is None for side in structure.statics) else "limit"
+        self._restitution = restitution_used(structure)
         self._models = models
         self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
         self._rows: list[list[str]] = []
@@ -61,7 +62,7 @@ class Several:
 
     def parts(self) -> Iterator[Table | str]:
         """The table, how many motions overturn it, and which governs."""
-        heads = ["peak phi/phi_cr\nunder", "PGA\n[g]", *self._models]
+        heads = [f"peak phi/{self._over}\nunder", "PGA\n[g]", *self._models]
         rows = self._rows
         if self._around is not None:
             heads += ["neighbours\noverturn", "their\nmedian"]

@@ -1,0 +1,188 @@
+"""What an engineer uses of a history: how far named points move, what ties bear, how fast an impact is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.attached import ConstantForce, PointMass, Spot, Spring, SpringBed
+from rocking_cli.dynamics.history import History
+
+Reals = NDArray[np.float64]
+BETWEEN = 257  # rotations from rest to a peak at which the largest values on the way are looked for
+LEVEL = 1e-9  # of the height of a structure: corners that are so much lower are as high
+
+
+@dataclass(frozen=True)
+class PointPeak:
+    """How far a point moves at most, in either sense: to the side and up [m]."""
+
+    name: str
+    at: complex
+    horizontal: float
+    vertical: float
+
+
+@dataclass(frozen=True)
+class TiePeak:
+    """The force [N] and the elongation [m] of a tie where they are largest, with their signs; tension is positive."""
+
+    name: str
+    force: float
+    elongation: float
+
+
+@dataclass(frozen=True)
+class Movements:
+    """What a history means for the things on a structure.
+
+    Parameters
+    ----------
+    points : sequence of PointPeak
+        The top, and where loads and ties are.
+    ties : sequence of TiePeak
+        In the order of the file; of several that move alike, one.
+    impact_velocity : float
+        The largest velocity at which a foot lands [m/s]; 0 without an impact, NaN where the feet are not known.
+    """
+
+    points: Sequence[PointPeak]
+    ties: Sequence[TiePeak]
+    impact_velocity: float
+
+
+@dataclass(frozen=True)
+class Watched:
+    """The points and ties of a structure whose movement is of use.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    """
+
+    mechanism: Mechanism
+
+    @cached_property
+    def points(self) -> Mapping[str, Spot]:
+        """The top, and where loads and ties are, by their names."""
+        return {"top": _top(self.mechanism)} | dict(_hung(self.mechanism))
+
+    @cached_property
+    def ties(self) -> Sequence[Spring | SpringBed]:
+        """In the order of the file."""
+        return [thing for thing in self.mechanism.attached if isinstance(thing, Spring | SpringBed)]
+
+    def peaks(self, history: History) -> Movements:
+        """The largest values of a history, of samples or between them: a place depends on the rotation alone."""
+        reached = {direction: _reached(history, direction) for direction in self.mechanism.directions}
+        return Movements(
+            [self._point(name, spot, reached) for name, spot in self.points.items()],
+            [self._tie(tie, reached) for tie in self.ties],
+            self._impact_velocity(history),
+        )
+
+    def columns(self, phi: Reals) -> Iterator[tuple[str, Reals]]:
+        """Displacements of the points [m], elongations [m] and forces [N] of the ties, over signed rotations (n,)."""
+        for name, spot in self.points.items():
+            moved = self._signed(phi, partial(self._displacement, spot))
+            yield f"{name} u_x [m]", moved.real
+            yield f"{name} u_y [m]", moved.imag
+        for tie in self.ties:
+            both = self._signed(phi, partial(_strained, self.mechanism, tie))
+            yield f"{tie.name} elongation [m]", both.real
+            yield f"{tie.name} force [N]", both.imag
+
+    def _point(self, name: str, spot: Spot, reached: Mapping[Direction, float]) -> PointPeak:
+        moved = np.concatenate([self._displacement(spot, _way(phi), side) for side, phi in reached.items()])
+        return PointPeak(name, spot.at, float(np.abs(moved.real).max()), float(np.abs(moved.imag).max()))
+
+    def _tie(self, tie: Spring | SpringBed, reached: Mapping[Direction, float]) -> TiePeak:
+        both = np.concatenate([_strained(self.mechanism, tie, _way(phi), side) for side, phi in reached.items()])
+        elongation, force = both.real, both.imag
+        return TiePeak(tie.name, float(force[np.abs(force).argmax()]), float(elongation[np.abs(elongation).argmax()]))
+
+    def _displacement(self, spot: Spot, phi: Reals, direction: Direction) -> NDArray[np.complex128]:
+        return np.asarray(self.mechanism.followed(phi, direction)(spot).z - spot.at)
+
+    def _signed(self, phi: Reals, of: Callable[[Reals, Direction], NDArray[np.complex128]]) -> NDArray[np.complex128]:
+        found = np.full(phi.shape, complex(np.nan, np.nan))
+        for direction in Direction:
+            mine = (phi * direction > 0) | ((phi == 0) & (direction is self.mechanism.directions[0]))
+            if mine.any():
+                found[mine] = of(np.abs(phi[mine]), direction)
+        return found
+
+    def _impact_velocity(self, history: History) -> float:
+        if not len(history.impacts):
+            return 0.0
+        rates = {
+            direction: np.abs(history.impacts[history.impacts[:, 1] == direction, 2]).max(initial=0.0)
+            for direction in self.mechanism.directions
+        }
+        return max(float(rate) * _landing(self.mechanism, direction) for direction, rate in rates.items() if rate > 0)
+
+
+def _way(phi: float) -> Reals:
+    return np.linspace(0.0, phi, BETWEEN)
+
+
+def _reached(history: History, direction: Direction) -> float:
+    """The largest rotation of a history in a direction; of one that overturns, the last that was sampled."""
+    peak = history.peak_positive if direction > 0 else history.peak_negative
+    if np.isnan(peak):
+        turned = direction * history.phi[np.isfinite(history.phi)]
+        return float(turned.max(initial=0.0))
+    return peak
+
+
+def _strained(
+    mechanism: Mechanism, tie: Spring | SpringBed, phi: Reals, direction: Direction
+) -> NDArray[np.complex128]:
+    """Elongation + i force of a tie; of a bed the opening of its middle, and the resultant."""
+    follow = mechanism.followed(phi, direction)
+    if isinstance(tie, SpringBed):
+        middle = Spot(tie.start.body, (tie.start.at + tie.end.at) / 2)
+        opening = np.abs(follow(middle).z - middle.at)
+        return np.asarray(opening + 1j * tie.modulus * abs(tie.end.at - tie.start.at) * opening)
+    e, _, _ = tie.elongation(follow)
+    return np.asarray(e + 1j * tie.force(e))
+
+
+def _landing(mechanism: Mechanism, direction: Direction) -> float:
+    """The velocity over the rate at which the feet land that the other direction turns about [m]; NaN if unknown."""
+    hinges = mechanism.sketch().hinges.get(direction.opposite, ())
+    feet = [Spot(hinge.bodies[0], hinge.point) for hinge in hinges if len(hinge.bodies) == 1 and not hinge.slide]
+    if not feet:
+        return float("nan")
+    follow = mechanism.followed(np.zeros(1), direction)
+    return max(abs(complex(follow(foot).dz[0])) for foot in feet)
+
+
+def _top(mechanism: Mechanism) -> Spot:
+    """The middle of the highest corners of the highest body; its centroid where no shape is known."""
+    sketch = mechanism.sketch()
+    corners = {}
+    for body in mechanism.bodies():
+        known = sketch.outlines.get(body.name, ()) if sketch.uniform else ()
+        shapes = [body.outline] if body.outline else list(known)
+        corners[body.name] = np.concatenate([np.asarray(shape) for shape in shapes] or [np.array([body.centroid])])
+    highest = max(corners, key=lambda name: float(corners[name].imag.max()))
+    z = corners[highest]
+    level = z[z.imag >= z.imag.max() - LEVEL * float(np.ptp(z.imag) + 1e-300)]
+    return Spot(highest, complex(level.real.min() + level.real.max(), 2 * level.imag.max()) / 2)
+
+
+def _hung(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:
+    for thing in mechanism.attached:
+        if isinstance(thing, PointMass | ConstantForce):
+            yield thing.name, thing.spot
+        elif isinstance(thing, Spring):
+            ends = [spot for spot in (thing.spots[0], thing.spots[-1]) if spot.body is not None]
+            for k, spot in enumerate(ends):
+                yield (thing.name if len(ends) == 1 else f"{thing.name} {('from', 'to')[k]}"), spot
