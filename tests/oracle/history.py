@@ -1,0 +1,337 @@
+"""A motion from impact to impact: DOP853 at 1e-12, cut where anything of the equation of motion is not smooth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from .series import Reals
+from .structures import SIDES, Structure
+
+FAINT = 1e-12  # of V'(0) times 0.1 rad: less kinetic energy than that after an impact is rest
+
+
+@dataclass(frozen=True)
+class Ground:
+    """Ground accelerations, straight between `times` and nothing after the last [s, m/s2]."""
+
+    times: Sequence[float]
+    horizontal: Sequence[float]
+    vertical: Sequence[float] | None = None
+
+    def pieces(self, until: float) -> Iterator[tuple[float, float, Reals, Reals]]:
+        """Start, end, and both components at each."""
+        times = np.asarray(self.times, float)
+        both = np.array([self.horizontal, np.zeros(len(times)) if self.vertical is None else self.vertical], float)
+        for i in range(len(times) - 1):
+            yield float(times[i]), float(times[i + 1]), both[:, i], both[:, i + 1]
+        yield float(times[-1]), until, np.zeros(2), np.zeros(2)
+
+
+QUIET = Ground([0.0], [0.0])
+
+
+class Impact(NamedTuple):
+    """phi. before and after, of the direction `side` that ends, and the kinetic energy that is lost."""
+
+    time: float
+    side: int
+    before: float
+    after: float
+    lost: float
+
+
+class Peak(NamedTuple):
+    """A turning point of phi."""
+
+    time: float
+    side: int
+    phi: float
+
+
+class Event(NamedTuple):
+    """What a spring did: "bears", "slack", "yields", "unloads" or "breaks"."""
+
+    time: float
+    what: str
+    spring: int
+
+
+@dataclass
+class History:
+    """What happened, and where all energy went [J]; `stored` is T + V at the end, less that at rest."""
+
+    impacts: list[Impact] = field(default_factory=list)
+    peaks: list[Peak] = field(default_factory=list)
+    uplifts: list[float] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+    ended: str = "time"  # or "rest", "overturned", "impacts"
+    end: float = 0.0
+    side: int = 1
+    phi: float = 0.0
+    rate: float = 0.0
+    at_first: float = 0.0
+    put_in: float = 0.0
+    in_impacts: float = 0.0
+    in_springs: float = 0.0  # yielded or broken
+    in_dampers: float = 0.0
+    stored: float = 0.0
+    flights: list[tuple[float, float, int, Callable[[Any], Any]]] = field(default_factory=list, repr=False)
+
+    @property
+    def imbalance(self) -> float:
+        """Energy that came from nowhere."""
+        lost = self.in_impacts + self.in_springs + self.in_dampers
+        return self.stored - (self.at_first + self.put_in - lost)
+
+    def at(self, time: float) -> tuple[float, float]:
+        """The signed rotation and its rate; zero at rest."""
+        for start, end, side, solution in self.flights:
+            if start <= time <= end:
+                phi, rate = solution(time)[:2]
+                return side * float(phi), side * float(rate)
+        return 0.0, 0.0
+
+
+def simulate(
+    structure: Structure,
+    ground: Ground = QUIET,
+    *,
+    release: float = 0.0,
+    rate: float = 0.0,
+    eta: float | dict[int, float] | None = None,
+    rebound: float | None = None,
+    impacts: float = inf,
+    until: float = 100.0,
+) -> History:
+    """Let a structure go, at rest or turned slowly by `release` (signed), and turning outwards at `rate`.
+
+    At an impact phi. becomes eta times as fast in the other direction (`eta` of the direction that ends; its own
+    unless given), or with `rebound` r times as fast in the same: one-sided, and `release`, else +, says to which side.
+    """
+    motion = _Motion(structure, release, rate)
+    if rebound is None:
+        motion.eta = eta if isinstance(eta, dict) else {s: structure.eta(s) if eta is None else eta for s in SIDES}
+    else:
+        motion.eta, motion.sides = {motion.s: rebound}, (motion.s,)
+    history = motion.history
+    history.at_first = motion.energy()
+    for start, end, first, last in ground.pieces(until):
+        motion.follow(start, end, first, last, impacts)
+        if history.ended != "time" or (motion.resting and end == until):
+            break
+    if history.ended == "time" and motion.resting:
+        history.ended = "rest"
+    history.end, history.side = motion.since if motion.resting else motion.t, motion.s
+    history.phi, history.rate, history.put_in, history.in_dampers = (float(x) for x in motion.y)
+    history.stored = motion.energy()
+    return history
+
+
+class _Motion:
+    def __init__(self, structure: Structure, release: float, rate: float) -> None:
+        self.structure, self.history = structure, History()
+        self.s = -1 if release < 0 else 1
+        self.t = 0.0
+        self.y = np.array([abs(release), rate, 0.0, 0.0])  # phi, phi., energy put in, energy in dampers
+        self.resting, self.since = release == 0 and rate == 0, 0.0
+        self.sides: tuple[int, ...] = SIDES
+        self.eta: dict[int, float] = {}
+        self.mode = structure.fresh(self.s, abs(release))
+        self._commit(abs(release))
+        self.history.in_springs = 0.0  # of what was yielded before nothing is counted
+        self.limit = {s: structure.limit(s) for s in SIDES}
+        self.faint = FAINT * 0.1 * max(structure.terms(s, 0.0).dV for s in SIDES)
+        self.rest_energy = structure.terms(1, 0.0).V
+
+    def e(self, phi: float) -> Reals:
+        return np.asarray(self.structure.elongations(self.s, np.array([phi])).real[:, 0], float)
+
+    def energy(self) -> float:
+        """T + V, less V at rest; what has yielded is in the offsets, so that every spring that bears is elastic."""
+        elastic = self.mode.copy()
+        elastic.yields[:] = 0.0
+        it = self.structure.terms(self.s, float(self.y[0]), elastic)
+        return float(it.inertia * self.y[1] ** 2 / 2 + it.V - self.rest_energy)
+
+    def _commit(self, phi: float) -> None:
+        """Put what has yielded so far into the offset of its spring."""
+        row, mode = self.structure.springs, self.mode
+        on = mode.yields != 0
+        if on.any():
+            offset = self.e(phi)[on] - (mode.yields[on] * row.yields[on] - row.n0[on]) / row.k[on]
+            self.history.in_springs += float(row.yields[on] @ abs(offset - mode.offset[on]))
+            mode.offset[on] = offset
+
+    def follow(self, start: float, end: float, first: Reals, last: Reals, impacts: float) -> None:
+        """From `start` to `end`, the ground accelerations straight in between."""
+        self.ground = start, first, (last - first) / (end - start)
+        self.t = start
+        while self.t < end and self.history.ended == "time":
+            if self.resting and not self._lifts(end):
+                self.t = end
+                return
+            self._fly(end)
+            if len(self.history.impacts) >= impacts:
+                self.history.ended = "impacts"
+
+    def _accelerations(self, t: float) -> Any:
+        start, first, grade = self.ground
+        return first + grade * (t - start)
+
+    def _demand(self, s: int, t: float) -> float:
+        """The force that holds the structure down in direction s."""
+        mode = self.structure.settled(self.mode, s)
+        it = self.structure.terms(s, 0.0, mode)
+        u, v = self._accelerations(t)
+        return float(it.dV + v * it.G + u * it.X)
+
+    def _lifts(self, end: float) -> bool:
+        """Whether the ground lifts it before `end`; if so, sets out from there."""
+        found = []
+        for s in self.sides:
+            now, then = self._demand(s, self.t), self._demand(s, end)
+            if now < 0:
+                found.append((self.t, s))
+            elif then < 0:
+                found.append((self.t + (end - self.t) * now / (now - then), s))
+        if not found:
+            return False
+        self.t, self.s = min(found)
+        self.y[:2] = 0.0
+        self.mode = self.structure.settled(self.mode, self.s)
+        self.resting = False
+        self.history.uplifts.append(self.t)
+        return True
+
+    def slopes(self, t: float, y: Reals) -> list[float]:
+        it = self.structure.terms(self.s, y[0], self.mode)
+        u, v = self._accelerations(t)
+        power = -(u * it.X + v * it.G)
+        drag = self.structure.drag(it, y[1])
+        return [
+            y[1],
+            (power - it.d_inertia / 2 * y[1] ** 2 - it.dV - drag) / it.inertia,
+            power * y[1],
+            drag * y[1],
+        ]
+
+    def _room(self, y: Reals) -> Reals:
+        """How far every spring is from the end of its mode, in numbers without dimension: contact, yielding, break."""
+        row, mode = self.structure.springs, self.mode
+        e = self.e(y[0])
+        n = self.structure.trial(mode, e)
+        size = abs(row.n0) + row.k + 1e-300
+        steady = (row.acts == 0) | (row.k == 0) | (mode.yields != 0)
+        contact = np.where(steady, inf, np.where(mode.bears, 1, -1) * row.acts * n / size)
+        plastic = np.where(np.isinf(row.yields), inf, (row.cap - abs(n)) / size)
+        if mode.yields.any():
+            speed = self.structure.levers(self.s, y[0]) * y[1]
+            plastic = np.where(mode.yields != 0, mode.yields * speed, plastic)
+        plastic = np.where(mode.bears, plastic, inf)
+        return np.where(mode.broken, inf, np.array([contact, plastic, row.breaks - e]))
+
+    def _switch(self) -> None:
+        """A spring leaves its mode."""
+        it, mode = self.structure, self.mode
+        room = self._room(self.y)
+        e = self.e(self.y[0])
+        self._commit(self.y[0])
+        n, stored = it.trial(mode, e), it.stored(mode, e)
+        for kind, spring in np.argwhere(room <= room.min() + 1e-11).tolist():  # equal springs do the same
+            if kind == 0:
+                mode.bears[spring] ^= True
+                what = "bears" if mode.bears[spring] else "slack"
+            elif kind == 1:
+                what = "unloads" if mode.yields[spring] else "yields"
+                mode.yields[spring] = 0.0 if mode.yields[spring] else np.sign(n[spring])
+            else:
+                self.history.in_springs += float(stored[spring])
+                mode.broken[spring], mode.yields[spring] = True, 0.0
+                what = "breaks"
+            self.history.events.append(Event(self.t, what, spring))
+
+    def _fly(self, end: float) -> None:
+        """To `end`, or to the next impact, change of a spring, or fall."""
+        floor = 1e-16 * np.array([1.0, 1.0, self.faint / FAINT, self.faint / FAINT])
+
+        def hits(t: float, y: Reals) -> float:
+            return float(y[0])
+
+        def falls(t: float, y: Reals) -> float:
+            return float(self.limit[self.s] - y[0])
+
+        def turns(t: float, y: Reals) -> float:
+            return float(y[1])
+
+        def switches(t: float, y: Reals) -> float:
+            return float(self._room(y).min())
+
+        stops: list[Any] = [hits, falls, turns] + ([switches] if self.structure.links else [])
+        for event in stops:
+            event.terminal, event.direction = event is not turns, -1
+        # The first step is well within a hop: an impact within a first step would not be seen.
+        pace = self.slopes(self.t, self.y)[1]
+        hop = self.y[1] / -pace if pace < 0 and self.y[0] == 0 and self.y[1] > 0 else 1e-3
+        first = min(0.1 * hop, 1e-3, end - self.t)
+        options: Any = {"method": "DOP853", "rtol": 1e-12, "atol": floor}
+        solution = solve_ivp(
+            self.slopes, (self.t, end), self.y, events=stops, dense_output=True, first_step=first, **options
+        )
+        assert solution.success, solution.message
+        self.history.flights.append((self.t, float(solution.t[-1]), self.s, solution.sol))
+        for t, y in zip(solution.t_events[2], solution.y_events[2], strict=True):
+            if not self.history.peaks or t > self.history.peaks[-1].time + 1e-9:  # unloading starts at a peak too
+                self.history.peaks.append(Peak(float(t), self.s, float(y[0])))
+        which = [i for i, times in enumerate(solution.t_events) if len(times) and i != 2]
+        self.t, self.y = float(solution.t[-1]), solution.y[:, -1]
+        if not which:
+            self._commit(self.y[0])
+            return
+        # A spring that has no force at rest goes slack where the structure hits the ground.
+        event = hits if self.y[0] < 1e-11 and self.y[1] < 0 else stops[which[0]]
+        self._sharpen(event, float(solution.t[-2]), solution.y[:, -2], options)
+        if event is hits:
+            self._impact()
+        elif event is falls:
+            self._commit(self.y[0])
+            self.history.ended = "overturned"
+        else:
+            self._switch()
+
+    def _sharpen(self, event: Any, before: float, y: Reals, options: Any) -> None:
+        """The event by Newton's method on the integration itself; the interpolant found it to some 1e-10."""
+        for _ in range(2):
+            if self.t <= before:
+                return
+            self.y = solve_ivp(self.slopes, (before, self.t), y, **options).y[:, -1]
+            step, slope = 1e-6, np.array(self.slopes(self.t, self.y))
+            rate = (event(self.t, self.y + step * slope) - event(self.t, self.y - step * slope)) / (2 * step)
+            miss = event(self.t, self.y) / rate if rate else 0.0
+            self.t -= miss
+            self.y = self.y - miss * slope
+
+    def _impact(self) -> None:
+        """The end of a direction; or, one-sided, a rebound."""
+        it = self.structure
+        self._commit(0.0)
+        before, s = -self.y[1], self.s
+        self.s = s if len(self.sides) == 1 else -s
+        after = self.eta[s] * before
+        energies = [
+            it.terms(side, 0.0, self.mode).inertia * rate**2 / 2 for side, rate in ((s, before), (self.s, after))
+        ]
+        lost = energies[0] - energies[1]
+        self.y[:2] = 0.0, after
+        self.mode = it.settled(self.mode, self.s)
+        self.history.in_impacts += lost
+        self.history.impacts.append(Impact(self.t, s, float(before), float(after), float(lost)))
+        if energies[1] < self.faint and all(self._demand(side, self.t) >= 0 for side in self.sides):
+            self.resting, self.since = True, self.t
+            self.history.in_impacts += energies[1]
+            self.y[1] = 0.0
