@@ -48,8 +48,9 @@ def view(mechanism: Mechanism, equivalence: Equivalence) -> View:
         for where, (_, block, advice) in zip(_where(equivalence), shown, strict=False)
     ]
     said.append(
-        "Either kappa keeps phi_cr. That is all without an amplitude: `rocking error` compares free periods and "
-        "overturning times, `rocking respond` motions."
+        "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; either kappa "
+        "keeps the critical rotation. How alike they move depends on how far: `rocking error` compares free periods "
+        "and overturning times, `rocking respond` motions."
     )
     said += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(data, [table, *said])

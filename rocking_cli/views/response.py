@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from math import isinf
 from typing import Any
@@ -130,6 +130,17 @@ def restitution_used(mechanism: Mechanism, etas: Equivalence) -> str:
     return restitution_in_words([etas[each].eta for each in Direction], given=mechanism.restitution is not None)
 
 
+def models_used(models: Iterable[ModelName]) -> Iterator[str]:
+    """A sentence on what the models are; none where there is the nonlinear one alone."""
+    names = list(models)
+    linear = [name for name in names if name != "nonlinear"]
+    if linear:
+        itself = "nonlinear is the structure itself, " if "nonlinear" in names else ""
+        scaled = " and ".join(name.replace("linear", "kappa") for name in linear)
+        what = f"{' and '.join(linear)} {'are' if len(linear) > 1 else 'is'} its equivalent block with {scaled}"
+        yield f"Models: {itself}{what}."
+
+
 def ending(outcome: OneOutcome) -> str:
     """How a motion ended, as programs read it."""
     return "overturned" if outcome.overturned else "still_rocking" if outcome.still_rocking else "at_rest"
@@ -206,10 +217,19 @@ def view(
     else:
         data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, etas)}
         parts = _tables(f"{title}, under the record", found.runs, found.neighbours, etas)
-        parts += ["", *_tables(f"{title}, under its pulse alone", {1: found.to_pulse}, {}, etas)]
-        parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse))
+        parts += [
+            "",
+            *_tables(f"{title}, under the {found.fit.pulse.title} in it alone", {1: found.to_pulse}, {}, etas),
+        ]
+        parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse, found.fit.pulse.title))
     caution = [f"Caution: {mechanism.caution}"] if mechanism.caution else []
-    said = [*parts, restitution_used(mechanism, blocks), *notes, *caution]
+    said = [
+        *parts,
+        *models_used(next(iter(found.runs.values()))),
+        restitution_used(mechanism, blocks),
+        *notes,
+        *caution,
+    ]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
@@ -259,13 +279,15 @@ def _impact_table(title: str, history: History, etas: Equivalence) -> list[Table
     return [table, f"{more} more follow: JSON lists them"] if more > 0 else [table]
 
 
-def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
-    """A sentence on how much of the response to a record is that to its pulse, by the best model."""
+def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> str:
+    """A sentence on how much of the response to a record is that to its pulse, called so, by the best model."""
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     whole, alone = histories[model], to_pulse[model]
     if whole.overturned or alone.overturned or (whole.peak_ratio and not alone.peak_ratio):
-        return f"By the {model} model it {whole.words} under the record; under its pulse alone it {alone.words}."
+        return (
+            f"By the {model} model it {whole.words} under the record; under the {called} in it alone it {alone.words}."
+        )
     if not whole.peak_ratio:
         return f"By the {model} model it {whole.words} under the record."
     share = 100 * alone.peak_ratio / whole.peak_ratio
-    return f"By the {model} model the pulse alone rocks it to {share:.3g} % of the peak under the record."
+    return f"By the {model} model the {called} alone rocks it to {share:.3g} % of its peak under the record."
