@@ -12,6 +12,8 @@ from rocking_cli import __version__
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # mathml.py
 
+from make_reference import docstrings
+
 project = "rocking-cli"
 author = "The rocking-cli authors"
 project_copyright = author
@@ -57,6 +59,7 @@ ELSEWHERE = {
     "](../README.md#set-up)": "](index.md#set-up)",
     "one file that needs no network": "{download}`one file that needs no network <_generated/run/report.html>`",
 }
+NAMES = re.compile(r"^<!-- names: (?P<names>.+?) -->\n.*?^<!-- end -->\n", re.M | re.S)
 WHOLE = {
     "changelog": "```{include} ../CHANGELOG.md\n```\n",
     "contributing": "```{include} ../CONTRIBUTING.md\n:relative-docs: docs/\n```\n",
@@ -67,6 +70,7 @@ def _on_the_site(app: Sphinx, page: str, source: list[str]) -> None:
     text = WHOLE.get(page, source[0])
     for link, here in ELSEWHERE.items():
         text = text.replace(link, here)
+    text = NAMES.sub(lambda part: f"{part[0]}\n{docstrings(part['names'])}", text)
     source[0] = text + _menus(text) if page == "index" else text
 
 

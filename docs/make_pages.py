@@ -47,7 +47,9 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
         return of_the_readme(what)
     if kind == "mechanism":
         return make_reference.mechanism(Registry()[what])
-    return {"options": make_reference.command_line, "names": make_reference.public_names}[kind]()
+    if kind == "names":
+        return make_reference.public_names(what)
+    return {"options": make_reference.command_line}[kind]()
 
 
 def of_the_readme(name: str) -> str:

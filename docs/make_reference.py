@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from inspect import cleandoc, getdoc, isclass
+from inspect import cleandoc, getdoc, isclass, signature
 from textwrap import dedent, indent
 from typing import Any
 
@@ -75,12 +75,23 @@ def table_of_fields(cls: Any) -> str:
     return "\n".join(rows) + f"\n\nand {common}, see [what is common to all](../mechanisms.md)."
 
 
-def public_names() -> str:
-    """What can be imported from `rocking_cli`, with the first sentence on each."""
+def public_names(names: str) -> str:
+    """What some names of `rocking_cli` are called with, and the first sentence on each."""
     rows = ["| name | what it is |", "|---|---|"]
-    for name in rocking_cli.__all__:
-        if name != "__version__":
-            each = getattr(rocking_cli, name)
-            first = " ".join((getdoc(each) or "").split("\n\n")[0].split())
-            rows.append(f"| `{name}{'' if isclass(each) else '()'}` | {plain(first).replace('|', chr(92) + '|')} |")
+    for name in names.split():
+        each = getattr(rocking_cli, name)
+        called = "" if isclass(each) else f"({', '.join(signature(each).parameters)})"
+        first = " ".join((getdoc(each) or "").split("\n\n")[0].split())
+        rows.append(f"| `{name}{called}` | {plain(first).replace('|', chr(92) + '|')} |")
     return "\n".join(rows)
+
+
+def docstrings(names: str) -> str:
+    """The same names in full, for Sphinx."""
+    kinds = {
+        name: "exception" if isclass(each) and issubclass(each, Exception) else "class" if isclass(each) else "function"
+        for name in names.split()
+        for each in [getattr(rocking_cli, name)]
+    }
+    directives = [f".. auto{kind}:: {name}" + "\n   :members:" * (kind == "class") for name, kind in kinds.items()]
+    return "\n".join(["```{eval-rst}", ".. currentmodule:: rocking_cli", "", *directives, "```", ""])

@@ -75,36 +75,64 @@ def one_body() -> Iterator[Check]:
     R, alpha = sqrt(b * b + h * h), np.arctan2(b, h)
     block = equivalent_block(make("block", width=2 * b, height=2 * h)).positive
     test = "test_closed_forms.py"
-    yield Check("block 0.7 m x 2.8 m: p [rad/s]", "Eq. 3: sqrt(3g/4R)", sqrt(3 * G / (4 * R)), block.p, test)
-    yield Check("its uplift acceleration/g", "tan(alpha)", b / h, block.lambda_, test)
-    yield Check("its critical rotation [rad]", "alpha", float(alpha), block.phi_cr, test)
-    yield Check("its restitution", "Housner 1963", 1 - 1.5 * sin(alpha) ** 2, block.eta, "test_restitution.py")
+    yield Check("block 0.7 m x 2.8 m: $p$ [rad/s]", r"Eq. 3: $\sqrt{3g/(4R)}$", sqrt(3 * G / (4 * R)), block.p, test)
+    yield Check("its uplift acceleration over $g$", r"$\tan \alpha$", b / h, block.lambda_, test)
+    yield Check("its critical rotation [rad]", r"$\alpha$", float(alpha), block.phi_cr, test)
+    yield Check(
+        "its restitution",
+        r"Housner 1963: $1 - \frac{3}{2} \sin^2 \alpha$",
+        1 - 1.5 * sin(alpha) ** 2,
+        block.eta,
+        "test_restitution.py",
+    )
     strut = equivalent_block(make("point_mass", base_width=0.7, height=2.8)).positive
     R = sqrt(0.35**2 + 2.8**2)
-    yield Check("point mass on a strut: p [rad/s]", "Table I: sqrt(g/R)", sqrt(G / R), strut.p, test)
+    yield Check("point mass on a strut: $p$ [rad/s]", r"Table I: $\sqrt{g/R}$", sqrt(G / R), strut.p, test)
     yield Check(
-        "its restitution", "Table I: cos(2 alpha)", cos(2 * np.arctan2(0.35, 2.8)), strut.eta, "test_restitution.py"
+        "its restitution", r"Table I: $\cos 2 \alpha$", cos(2 * np.arctan2(0.35, 2.8)), strut.eta, "test_restitution.py"
     )
     shell = equivalent_block(make("cone", base_radius=0.5, height=3.0)).positive
     R, a = sqrt(0.25 + 1.0), float(np.arctan2(0.5, 1.0))
-    yield Check("thin conical shell: p [rad/s]", "Table I", sqrt(4 * G / (R * (5 + cos(a) ** 2))), shell.p, test)
+    yield Check(
+        "thin conical shell: $p$ [rad/s]",
+        r"Table I: $\sqrt{4g/(R (5 + \cos^2 \alpha))}$",
+        sqrt(4 * G / (R * (5 + cos(a) ** 2))),
+        shell.p,
+        test,
+    )
     eta = 1 - 8 * sin(a) ** 2 / (5 + cos(a) ** 2)
-    yield Check("its restitution", "Table I", eta, shell.eta, "test_restitution.py")
+    yield Check(
+        "its restitution", r"Table I: $1 - 8 \sin^2 \alpha/(5 + \cos^2 \alpha)$", eta, shell.eta, "test_restitution.py"
+    )
     cone = equivalent_block(make("cone", base_radius=0.5, height=3.0, kind="solid")).positive
     p2 = 5 * G * sqrt(9 + 16 * 0.25) / (2 * 9 + 23 * 0.25)
-    yield Check("solid cone: p [rad/s]", "Table I", sqrt(p2), cone.p, test)
-    yield Check("its uplift acceleration/g", "Table I: 4r/h", 4 * 0.5 / 3.0, cone.lambda_, test)
+    yield Check(
+        "solid cone: $p$ [rad/s]", r"Table I: $p^2 = 5g \sqrt{h^2 + 16 r^2}/(2 h^2 + 23 r^2)$", sqrt(p2), cone.p, test
+    )
+    yield Check("its uplift acceleration over $g$", "Table I: $4r/h$", 4 * 0.5 / 3.0, cone.lambda_, test)
     eta = (2 * 9 - 17 * 0.25) / (2 * 9 + 23 * 0.25)
-    yield Check("its restitution", "Table I", eta, cone.eta, "test_restitution.py")
+    yield Check("its restitution", "Table I: $(2 h^2 - 17 r^2)/(2 h^2 + 23 r^2)$", eta, cone.eta, "test_restitution.py")
     gamma, b, h = 2.0, 0.4, 2.0
     R, alpha = sqrt(b * b + h * h), float(np.arctan2(b, h))
     frame = equivalent_block(
         make("symmetric_frame", column_width=2 * b, column_height=2 * h, mass_ratio=gamma)
     ).positive
     p = sqrt(3 * G / (4 * R) * (1 + 2 * gamma) / (1 + 3 * gamma))
-    yield Check("symmetric frame: p [rad/s]", "Table I", p, frame.p, test)
+    yield Check(
+        "symmetric frame: $p$ [rad/s]",
+        r"Table I: $p^2 = \frac{3g}{4R} \frac{1 + 2 \gamma}{1 + 3 \gamma}$",
+        p,
+        frame.p,
+        test,
+    )
     eta = (1 - 1.5 * sin(alpha) ** 2 + 3 * gamma * cos(2 * alpha)) / (1 + 3 * gamma)
-    yield Check("its restitution", "Table I", eta, frame.eta, "test_restitution.py")
+    yield Check(
+        "its restitution",
+        r"Table I: $(1 - \frac{3}{2} \sin^2 \alpha + 3 \gamma \cos 2 \alpha)/(1 + 3 \gamma)$",
+        eta,
+        frame.eta,
+        "test_restitution.py",
+    )
 
 
 def more_bodies() -> Iterator[Check]:
@@ -112,34 +140,36 @@ def more_bodies() -> Iterator[Check]:
     alpha = 0.2
     wall = equivalent_block(make("wall", thickness=2 * sin(alpha), height=4 * cos(alpha))).positive
     yield Check(
-        "wall, alpha 0.2: uplift acceleration/g",
-        "Eq. 22: 2 tan(alpha)",
+        r"wall, $\alpha = 0.2$: uplift acceleration over $g$",
+        r"Eq. 22: $2 \tan \alpha$",
         2 * tan(alpha),
         wall.lambda_,
         "test_closed_forms.py",
     )
-    yield Check("its critical rotation [rad]", "Section 4: alpha", alpha, wall.phi_cr, "test_closed_forms.py")
-    yield Check("its kappa1", "Section 4: 1/2", 0.5, wall.kappa1, "test_closed_forms.py")
-    yield Check("its p [rad/s]", "Eq. 23: sqrt(3g/2R)", sqrt(1.5 * G), wall.p, "test_closed_forms.py")
+    yield Check("its critical rotation [rad]", r"Section 4: $\alpha$", alpha, wall.phi_cr, "test_closed_forms.py")
+    yield Check(r"its $\kappa_1$", r"Section 4: $\frac{1}{2}$", 0.5, wall.kappa1, "test_closed_forms.py")
+    yield Check("its $p$ [rad/s]", r"Eq. 23: $\sqrt{3g/(2R)}$", sqrt(1.5 * G), wall.p, "test_closed_forms.py")
     b, H, H1, L, h = 0.8, 3.5, 5.0, 10.0, 0.75
     frame = equivalent_block(load_structure(EXAMPLES / "frame.yaml"))
     left, beam, right = (2500.0 * 2 * area for area in (2 * b * 2 * H, (L + 2 * b) * 2 * h, 2 * b * 2 * H1))
     for direction, s in ((Direction.POSITIVE, 1), (Direction.NEGATIVE, -1)):
         expected = (b / H) * (left + (1 + H / H1 - s * (2 * b / L) * (1 - H / H1)) * beam + (H / H1) * right)
         expected /= left + 2 * (1 + s * (b * h / (L * H)) * (1 - H / H1)) * beam + right
-        yield Check(f"asymmetric frame, {direction.label}: uplift acceleration/g", "Eq. 33, corrected", expected,
+        yield Check(f"asymmetric frame, {direction.label}: uplift acceleration over $g$", "Eq. 33, corrected", expected,
                     frame[direction].lambda_, "test_asymmetric_frame.py")  # fmt: skip
     even = {"column_width": 1.6, "left_height": 7.0, "right_height": 7.0, "spacing": 10.0, "beam_depth": 1.5}
     masses = {"left_mass": 1.0, "right_mass": 1.0, "beam_mass": 4.0}
     one = equivalent_block(make("asymmetric_frame", **even, **masses)).negative
     other = equivalent_block(make("symmetric_frame", column_width=1.6, column_height=7.0, mass_ratio=2.0)).positive
-    for name in ("p", "lambda_", "eta"):
-        yield Check(f"asymmetric frame of equal columns: {name.rstrip('_')}", "symmetric frame, Eq. 36",
+    for name, symbol in (("p", "p"), ("lambda_", r"\lambda"), ("eta", r"\eta")):
+        yield Check(f"asymmetric frame of equal columns: ${symbol}$", "symmetric frame, Eq. 36",
                     getattr(other, name), getattr(one, name), "test_asymmetric_frame.py")  # fmt: skip
-    yield Check("least t/r of an arch of 180 deg that stands", "Milankovitch 1907: 0.1075", 0.1075,
+    yield Check("least $t/r$ of an arch of 180 deg that stands", "Milankovitch 1907: 0.1075", 0.1075,
                 least_thickness(pi, None), "test_arch.py")  # fmt: skip
     arch = equivalent_block(load_structure(EXAMPLES / "arch.yaml")).positive
-    yield Check("Oppenheim's arch: uplift acceleration/g", "Oppenheim 1992: 0.37", 0.37, arch.lambda_, "test_arch.py")
+    yield Check(
+        "Oppenheim's arch: uplift acceleration over $g$", "Oppenheim 1992: 0.37", 0.37, arch.lambda_, "test_arch.py"
+    )
 
 
 def errors() -> Iterator[Check]:
@@ -149,12 +179,12 @@ def errors() -> Iterator[Check]:
         mechanism = load_structure(EXAMPLES / f"{file}.yaml")
         found = linearisation(mechanism, Direction.POSITIVE, 0.5, 2.0)
         free = respond(mechanism, release=0.5, models=("nonlinear",))["nonlinear"]
-        yield Check(f"{file}: free period from phi_cr/2 [s]", "integrated motion", 4 * float(free.impacts[0, 0]),
-                    float(found.period[0]), test)  # fmt: skip
+        yield Check(rf"{file}: free period from $\phi_{{cr}}/2$ [s]", "integrated motion",
+                    4 * float(free.impacts[0, 0]), float(found.period[0]), test)  # fmt: skip
         push = GroundMotion("constant", 0.01, np.full(3000, -2 * found.block.lambda_ * mechanism.gravity))
         fall = respond(mechanism, push, models=("nonlinear",))["nonlinear"]
-        yield Check(f"{file}: time to overturn at 2 lambda [s]", "integrated motion", fall.overturning_time or inf,
-                    float(found.overturning[0]), test)  # fmt: skip
+        yield Check(rf"{file}: time to overturn at $2 \lambda g$ [s]", "integrated motion",
+                    fall.overturning_time or inf, float(found.overturning[0]), test)  # fmt: skip
 
 
 def histories() -> Iterator[Check]:
@@ -162,30 +192,36 @@ def histories() -> Iterator[Check]:
     mechanism = make("block", width=0.7, height=2.8)
     block = equivalent_block(mechanism).positive
     free = respond(mechanism, release=0.4, models=("linear2",))["linear2"]
-    yield Check("linear block let go at 0.4: first impact [s]", "acosh(1/0.6)/p", acosh(1 / 0.6) / block.p,
-                float(free.impacts[0, 0]), "test_history_events.py")  # fmt: skip
+    yield Check("linear block let go at 0.4: first impact [s]", r"$\operatorname{arcosh}(1/0.6)/p$",
+                acosh(1 / 0.6) / block.p, float(free.impacts[0, 0]), "test_history_events.py")  # fmt: skip
     rate = block.p * block.phi_cr * sqrt(1 - 0.36)
-    yield Check("its rate there [rad/s]", "energy", rate, float(free.impacts[0, 2]), "test_history_events.py")
+    yield Check(
+        "its rate there [rad/s]",
+        r"energy: $p \phi_{cr} \sqrt{1 - 0.6^2}$",
+        rate,
+        float(free.impacts[0, 2]),
+        "test_history_events.py",
+    )
     t = 0.4
     above = GroundMotion("step", t, np.array([-2 * block.lambda_ * G] * 2))
     held = respond(mechanism, above, models=("linear2",))["linear2"]
-    yield Check("linear block pushed at 2 lambda for 0.4 s: phi/phi_cr", "cosh(pt) - 1", cosh_minus_one(block.p * t),
-                float(held.ratio[1]), "test_history_linear.py")  # fmt: skip
+    yield Check(r"linear block pushed at $2 \lambda g$ for 0.4 s: $\phi/\phi_{cr}$", r"$\cosh pt - 1$",
+                cosh_minus_one(block.p * t), float(held.ratio[1]), "test_history_linear.py")  # fmt: skip
 
     heavy = respond(make("block", width=0.7, height=2.8, gravity=1.25 * G), release=0.4)["nonlinear"]
     still = GroundMotion("still", 10.0, np.zeros(2), vertical=GroundMotion("up", 10.0, np.full(2, 0.25 * G)))
     lifted = respond(mechanism, still, release=0.4)["nonlinear"]
-    yield Check("block under a constant v_g'' = g/4: first impact [s]", "gravity of 1.25 g", float(heavy.impacts[0, 0]),
-                float(lifted.impacts[0, 0]), "test_history_vertical.py")  # fmt: skip
+    yield Check(r"block under a constant $\ddot{v}_g = g/4$: first impact [s]", "gravity of $1.25 g$",
+                float(heavy.impacts[0, 0]), float(lifted.impacts[0, 0]), "test_history_vertical.py")  # fmt: skip
 
 
 def records() -> Iterator[Check]:
     """Measures of a ground motion: a ramp of the acceleration to 3 m/s2 in 2 s."""
     found = measure(GroundMotion("ramp", 2.0, np.array([0.0, 3.0])))
     test = "test_measures.py"
-    yield Check("ramp to 3 m/s2 in 2 s: PGV [m/s]", "a t/2", 3.0, found.pgv, test)
-    yield Check("its PGD [m]", "a t^2/6", 2.0, found.pgd, test)
-    yield Check("its Arias intensity [m/s]", "pi a^2 t/(6 g)", pi * 9 * 2 / (6 * G), found.arias, test)
+    yield Check("ramp to $a$ = 3 m/s2 in $t$ = 2 s: PGV [m/s]", "$a t/2$", 3.0, found.pgv, test)
+    yield Check("its PGD [m]", "$a t^2/6$", 2.0, found.pgd, test)
+    yield Check("its Arias intensity [m/s]", r"$\pi a^2 t/(6 g)$", pi * 9 * 2 / (6 * G), found.arias, test)
 
 
 def cosh_minus_one(y: float) -> float:
@@ -197,7 +233,7 @@ def pulses() -> Iterator[Check]:
     """Section 6.2."""
     a, omega, eta = 4.0, 6.0, 0.9
     exact, form = exact_pulse(a, omega, eta), closed_form(a, omega, eta)
-    yield Check("full sine a = 4, omega = 6: first rebound", "Eqs. 41-42", form.max_ratio or inf,
+    yield Check(r"full sine $a = 4$, $\omega = 6$: first rebound", "Eqs. 41-42", form.max_ratio or inf,
                 exact.first_rebound or inf, "test_pulse.py")  # fmt: skip
 
     def without_impact(a: float, omega: float) -> float:
@@ -218,13 +254,13 @@ def pulses() -> Iterator[Check]:
     for _ in range(60):
         middle = (low + up) / 2
         low, up = (low, middle) if without_impact_falls(middle) else (middle, up)
-    yield Check("full sine omega = 3: least a that overturns without impact", "(s - omega) exp(te) = a", expected, up,
-                "test_exact_pulse.py")  # fmt: skip
+    yield Check(r"full sine $\omega = 3$: least $a$ that overturns without impact", r"$(s - \omega) e^{\tau_e} = a$",
+                expected, up, "test_exact_pulse.py")  # fmt: skip
     low, high = 1e-3, 20.0
     for _ in range(60):  # the length of a rectangle that just overturns a block, as omega = 2 pi/(p T)
         middle = sqrt(low * high)
         low, high = (middle, high) if exact_pulse(2.0, middle, eta, shape="rectangular").overturned else (low, middle)
-    yield Check("rectangular pulse a = 2: p T that just overturns", "ln(a/(a - 1)), without impact", log(2.0),
+    yield Check("rectangular pulse $a = 2$: $p T$ that just overturns", r"$\ln(a/(a - 1))$, without impact", log(2.0),
                 2 * pi / high, "test_exact_pulse.py")  # fmt: skip
 
 

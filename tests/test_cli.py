@@ -15,6 +15,7 @@ from click.testing import CliRunner
 from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.core.registry import Registry
 from rocking_cli.structure import parse_structure
+from rocking_cli.studies.neighbours import Around
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 ACCEL = str(EXAMPLES / "accel.csv")
@@ -61,7 +62,7 @@ class TestNeighbours:
         from rocking_cli.dynamics.model import build_model
         from rocking_cli.excitation.records import read_record
         from rocking_cli.structure import load_structure
-        from rocking_cli.studies.neighbours import Around, neighbours
+        from rocking_cli.studies.neighbours import neighbours
 
         words = ("respond", FRAME, "--record", ACCEL, "--scale", "1.1", "--polarity", "-1", "--neighbours", 50)
         found = run_json(*words, "--within-amplitude", "0.05", "--within-restitution", "0.01")["neighbours"]
@@ -77,11 +78,11 @@ class TestNeighbours:
         found, text = run_json(*words), run(*words).stdout
         said = [each["neighbours"] for each in found["polarities"].values()]
         for near in said:
-            assert f"Of 200 motions within 2 % of this one {shares(near)}" in text
+            assert f"Of 200 motions next to this one ({Around().words}) {shares(near)}" in text
 
     def test_none_if_none_are_asked_for(self):
         words = ("respond", FRAME, "--record", ACCEL, "--neighbours", 0)
-        assert run_json(*words)["neighbours"] is None and "motions within" not in run(*words).stdout
+        assert run_json(*words)["neighbours"] is None and "motions next to" not in run(*words).stdout
 
     def test_of_linear_models_alone_they_follow_the_first(self):
         words = ("respond", FRAME, "--record", ACCEL, "--scale", "1.2")
@@ -94,7 +95,7 @@ class TestNeighbours:
         for name in ("north.csv", "south.csv"):
             (tmp_path / name).write_text(record, encoding="utf-8")
         pair = ("--record", tmp_path / "north.csv", "--record", tmp_path / "south.csv")
-        assert "None governs: north.csv, south.csv do alike." in run("respond", FRAME, *pair).stdout
+        assert "No motion governs: north.csv, south.csv do alike." in run("respond", FRAME, *pair).stdout
         pulses = ("--pulse", "sine:0.2g:0.5s", "--pulse", "sine:1g:3s")
         text = run("respond", FRAME, *pulses).stdout
         lines = run("respond", FRAME, *pulses, "--json").stdout.splitlines()
@@ -420,7 +421,7 @@ class TestBothPolarities:
         assert both["governs"] == max(peaks, key=peaks.get)
         text = run("respond", FRAME, "--record", ACCEL, "--polarity", "both").stdout
         assert "polarity 1" in text and "polarity -1" in text
-        assert f"Polarity {both['governs']} governs by the nonlinear model" in text.splitlines()[-2]
+        assert f"Polarity {both['governs']} governs by the nonlinear model" in text.splitlines()[-3]
 
     def test_neither_governs_a_symmetric_structure(self):
         assert run_json("respond", "--record", ACCEL, "--polarity", "both")["governs"] is None
@@ -436,13 +437,15 @@ class TestBothPolarities:
             one, other = (data["polarities"][sign]["responses"]["linear2"] for sign in ("1", "-1"))
             if one["overturned"] != other["overturned"]:
                 assert data["governs"] == (1 if one["overturned"] else -1)
-                said = "it overturns, polarity"
+                said = (
+                    "it overturns, reversed it does not" if one["overturned"] else "it overturns, as given it does not"
+                )
             elif one["overturned"]:
                 assert data["governs"] == (1 if one["overturning_time"] < other["overturning_time"] else -1)
-                said = "both overturn"
+                said = "it overturns at "
             else:
                 continue
-            assert said in run(*options, "--scale", scale).stdout.splitlines()[-2]
+            assert said in run(*options, "--scale", scale).stdout.splitlines()[-3]
             seen.add(said)
         assert len(seen) == 2
 

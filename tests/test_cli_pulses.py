@@ -191,15 +191,15 @@ class TestWithPulse:
         words = " ".join(result.stdout.split())
         assert (
             words.index("under the record")
-            < words.index("under its pulse alone")
-            < words.index("the pulse alone rocks")
+            < words.index("under the full sine in it alone")
+            < words.index("the full sine alone rocks")
         )
         assert "pulse: full sine" in result.stderr and "of the energy of the velocity" in result.stderr
         data = run_json("respond", FRAME, "--record", made, "--with-pulse", "sine")
         peaks = [data[name]["nonlinear"]["peak_ratio"] for name in ("responses", "pulse_responses")]
-        assert f"rocks it to {100 * peaks[1] / peaks[0]:.3g} % of the peak" in words
+        assert f"rocks it to {100 * peaks[1] / peaks[0]:.3g} % of its peak under the record" in words
         over = run("respond", FRAME, "--record", made, "--with-pulse", "sine", "--scale", "4").stdout
-        assert "it overturns under the record; under its pulse alone it overturns" in over
+        assert "it overturns under the record; under the full sine in it alone it overturns" in over
         rest = run("respond", FRAME, "--record", made, "--with-pulse", "sine", "--scale", "0.1").stdout
         assert "does not uplift under the record" in rest
 

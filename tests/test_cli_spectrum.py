@@ -93,20 +93,20 @@ class TestTables:
     def test_one_motion(self):
         text = run(BLOCK, "--record", ACCEL, *QUICK).stdout
         assert "as given" in text and "[s]" in text and "phi/phi_cr" in text and "median" not in text
-        assert "pedestal, 2 pi/p = 2.78 s: it rocks to 0.481 of phi_cr." in text
+        assert "pedestal as given, 2 pi/p = 2.78 s: it rocks to 0.481 of phi_cr." in text
 
     def test_several_motions(self, records, monkeypatch):
         monkeypatch.setenv("COLUMNS", "60")
         text = run(BLOCK, "--slenderness", "0.15,0.3", "--record", records, *QUICK, "--fractiles", "0.25").stdout
         assert all(word in text for word in ("median", "25 %", "2 of 3", "as given", " R ", "[m]", "alpha = 0.3:"))
-        assert "pedestal, 2 pi/p = 2.78 s: 1 of 3 motions overturn it (r2.csv)" in " ".join(text.split())
+        assert "pedestal as given, 2 pi/p = 2.78 s: 1 of 3 motions overturn it (r2.csv)" in " ".join(text.split())
         assert max(map(len, text.splitlines())) <= 60
 
     def test_what_larger_and_smaller_ones_do(self):
         weak = run(BLOCK, "--record", ACCEL, "--scale", "0.01").stdout
-        assert "it does not uplift. No smaller one down to scale 0.1 overturns. No larger one" in weak
+        assert "it does not uplift. No smaller size down to scale 0.1 overturns. No larger size" in weak
         strong = run(BLOCK, "--record", ACCEL, "--scale", "200").stdout
-        assert "Every smaller one down to scale 0.1 overturns. Every larger one up to scale 10" in strong
+        assert "Every smaller size down to scale 0.1 overturns. Every larger size up to scale 10" in strong
         between = run_json(BLOCK, "--record", ACCEL, "--scale", "5")["spectra"][0]
         fell = np.array(between["every_overturned"][0]) & (np.array(between["scale"]) > 1)
         least, largest = (f"{np.array(between['scale'])[fell][k]:.3g}" for k in (0, -1))

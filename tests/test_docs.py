@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from importlib import import_module
 from types import SimpleNamespace
@@ -14,6 +15,8 @@ import pytest
 import rocking_cli
 from rocking_cli import Registry
 from rocking_cli.cli.main import COMMANDS
+from rocking_cli.core import Angle, Length, Line, box
+from rocking_cli.testing import contract
 from tests.conftest import PROJECT
 
 DOCS = PROJECT / "docs"
@@ -113,8 +116,6 @@ def test_only_what_is_stale_is_written_anew(made):
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_a_page_can_be_read_as_a_file(page):
     text = page.read_text(encoding="utf-8")
-    if page.name == "api.md":  # what it is about stands in a table above
-        text = re.sub(r"^```{eval-rst}\n.*?^```", "", text, flags=re.M | re.S)
     prose = re.sub(r"^```(?!{).*?^```|^    .*?$", "", text, flags=re.M | re.S)
     assert not re.search(r"^ *(`{3,}|~{3,}|:{3,}) *{", prose, re.M), "a directive"
     assert not re.search(r"{[\w:-]+}`", prose), "a role"
@@ -157,8 +158,44 @@ def test_every_page_is_in_the_contents():
 
 
 def test_every_public_name_is_documented():
-    documented = set(re.findall(r"^\.\. auto\w+:: (\w+)$", text_of("api.md"), re.M))
-    assert documented == set(rocking_cli.__all__) - {"__version__", "mechanisms"}
+    parts = re.findall(r"^<!-- names: (.+?) -->$", text_of("api.md"), re.M)
+    documented = [name for part in parts for name in part.split()]
+    assert len(set(documented)) == len(documented)
+    assert set(documented) == set(rocking_cli.__all__) - {"__version__", "mechanisms"}
+
+
+def test_the_reference_of_names_reads_as_it_stands_and_is_whole_on_the_site(made):
+    page = text_of("api.md")
+    assert "eval-rst" not in page and "autofunction" not in page
+    for name in set(rocking_cli.__all__) - {"__version__", "mechanisms"}:
+        assert re.search(rf"^\| `{name}[`(]", page, re.M), name
+    directives = made.make_reference.docstrings("respond Answer InputError")
+    for line in (".. autofunction:: respond", ".. autoclass:: Answer\n   :members:", ".. autoexception:: InputError"):
+        assert line in directives
+
+
+def test_the_hollow_body_of_the_guide_holds_the_contract():
+    """The chimney less its shaft is made of its walls and its cap, each a box."""
+    section = text_of("plugins.md").partition("## Hollow bodies\n")[2].partition("\n## ")[0]
+    code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
+    names = {"__name__": "chimney"}
+    exec(code, names)
+    chimney = names["Chimney"](width=3.0, height=20.0, shaft=2.0, cap=1.0)
+    assert [each for each in contract(chimney) if not each.passed] == []
+    parts = [(19.0, 0.5, 3.0, side) for side in (-1.25, 1.25)] + [(19.0, 2.0, 0.5, 0.0)] * 2
+    boxes = [box("wall", high * across * deep, across, high, x + 0.5j * high) for high, across, deep, x in parts]
+    boxes.append(box("cap", 9.0, 3.0, 1.0, 19.5j))
+    mass = sum(each.mass for each in boxes)
+    centroid = sum(each.mass * each.centroid for each in boxes) / mass
+    inertia = sum(each.inertia + each.mass * abs(each.centroid - centroid) ** 2 for each in boxes) / mass
+    (body,) = chimney.bodies()
+    assert (body.mass, body.centroid, body.inertia) == pytest.approx((1.0, centroid, inertia), rel=1e-12)
+
+
+def test_the_guide_gives_the_signatures_of_what_a_sketch_shows():
+    for kind in (Length, Angle, Line):
+        fields = [f"{each.name}{'=None' if each.default is None else ''}" for each in dataclasses.fields(kind)]
+        assert f"`{kind.__name__}({', '.join(fields)})`" in " ".join(text_of("plugins.md").split())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -725,8 +725,8 @@ class TestGoodness:
     def test_what_is_not_tested_says_the_same_reason_everywhere(self):
         x = np.repeat([1.0, 2, 3, 4], 4)
         curve = fit_curve(one_each(x, [0] * 4 + [0, 0, 0, 1] + [0, 1, 1, 1] + [1] * 4))
-        assert curve.goodness.p_value is None and "three are needed" in curve.goodness.why
-        assert curve.why.endswith(f"the lognormal curve is not tested: {curve.goodness.why}")
+        assert curve.goodness.p_value is None and "takes three groups" in curve.goodness.why
+        assert curve.why.endswith(f"whether the data fit a lognormal curve is not tested: {curve.goodness.why}")
 
     @pytest.mark.parametrize(
         ("records", "each", "count"), [(20, 4, 12), (50, 1, 12), (50, 4, 12), (100, 1, 500), (30, 1, 40)]
@@ -762,7 +762,7 @@ class TestGoodness:
         assert curve.kind == "lognormal" and curve.goodness.p_value is None
         assert "not the same for all capacities" in curve.goodness.why
         tried = np.unique(np.concatenate([lower, upper]))  # and with these no cell has two
-        assert "cells with" in fit_capacities(lower, upper, levels=tried).goodness.why
+        assert "takes four ranges" in fit_capacities(lower, upper, levels=tried).goodness.why
 
     def test_many_runs_of_few_records_are_few(self):
         # Each group has one record, whatever it does: nothing can be told, and nothing is.
@@ -774,7 +774,7 @@ class TestGoodness:
 
     def test_no_group_is_none(self):
         goodness = fit_curve(one_each(np.linspace(1, 2, 20), np.arange(20) == 15)).goodness
-        assert goodness.why.startswith("0 groups with")
+        assert goodness.why.startswith("that takes three groups") and goodness.why.endswith("there are 0")
 
 
 class TestSurface:

@@ -228,10 +228,10 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
         numbers = said[said.index(sentence) + len(sentence) :]
         if kappa == "kappa1":
             way = "low" if uplift < 0 else "high"
-            shown = float(re.match(rf"uplift ([\d.]+) % too {way}", numbers)[1])
+            shown = float(re.match(rf"uplift acceleration ([\d.]+) % too {way}", numbers)[1])
             assert shown == pytest.approx(100 * abs(uplift), rel=0.06)
         else:
-            assert numbers.startswith("uplift kept")
+            assert numbers.startswith("uplift acceleration kept")
         assert float(re.search(r"free period off by ([\d.]+) %", numbers)[1]) == pytest.approx(100 * period, rel=0.06)
         time = re.search(r"overturning time (?:off by ([\d.]+) %|infinite)", numbers)[1]
         assert (time is None) == np.isinf(late)

@@ -105,27 +105,32 @@ class TestLevels:
 
 class TestWords:
     def test_no_factor_overturns(self):
-        assert in_words(made(0, 0.05, 0)) == ("At no factor from 1 to 3 do 10 % of the motions next to it overturn.")
+        assert in_words(made(0, 0.05, 0), 0.5) == (
+            "At no factor on the motion from 1 to 3 (PGA from 0.5 g to 1.5 g) do 10 % of the motions next to it "
+            "overturn."
+        )
 
     def test_each_level_in_turn(self):
-        assert in_words(made(0, 0.2, 0.6)) == (
-            "Of the motions next to a factor at least 10 % first at 2, 50 % at 3 and 90 % at none up to 3 overturn; "
-            "factors are 75 % apart."
+        assert in_words(made(0, 0.2, 0.6), 0.4) == (
+            "With a factor on the motion at least 10 % of the motions next to it overturn first at 2 (PGA 0.8 g), "
+            "50 % at 3 (1.2 g) and 90 % at none up to 3; factors are 75 % apart."
         )
 
     def test_islands_are_told(self):
-        assert in_words(made(0, 0.2, 0.0, 1.0)).endswith("Overturning comes and goes: at 3 none does again.")
-        assert in_words(made(0, 0.6, 0.3, 1.0)).endswith("comes and goes: at 3 only 30 % do again.")
-        assert in_words(made(0, 0.6, 1.0, 0.7, 0.8)).endswith("comes and goes: at 4 only 70 % do again.")
-        assert "comes and goes" not in in_words(made(0, 0.2, 0.6, 1.0))
+        assert in_words(made(0, 0.2, 0.0, 1.0), 0.5).endswith("Stronger is not always worse: at 3 (1.5 g) none does.")
+        assert in_words(made(0, 0.6, 0.3, 1.0), 0.5).endswith("always worse: at 3 (1.5 g) only 30 % do.")
+        assert in_words(made(0, 0.6, 1.0, 0.7, 0.8), 0.5).endswith("always worse: at 4 (2 g) only 70 % do.")
+        assert "always worse" not in in_words(made(0, 0.2, 0.6, 1.0), 0.5)
 
     def test_the_numbers_are_those_of_the_shares(self):
         motion = parse_pulse("ricker:0.7g:0.9s").sampled()
         found = margin(build_model(BLOCK, "nonlinear"), motion, around=AROUND)
-        said = re.findall(r"(\d+) % (?:first )?at ([\d.]+)", in_words(found).split("; factors")[0])
-        assert [level for level, _ in said] == ["10", "50", "90"]
-        for level, factor in said:
+        words = in_words(found, motion.pga).split("; factors")[0]
+        said = re.findall(r"(\d+) % (?:[a-z ]* first )?at ([\d.]+) \((?:PGA )?([\d.]+) g\)", words)
+        assert [level for level, *_ in said] == ["10", "50", "90"]
+        for level, factor, pga in said:
             k = int(np.abs(found.factors - float(factor)).argmin())
+            assert float(pga) == pytest.approx(0.7 * found.factors[k], rel=5e-3)
             assert found.overturned[k] >= int(level) / 100 > found.overturned[:k].max()
 
 
@@ -160,7 +165,7 @@ class TestCommand:
         assert theirs["overturned"] == found.itself and theirs["uplift"] == found.uplift
         assert set(theirs["levels"]) == {"10", "50", "90"}
         assert theirs["levels"]["50"]["first"] == found.first(0.5)
-        assert theirs["verdict"] == in_words(found)
+        assert theirs["verdict"] == in_words(found, 0.5)
 
     def test_a_scaled_motion_is_the_motion(self):
         one, two = (
@@ -173,7 +178,7 @@ class TestCommand:
     def test_the_table_has_a_row_each(self, width, monkeypatch):
         monkeypatch.setenv("COLUMNS", width)
         text = " ".join(run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5).stdout.split())
-        assert "accel.csv" in text and "the share of the 5 motions next to each" in text
+        assert "accel.csv" in text and "Next to each factor 5 motions are followed" in text
 
     def test_a_picture(self, tmp_path):
         run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5, "--plot", tmp_path / "m.png")

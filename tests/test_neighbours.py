@@ -161,15 +161,20 @@ class TestWithoutShaking:
         assert found.overturned == (0.99 * Around().factors() > 1).mean() == pytest.approx(0.245, abs=0.01)
 
 
-@pytest.mark.parametrize(("off", "said"), [(1e-9, "None governs: one, other do alike."), (1e-4, "other governs: 40 %")])
+@pytest.mark.parametrize(
+    ("off", "said"), [(1e-9, "No motion governs: one, other do alike."), (1e-4, "other governs: 40 %")]
+)
 def test_what_differs_by_rounding_does_not_govern(off, said):
     assert governing({"one": (0.4, np.inf, 0.5), "other": (0.4, np.inf, 0.5 * (1 + off))}).startswith(said)
+
+
+NEAR = "(up to 2 % stronger or weaker, with up to 0.02 more or less restitution)"
 
 
 class TestWords:
     def test_where_nothing_can_lift_it(self):
         found = neighbours(build_model(BLOCK, "nonlinear"), parse_pulse("sine:0.1g:1s").sampled())
-        assert str(found) == "None of 200 motions within 2 % of this one lifts it."
+        assert str(found) == f"None of 200 motions next to this one {NEAR} lifts it."
 
     def sentence(self, overturned, peaks):
         return str(Neighbours(Around(), "nonlinear", overturned, peaks, 1.0))
@@ -177,16 +182,27 @@ class TestWords:
     def test_a_share(self):
         said = self.sentence(0.43, (0.31, 0.52, np.inf))
         assert said == (
-            "Of 200 motions within 2 % of this one 43 % overturn; the middle one reaches 0.52 phi_cr "
-            "(16 %: 0.31, 84 %: overturns)."
+            f"Of 200 motions next to this one {NEAR} 43 % overturn; 16 % stay within 0.31 phi_cr, half within 0.52."
         )
 
     def test_most(self):
-        assert "the middle one overturns (16 %: 0.81" in self.sentence(0.7, (0.81, np.inf, np.inf))
+        assert self.sentence(0.7, (0.81, np.inf, np.inf)).endswith(" 70 % overturn; 16 % stay within 0.81 phi_cr.")
+
+    @pytest.mark.parametrize(
+        ("peaks", "said"),
+        [
+            ((0.0, 0.0, 0.3), "; half do not uplift, 84 % stay within 0.3 phi_cr."),
+            ((0.0, 0.2, 0.3), "; 16 % do not uplift, half stay within 0.2 phi_cr, 84 % within 0.3."),
+            ((0.0, np.inf, np.inf), "; 16 % do not uplift."),
+        ],
+    )
+    def test_some_stay_where_they_are(self, peaks, said):
+        assert self.sentence(0.1, peaks).endswith(said)
 
     def test_all_and_none(self):
-        assert self.sentence(1.0, (np.inf,) * 3) == "Of 200 motions within 2 % of this one all overturn."
-        assert "none overturns; the middle one reaches 0.2 phi_cr" in self.sentence(0.0, (0.1, 0.2, 0.3))
+        assert self.sentence(1.0, (np.inf,) * 3) == f"Of 200 motions next to this one {NEAR} all overturn."
+        said = "none overturns; 16 % stay within 0.1 phi_cr, half within 0.2, 84 % within 0.3."
+        assert self.sentence(0.0, (0.1, 0.2, 0.3)).endswith(said)
         assert self.sentence(0.0, (0.0, 0.0, 0.0)).endswith("none overturns; at most one in six uplifts.")
 
     @pytest.mark.parametrize("scale", [0.3, 0.7, 0.8, 0.9, 1.1])
@@ -196,9 +212,9 @@ class TestWords:
         fallen = respond_many([model], [motion], runs).overturned.mean()
         said = str(neighbours(model, motion, around))
         if not can_lift(model, motion, 1.05):
-            assert said == "None of 400 motions within 5 % of this one lifts it." and fallen == 0
+            assert said == f"None of 400 motions next to this one ({around.words}) lifts it." and fallen == 0
             return
-        assert "Of 400 motions within 5 % of this one" in said
-        share = re.search(r"one ([\d.]+) % overturn", said)
-        told = float(share[1]) / 100 if share else {"all": 1.0, "none": 0.0}[re.search(r"one (all|none)", said)[1]]
+        assert f"Of 400 motions next to this one ({around.words})" in said
+        share = re.search(r"\) ([\d.]+) % overturn", said)
+        told = float(share[1]) / 100 if share else {"all": 1.0, "none": 0.0}[re.search(r"\) (all|none)", said)[1]]
         assert told == pytest.approx(fallen, abs=5e-4)

@@ -156,7 +156,10 @@ class TestIntervals:
 
 def test_few_records_are_said():
     assert few_records(FEW) == ""
-    said = "intervals and bands are a rough guide, those of 95 % held in {} to {} % of trials with {}"
-    assert few_records(6) == f"only 6 distinct records: {said.format(*HELD[5], 5)}"
-    assert few_records(19) == f"only 19 distinct records: {said.format(*HELD[10], 10)}"
+    said = (
+        "intervals and bands are a rough guide: in trials with {} records those that should hold in 95 % of cases held "
+        "in {} to {} %"
+    )
+    assert few_records(6) == f"only 6 distinct records: {said.format(5, *HELD[5])}"
+    assert few_records(19) == f"only 19 distinct records: {said.format(10, *HELD[10])}"
     assert few_records(1).startswith("only 1 distinct record: ")

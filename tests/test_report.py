@@ -22,6 +22,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
 from rocking_cli.report.page import symbols
 from rocking_cli.structure import load_structure
+from rocking_cli.studies.neighbours import Around
 from rocking_cli.views.parameters import values
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS
 from tests.test_cli import run, run_json
@@ -147,8 +148,11 @@ class TestContent:
     def test_how_close_it_is_is_told_by_the_shares(self):
         found = run_json("report", *FEW, BLOCK, "--pulse", "sine:1g:2s", "--scale", "50")["motions"][0]
         said = found["answers"]["How close is that?"]
-        assert "at least 10 % first at 0.2, 50 % at 0.2 and 90 % at 0.2 overturn" in said
-        assert "Of 20 motions within 2 % of this one all overturn." in said
+        assert (
+            "at least 10 % of the motions next to it overturn first at 0.2 (PGA 10 g), 50 % at 0.2 (10 g) and 90 %"
+            in said
+        )
+        assert f"Of 20 motions next to this one ({Around(20).words}) all overturn." in said
         assert any("Large factors" in each for each in found["doubts"])
 
     def test_a_motion_beyond_the_critical_rotation_is_told_as_such(self):

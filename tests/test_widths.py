@@ -32,7 +32,7 @@ SHOWN = {
     "record": ("record", ACCEL, "--fit-pulse"),
     "records": ("record", "a.csv", "RSN1111_KOBE_NIS000.csv", "a_record_with_quite_a_long_name.csv"),
     "respond": ("respond", FRAME, "--record", ACCEL, "--polarity", "both", "--impacts", *NEAR),
-    "respond, several": ("respond", FRAME, "--record", "*.csv", "--with-pulse", *NEAR),
+    "respond, several": ("respond", FRAME, "--record", "*.csv", "--with-pulse", "sine", *NEAR),
     "margin": ("margin", BLOCK, "--record", "*.csv", *NEAR),
     "pulse": ("pulse", "--a", "2", "--omega", "3"),
     "pulse on a structure": ("pulse", FRAME, "--ag", "0.4g", "--period", "0.8"),

@@ -15,7 +15,7 @@ from rocking_cli.dynamics import history as histories
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
-from rocking_cli.dynamics.outcome import OUTCOME, Outcome, Outcomes
+from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -52,11 +52,17 @@ def _structure(given: Structure) -> Prepared:
 
 
 def _motion(given: Motion) -> GroundMotion:
-    if isinstance(given, GroundMotion):
+    given = _read(given)
+    return given.sampled() if isinstance(given, Pulse) else given
+
+
+def _read(given: Motion) -> GroundMotion | Pulse:
+    """A motion from its file, a pulse from its text; a file goes before a text that it is called by."""
+    if isinstance(given, GroundMotion | Pulse):
         return given
     if isinstance(given, str) and given.partition(":")[0] in PulseShapes() and not Path(given).exists():
-        given = parse_pulse(given)
-    return given.sampled() if isinstance(given, Pulse) else read_record(given)
+        return parse_pulse(given)
+    return read_record(given)
 
 
 def _each(given: Any) -> list[Any]:
@@ -83,6 +89,19 @@ def equiv(structure: Structure) -> Answer[Equivalence | None]:
     Answer of Equivalence or None
         `positive` and `negative` are the blocks; see `equivalent_block`. None where no single block is equivalent, of
         which its sentences and `to_dict` say why.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+
+    Notes
+    -----
+    DeJong and Dimitrakopoulos (2014), Section 3: Eq. 9 for phi_cr, Eq. 10 for lambda, Eq. 13 for I_eq, G_eq and B_eq,
+    Eqs. 15 and 20 for kappa1 and kappa2, Eq. 17 for p and theta_cr; eta from kinematics, for a block Housner (1963),
+    unless it is given.
 
     Examples
     --------
@@ -114,6 +133,22 @@ def draw(structure: Structure, *, at: float = 1.0) -> Answer[Picture]:
         The structure, or its YAML file.
     at : float
         How far it is displaced, as a multiple of phi_cr; at most as far as the mechanism goes.
+
+    Returns
+    -------
+    Answer of Picture
+        Its parts, dimensions, and where they are at any rotation.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+
+    Notes
+    -----
+    Rotations and phi_cr as in DeJong and Dimitrakopoulos (2014), Section 3.
     """
     from rocking_cli.studies.picture import picture
     from rocking_cli.views.draw import view
@@ -142,6 +177,21 @@ def record(motion: Motion, *, scale: float = 1.0) -> Answer[Measures]:
         The motion, its file, or a pulse as text.
     scale : float
         Factor on it.
+
+    Returns
+    -------
+    Answer of Measures
+        Peaks, Arias intensity, durations and mean period.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+
+    Notes
+    -----
+    Exact for the straight lines between samples; the intensity is that of Arias (1970), pi/(2 g) times the integral
+    of the squared acceleration.
     """
     from rocking_cli.excitation.doubts import doubts
     from rocking_cli.excitation.measures import measure
@@ -202,9 +252,16 @@ def respond(
     Raises
     ------
     InputError
-        If a value is out of range, or a file cannot be used.
+        If a value is out of range, a file cannot be used, or kinematics give no restitution to rock on with.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
     SolverError
         If the motion cannot be followed to its end.
+
+    Notes
+    -----
+    DeJong and Dimitrakopoulos (2014): the nonlinear model is Eq. 8, the linear ones are Eq. 16 with kappa1 of Eq. 15
+    and kappa2 of Eq. 20; an impact leaves eta of the rate of rotation, Eq. 6.
 
     Examples
     --------
@@ -258,7 +315,18 @@ def respond_each(
     Returns
     -------
     MappingAnswer of str to Outcome
-        By the model, arrays of shape (structures, motions, scales).
+        By the model, arrays of shape (structures, motions, scales); `failed` is what could not be followed.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+
+    Notes
+    -----
+    Every history is the same to the last bit as that of `respond`: Eqs. 8 and 16 of DeJong and Dimitrakopoulos (2014).
 
     Examples
     --------
@@ -277,7 +345,7 @@ def respond_each(
     for name in chosen:
         runs = Runs.every(len(ready), len(shaking), scales=factors.tolist())
         many = respond_many([each.model(name) for each in ready], shaking, runs, threads=threads)
-        found[name] = Outcome(**{column: getattr(many, column).reshape(shape) for column in OUTCOME})
+        found[name] = many.by_field(lambda values: values.reshape(shape))
 
     def columns() -> Columns:
         places = [axis.ravel() for axis in np.indices(shape)]
@@ -332,6 +400,22 @@ def spectrum(
         Of 1 and -1; with both, the worse counts.
     fractiles : sequence of float
         Beside the median, of several motions.
+
+    Returns
+    -------
+    Answer of list of Spectrum
+        One for each structure and slenderness; a peak that could not be followed is NaN.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+
+    Notes
+    -----
+    Rocking spectra of Makris and Konstantinidis (2003), with the models of DeJong and Dimitrakopoulos (2014).
     """
     from rocking_cli.studies import spectrum as study
     from rocking_cli.views import spectrum as views
@@ -387,6 +471,24 @@ def overturning_map(
         Of 1 and -1; with both, the worse counts.
     points : int
         Of each side.
+
+    Returns
+    -------
+    Answer of OverturningMap
+        What becomes of it under every pulse.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If a motion cannot be followed to its end.
+
+    Notes
+    -----
+    Dimensionless amplitude and frequency: DeJong and Dimitrakopoulos (2014), Eq. 40.
 
     Examples
     --------
@@ -445,6 +547,24 @@ def overturning_curves(
         The largest amplitude to try [standard gravity].
     points : int
         Periods between them, at equal ratios.
+
+    Returns
+    -------
+    Answer of Comparison
+        The least amplitudes, and which structure goes first.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If a motion cannot be followed to its end.
+
+    Notes
+    -----
+    The models are those of `respond`: DeJong and Dimitrakopoulos (2014).
     """
     from rocking_cli.studies import overturning as study
     from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
@@ -482,6 +602,19 @@ def margin(
     -------
     MappingAnswer of str to Margin
         By the name of the motion.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If a motion cannot be followed to its end.
+
+    Notes
+    -----
+    The nonlinear model, Eq. 8 of DeJong and Dimitrakopoulos (2014), of the motions next to each of many factors.
     """
     from rocking_cli.studies import margin as study
     from rocking_cli.studies.neighbours import Around
@@ -521,6 +654,24 @@ def linearisation(
         Amplitudes phi/phi_cr of the free period.
     a : sequence of float
         Constant accelerations over that at uplift, of the overturning time.
+
+    Returns
+    -------
+    Answer of list of Linearisation
+        One for each direction that differs.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If an integral does not converge, or the structure does not overturn under an acceleration.
+
+    Notes
+    -----
+    DeJong and Dimitrakopoulos (2014), Section 4: Eq. 24 for the free period, Eq. 25 for the overturning time.
     """
     from rocking_cli.studies.linearisation import compare
     from rocking_cli.views import error as views
@@ -558,6 +709,24 @@ def equivalent(
         Such as `sine:0.6g:0.8s`.
     polarity : {1, -1}
         -1 reverses it.
+
+    Returns
+    -------
+    Answer of EquivalentResponses
+        A pulse and a response for each structure, and for the linear block that they share.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If a motion cannot be followed to its end.
+
+    Notes
+    -----
+    DeJong and Dimitrakopoulos (2014): equal a and omega of Eq. 40, as in Fig. 15.
     """
     from rocking_cli.studies import equivalent as study
     from rocking_cli.views import equivalent as views
@@ -593,6 +762,18 @@ def fragility(
     -------
     Answer of list of Fragility
         A curve each: structure, limit state, measure, what was fitted.
+
+    Raises
+    ------
+    InputError
+        If the study, a file or the store cannot be used; runs that fail are counted in the store, not raised.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+
+    Notes
+    -----
+    The runs are those of `respond`, Eq. 8 or 16 of DeJong and Dimitrakopoulos (2014); docs/fragility.md says how
+    curves are fitted.
     """
     from rocking_cli.studies.fragility import assess, campaign, engines, table
     from rocking_cli.studies.fragility.definition import Definition
@@ -662,6 +843,24 @@ def write_report(
         Of 1 and -1.
     project, place, author : str, optional
         For the head of the report.
+
+    Returns
+    -------
+    Answer of Assessment
+        All that the page says.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be read or written.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If a motion cannot be followed to its end.
+
+    Notes
+    -----
+    What it says is that of `equiv`, `respond`, `margin`, `overturning_map` and `linearisation`.
     """
     from datetime import UTC, datetime
 
@@ -702,11 +901,10 @@ def write_report(
 
 
 def _scaled(given: Motion) -> Scaled:
-    if isinstance(given, str) and given.partition(":")[0] in PulseShapes() and not Path(given).exists():
-        given = parse_pulse(given)
-    if isinstance(given, Pulse):
-        return Scaled(given.sampled(), 1.0, pulse=given)
-    return Scaled(_motion(given), 1.0, file=None if isinstance(given, GroundMotion) else Path(given))
+    read = _read(given)
+    if isinstance(read, Pulse):
+        return Scaled(read.sampled(), 1.0, pulse=read)
+    return Scaled(read, 1.0, file=None if isinstance(given, GroundMotion | Pulse) else Path(given))
 
 
 def _yaml(mechanism: Mechanism) -> str:

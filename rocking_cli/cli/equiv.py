@@ -29,7 +29,7 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 9-20.
     """
     if as_json and as_csv:
-        raise click.UsageError("--json and --csv exclude each other.")
+        raise click.UsageError("--json and --csv exclude each other: give the one or the other.")
     from rocking_cli.cli import structures
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.errors import INCOMPLETE, MechanismError

@@ -49,7 +49,7 @@ class Scaling:
 
     def __post_init__(self) -> None:
         if sum(value is not None for value in self.scaling) > 1:
-            raise click.UsageError("--scale, --target-pga and --target-pgv exclude each other.")
+            raise click.UsageError("--scale, --target-pga and --target-pgv exclude each other: give one of them.")
         if self.scale is not None and self.scale < 0:
             terminal.note(f"--scale {self.scale:g} is negative: it reverses the motion, as --polarity -1 does")
 

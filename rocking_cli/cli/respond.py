@@ -182,7 +182,7 @@ def command(
 def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -> None:
     """Refuse options that say nothing, or two things, beside each other."""
     if asked.records and asked.pulses:
-        raise click.UsageError("--record and --pulse exclude each other.")
+        raise click.UsageError("--record and --pulse exclude each other: give the one or the other.")
     if not asked and history.release is None:
         raise click.UsageError(
             "Nothing to respond to: give --record FILE or --pulse PULSE, or --release TILT, or both."

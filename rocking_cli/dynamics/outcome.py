@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
@@ -66,6 +67,18 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     def lifted(self) -> Flags:
         """Whether it moved at all, by uplift or by a release from a tilt."""
         return (self.uplift_time >= 0) | self.overturned | (self.peak_ratio > 0)  # type: ignore[operator, no-any-return]
+
+    def by_field(self: Outcomes, change: Callable[..., Any], *others: Outcomes) -> Outcomes:
+        """The outcome of which every field is `change` of that field here, and of that of others.
+
+        Parameters
+        ----------
+        change : callable
+            Takes an ndarray of each outcome, and gives one.
+        others : Outcome
+            Of many motions, too.
+        """
+        return Outcome(**{name: change(*(getattr(each, name) for each in (self, *others))) for name in OUTCOME})
 
     @property
     def words(self) -> str:

@@ -60,7 +60,7 @@ class ClosedForm:
     def reason(self) -> str | None:
         """Why the closed form cannot be used, in words; None where it can."""
         failed = [CONDITIONS[name] for name, holds in self.conditions.items() if holds is False]
-        return None if self.valid else f"it is not true that {' and '.join(failed)}"
+        return None if self.valid else f"it holds only where {' and '.join(failed)}"
 
     def off(self, exact: float) -> float | None:
         """Eq. 41 as printed less an exact peak; None where it gives none."""

@@ -23,6 +23,7 @@ FOLLOWS, STRAYS = 0.25, 0.5
 TOGETHER = 1e-3  # s within which two motions are at one time
 ANOTHER = 1.0  # p times the time between two peaks, or overturnings, beyond which they are not the same one
 PEAK = 0.999  # of its largest sample: when a motion first comes so far it has its peak, rounding apart
+WAYS = {1: "as given", -1: "reversed"}  # the polarities of a motion
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
@@ -139,9 +140,9 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
     said = [f"{by or 'The'} structure {_ends(run)}."]
     said += bearing(histories, {name: name for name in histories})
     if disagree(histories):
-        said.append("Trust none of them alone: vary the motion.")
+        said.append("Trust none of them alone: look at weaker and stronger motions too.")
     elif not run.overturned and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
-        said.append("That is close to overturning: vary the motion before relying on it.")
+        said.append("That is close to overturning: look at weaker and stronger motions too before relying on it.")
     still = [name for name, each in histories.items() if each.still_rocking]
     if still:
         said.append(f"{', '.join(still)}: {names.STILL_ROCKING} long after the record, and not going to overturn.")
@@ -178,7 +179,7 @@ def bearing(histories: Mapping[ModelName, History], called: Mapping[ModelName, s
     best = histories["nonlinear"]
     said = [_bears(called[name], each, histories[name], best) for name, each in found.items()]
     if any(each.peak_error is not None and each.grade is not Grade.DISREGARD for each in found.values()):
-        said.append("That is for this motion alone: one history is one sample.")
+        said.append("That holds for this motion alone: under another the equivalent block may do better or worse.")
     return said
 
 
@@ -207,7 +208,7 @@ def _beside(found: Agreement, run: History, best: History) -> str:
     if found.difference is None or found.peak_delay is None:
         return f"its peak is {size}"
     late = f" and {_later(found.peak_delay)}" if abs(found.peak_delay) * best.p > ANOTHER else ""
-    return f"its peak is {size}{late}, its motion {percent(found.difference)} off (rms)"
+    return f"its peak is {size}{late}, and over time its rotation is {percent(found.difference)} off (rms)"
 
 
 def _later(delay: float) -> str:
@@ -241,16 +242,23 @@ def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None
     one, other = runs[1][model], runs[-1][model]
     if one.overturned != other.overturned:
         worse = 1 if one.overturned else -1
-        return worse, f"Polarity {worse} governs {by_model}: it overturns, polarity {-worse} does not."
+        said = f"with the motion {WAYS[worse]} it overturns, {WAYS[-worse]} it does not"
+        return worse, f"Polarity {worse} governs {by_model}: {said}."
     sizes = {1: _size(one), -1: _size(other)}
     if isclose(sizes[1], sizes[-1], rel_tol=ALIKE):
-        return None, f"Neither polarity governs {by_model}: they do alike."
+        return None, f"Neither polarity governs {by_model}: the motion does the same as given and reversed."
     if one.overturned:
         worse = min(sizes, key=sizes.__getitem__)
-        said = f"both overturn, this one at {sizes[worse]:.4g} s, the other at {sizes[-worse]:.4g} s"
+        said = (
+            f"it overturns at {sizes[worse]:.4g} s with the motion {WAYS[worse]}, "
+            f"at {sizes[-worse]:.4g} s {WAYS[-worse]}"
+        )
     else:
         worse = max(sizes, key=sizes.__getitem__)
-        said = f"it rocks to {sizes[worse]:.4g} of the {runs[worse][model].reference}, the other to {sizes[-worse]:.4g}"
+        said = (
+            f"it rocks to {sizes[worse]:.4g} of the {runs[worse][model].reference} with the motion {WAYS[worse]}, "
+            f"to {sizes[-worse]:.4g} {WAYS[-worse]}"
+        )
     return worse, f"Polarity {worse} governs {by_model}: {said}."
 
 

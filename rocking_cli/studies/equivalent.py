@@ -249,7 +249,7 @@ def judge(found: EquivalentResponses) -> list[str]:
     linear = (
         names.OVERTURNS
         if found.alone.overturned
-        else f"{names.ROCKS} to {found.alone.peak_ratio:.4g}"
+        else f"{names.ROCKS} to {found.alone.peak_ratio:.4g} of phi_cr"
         if found.alone.peak_ratio
         else names.NO_UPLIFT
     )
@@ -260,12 +260,15 @@ def judge(found: EquivalentResponses) -> list[str]:
     elif fallen:
         who = ", ".join(each.name for each in fallen)
         said.append(
-            f"Here the equivalence breaks: {who} overturn{'s' if len(fallen) == 1 else ''}, the rest not; "
+            f"Here the equivalence breaks: {who} overturn{'s' if len(fallen) == 1 else ''}, the rest do not; "
             f"the linear block {linear}."
         )
     else:
-        part = "" if isnan(found.relative_spread) else f", {100 * found.relative_spread:.2g} % of it"
-        said.append(f"The linear block {linear}; the structures differ by {found.spread:.3g}{part}.")
+        part = "" if isnan(found.relative_spread) else f", {100 * found.relative_spread:.2g} % of that"
+        said.append(
+            f"The linear block {linear}; the peaks of the structures lie within {found.spread:.3g} of one another"
+            f"{part}."
+        )
         if isnan(found.relative_spread):
             what = f"{names.OVERTURNS} and none of the structures does" if found.alone.overturned else (
                 f"{names.NO_UPLIFT} and a structure does"

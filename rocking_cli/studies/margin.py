@@ -129,28 +129,40 @@ def margin(
     return Margin(around, least, factors, shares)
 
 
-def in_words(found: Margin) -> str:
+def in_words(found: Margin, pga: float) -> str:
     """What a margin says, in a sentence or two.
 
     Parameters
     ----------
     found : Margin
         At least one factor.
+    pga : float
+        Of the motion itself, at a factor of 1 [standard gravity].
     """
+
+    def at(factor: float, what: str = "") -> str:
+        return f"{factor:.3g} ({what}{factor * pga:.3g} g)"
+
     low, high = found.factors[[0, -1]]
     reached = [(level, first) for level in LEVELS if (first := found.first(level)) is not None]
     if not reached:
-        return f"At no factor from {low:.2g} to {high:.2g} do {percent(LEVELS[0])} of the motions next to it overturn."
-    parts = [f"{percent(level)} {'first ' if not k else ''}at {first:.3g}" for k, (level, first) in enumerate(reached)]
+        pgas = f"PGA from {low * pga:.3g} g to {high * pga:.3g} g"
+        return (
+            f"At no factor on the motion from {low:.2g} to {high:.2g} ({pgas}) do {percent(LEVELS[0])} of the motions "
+            "next to it overturn."
+        )
+    (level, first), *others = reached
+    parts = [f"{percent(level)} of the motions next to it overturn first at {at(first, 'PGA ')}"]
+    parts += [f"{percent(level)} at {at(first)}" for level, first in others]
     parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
-    said = f"Of the motions next to a factor at least {', '.join(parts[:-1])} and {parts[-1]} overturn"
+    said = f"With a factor on the motion at least {', '.join(parts[:-1])} and {parts[-1]}"
     if found.factors.size > 2:
         said += f"; factors are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
     for level, first in reached:
         above = found.factors > first
         least = float(found.overturned[above].min(initial=1.0))
         if least < level:
-            at = found.factors[above][found.overturned[above].argmin()]
+            factor = float(found.factors[above][found.overturned[above].argmin()])
             again = f"only {percent(least)} do" if least else "none does"
-            return f"{said}. Overturning comes and goes: at {at:.3g} {again} again."
+            return f"{said}. Stronger is not always worse: at {at(factor)} {again}."
     return f"{said}."

@@ -64,6 +64,12 @@ class Around:
             if not 0 <= value < 1:
                 raise InputError(Problem(f"must be from 0 to below 1, got {value:g}", field=field))
 
+    @property
+    def words(self) -> str:
+        """How far the neighbours are from the motion, after a noun."""
+        eta = f"{self.restitution:g} more or less restitution"
+        return f"up to {percent(self.amplitude)} stronger or weaker, with up to {eta}"
+
     def factors(self) -> Reals:
         """Factors on the motion, shape (count,), one from each of as many equal parts of their range."""
         return 1 + self.amplitude * (2 * self._drawn()[0] - 1)
@@ -118,18 +124,19 @@ class Neighbours:
         return self.as_itself < AGREEMENT
 
     def __str__(self) -> str:
-        low, middle, high = self.peak_ratio
-        near = percent(self.around.amplitude)
-        said = f"Of {self.around.count} motions within {near} of this one {_share(self.overturned)}"
+        near = f"{self.around.count} motions next to this one ({self.around.words})"
         if not self.lifted:
-            return f"None of {self.around.count} motions within {near} of this one lifts it."
-        if np.isinf(low):  # so do nearly all
-            return f"{said}."
-        if high == 0:
+            return f"None of {near} lifts it."
+        said = f"Of {near} {_share(self.overturned)}"
+        if self.peak_ratio[-1] == 0:
             return f"{said}; at most one in six uplifts."
-        reached = {0.0: "does not uplift", np.inf: "overturns"}.get(middle, f"reaches {middle:.2g} {self.over}")
-        most = "overturns" if np.isinf(high) else f"{high:.2g}"
-        return f"{said}; the middle one {reached} (16 %: {low:.2g}, 84 %: {most})."
+        peaks = list(zip(("16 %", "half", "84 %"), self.peak_ratio, strict=True))
+        still = [f"{who} do not uplift" for who, peak in peaks if peak == 0][-1:]
+        within = [f"{who} within {peak:.2g}" for who, peak in peaks if 0 < peak < np.inf]
+        if within:
+            within[0] = f"{within[0].replace(' within', ' stay within')} {self.over}"
+        reached = ", ".join(still + within)
+        return f"{said}; {reached}." if reached else f"{said}."
 
 
 def neighbours(
@@ -206,12 +213,12 @@ def governing(severities: Mapping[str, Severity]) -> str:
         return "No motion lifts it."
     which = [name for name, each in severities.items() if np.allclose(each, worst, rtol=ALIKE, atol=0)]
     if len(which) > 1:
-        return f"None governs: {', '.join(which)} do alike."
+        return f"No motion governs: {', '.join(which)} do alike."
     share, median, itself = worst
     if share:
         why = f"{percent(share)} of its neighbours overturn"
     elif median:
-        why = f"its middle neighbour reaches {median:.3g} phi_cr"
+        why = f"the median peak of its neighbours is {median:.3g} phi_cr"
     else:
         why = "it overturns" if np.isinf(itself) else f"it reaches {itself:.3g} phi_cr"
     return f"{which[0]} governs: {why}."

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import names
-from rocking_cli.dynamics.outcome import OUTCOME, Outcome, Outcomes
+from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
@@ -161,7 +161,7 @@ def overturning_map(
         tuple(polarities),
         omega,
         a,
-        Outcome(**{name: getattr(found, name).reshape(plane) for name in OUTCOME}),
+        found.by_field(lambda values: values.reshape(plane)),
     )
 
 

@@ -80,13 +80,13 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
     one, two = (_on(kappa, errors(asked, kappa)) for kappa in order)
     said = [f"{_where(asked)}: {one}; {two}."]
     if prefer is None:
-        said.append("Rely on neither there: use the nonlinear history.")
+        said.append("Rely on neither there: use the nonlinear history of `rocking respond`.")
     elif prefer == 0:
         said.append("Either kappa will do there.")
     else:
         said.append(f"Prefer kappa{prefer} there.")
     if prefer is not None and min(errors(asked, kappa).grade for kappa in (1, 2)) is Grade.ESTIMATE:
-        said.append("Decide by the nonlinear history.")
+        said.append("Decide by the nonlinear history of `rocking respond`.")
     return " ".join([*said, *_ranges(curves, order[0])])
 
 
@@ -94,7 +94,7 @@ def _where(asked: Sequence[Linearisation]) -> str:
     """The amplitudes and accelerations, and that of two directions the worse counts."""
     amplitudes = ", ".join(f"{r:g}" for r in asked[0].amplitude.tolist())
     accelerations = ", ".join(f"{a:g}" for a in asked[0].acceleration.tolist())
-    worse = ", of both directions the worse" if len(asked) > 1 else ""
+    worse = ", in the worse of both directions" if len(asked) > 1 else ""
     return f"At phi/phi_cr = {amplitudes} and {accelerations} times the uplift acceleration{worse}"
 
 
@@ -102,7 +102,9 @@ def _on(kappa: int, found: Errors) -> str:
     """What a kappa is good for, and the errors that say so."""
     uplift = "kept" if abs(found.uplift) < KEPT else uplift_in_words(found.uplift)
     overturning = f"off by {percent(found.overturning)}" if np.isfinite(found.overturning) else NEVER
-    numbers = f"uplift {uplift}, free period off by {percent(found.period)}, overturning time {overturning}"
+    numbers = (
+        f"uplift acceleration {uplift}, free period off by {percent(found.period)}, overturning time {overturning}"
+    )
     good = {
         Grade.AGREES: f"kappa{kappa} agrees",
         Grade.ESTIMATE: f"kappa{kappa} serves a first estimate",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from math import isclose, pi
 
 import numpy as np
@@ -13,7 +14,7 @@ from rocking_cli.core import Direction, Equivalence, EquivalentBlock
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.model import Model, ModelName, linear_model
-from rocking_cli.dynamics.outcome import OUTCOME, Outcome, Outcomes
+from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
@@ -206,8 +207,7 @@ def outcomes(
     found = follow(structure, shape, periods, amplitudes, first, progress)
     for polarity in others:
         other = follow(structure, shape, periods, amplitudes, polarity, progress)
-        worse = _badness(other) > _badness(found)
-        found = Outcome(**{name: np.where(worse, getattr(other, name), getattr(found, name)) for name in OUTCOME})
+        found = other.by_field(partial(np.where, _badness(other) > _badness(found)), found)
     return found
 
 

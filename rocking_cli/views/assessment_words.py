@@ -212,7 +212,7 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
         if best.peak_ratio > 1:
             said.append("It passes that, and only the next push of the ground brings it back.")
     said.append(str(result.neighbours[result.polarity]))
-    said.append(in_words(found))
+    said.append(in_words(found, result.measured.pga))
     return " ".join(said)
 
 
@@ -233,7 +233,7 @@ def _trusted(result: MotionResult) -> str:
         first = "The nonlinear one."
     said = [first, itself, *(text[0].upper() + text[1:] for text in bearing(runs, called))]
     if disagree(runs):
-        said.append("Vary the motion before relying on either.")
+        said.append("Look at weaker and stronger motions too before relying on any of them.")
     return " ".join(said)
 
 
@@ -262,15 +262,16 @@ def _worst_ratio(result: MotionResult) -> float:
 
 
 def alone(result: MotionResult) -> str:
-    """What the pulse in a motion alone does."""
+    """What the pulse in a motion that fits best does alone."""
     ratio = result.alone
     if ratio is None:
         return "No pulse could be found in it."
+    pulse = f"The {result.fits[0].pulse.title} of the table, without the rest of the motion,"
     if isnan(ratio):
-        return "This pulse alone overturns the structure."
+        return f"{pulse} overturns the structure."
     if ratio == 0:
-        return "This pulse alone does not lift the structure."
-    return f"This pulse alone rocks the structure to {_share(ratio)} of its critical rotation."
+        return f"{pulse} does not lift the structure."
+    return f"{pulse} rocks the structure to {_share(ratio)} of its critical rotation."
 
 
 def _ground(content: Assessment, lambda_: float) -> str:

@@ -50,8 +50,9 @@ def view(structure: Prepared) -> View:
     said = [f"{prefix}{_sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
     if structure.why_no_block is None:
         said.append(
-            "Either kappa keeps phi_cr. That is all without an amplitude: `rocking error` compares free periods and "
-            "overturning times, `rocking respond` motions."
+            "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; either kappa "
+            "keeps the critical rotation. How alike they move depends on how far: `rocking error` compares free "
+            "periods and overturning times, `rocking respond` motions."
         )
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += list(_hung(mechanism))

@@ -36,14 +36,21 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
         ]
         for row in rows
     ]
-    either = {"1": "", "-1": ", reversed", "both": ", the worse of two polarities"}[polarity]
+    either = {
+        "1": "the motion as given",
+        "-1": "the motion reversed",
+        "both": "the motion as given and reversed, of which the worse counts",
+    }[polarity]
+    *lower, top = (f"{100 * level:g}" for level in LEVELS)
+    levels = f"{', '.join(lower)} and {top}"
     parts: list[Table | str] = [
         heading(mechanism),
-        f"Factors on the motion{either}, and the share of the {around.count} motions next to each that overturn it: "
-        f"within {percent(around.amplitude)} in amplitude and {around.restitution:g} in restitution.",
+        f"Factors on {either}. Next to each factor {around.count} motions are followed, {around.words}. "
+        f"Shown are the first factor at which {levels} % of them or more overturn ('from'), and the last at which "
+        "fewer do ('below').",
         Table("", heads, cells, numbers=range(1, len(heads))),
     ]
-    parts += [f"{row.name}: {in_words(row.margin)}" for row in rows] if len(rows) <= FEW else []
+    parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
     parts += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(_data(mechanism, rows, polarity, around), parts)
 
@@ -66,7 +73,7 @@ def _data(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Arou
                 "scale": row.factor,
                 "pga": row.pga,
                 **margin_data(row.margin),
-                "verdict": in_words(row.margin),
+                "verdict": in_words(row.margin, row.pga),
             }
             for row in rows
         ],

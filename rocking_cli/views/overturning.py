@@ -41,16 +41,19 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
     source = "" if found.structure.eta_given else FROM_KINEMATICS
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     parts: list[Table | str] = [
-        f"{map_title(found)}{source}: {amplitude}",
+        f"{map_title(found)}{source}: amplitudes {amplitude} over {what}",
         Table("", heads, rows, numbers=range(1, 4)),
-        f"Of the map: {shares}.",
+        f"Of the pulses on the map: {shares}.",
     ]
     if not (found.outcome.peak_ratio != 0).any():
         parts.append(f"No pulse of the map lifts it: the largest has a = {found.a.max():.4g}, uplift needs a > 1.")
     step = unit * (found.a[1] - found.a[0])
-    parts.append(f"Amplitudes to a step of the map, {step:.2g}{'' if dimensionless else ' g'}.")
+    parts.append(f"Amplitudes are read off the map, to its step of {step:.2g}{'' if dimensionless else ' g'}.")
     if not np.isnan(found.safe_again).all():
-        parts.append("'yet not at': the largest amplitude above the first that overturns which does not.")
+        parts.append(
+            "Stronger is not always worse: 'yet not at' is the largest amplitude that does not overturn it, though a "
+            "smaller one does."
+        )
     return View(_map_data(found, mechanism, dimensionless=dimensionless), parts)
 
 
@@ -156,9 +159,9 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
             f"{_together(tied)} at {100 * counts[tied] / len(firsts):.0f} %"
             for tied in sorted(counts, key=lambda tied: len(tied) > 1)
         )
-        parts.append(f"Goes first, of the periods: {said}.")
+        parts.append(f"Goes first, overturned by the least amplitude: {said} of the periods.")
     if np.isnan(found.least).any():
-        parts.append(f"{ABSENT}: none up to {found.top:.4g} g {OVERTURNS} it.")
+        parts.append(f"{ABSENT}: no amplitude up to {found.top:.4g} g {OVERTURNS} it.")
     low = [each.name for each in found.structures if found.top * STANDARD_GRAVITY <= each.unit]
     if low:
         parts.append(f"Not even {found.top:.4g} g lifts {', '.join(low)}.")

@@ -13,6 +13,9 @@ from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
 from rocking_cli.names import percent
 from rocking_cli.views.view import ABSENT, Table, View, number
 
+LINEAR_BLOCK = (
+    "The linear block is the equivalent block of any structure: a = a_g/(g lambda), omega = omega_g/p, tau = p t."
+)
 YES_NO = {True: "yes", False: "no", None: ABSENT}
 
 
@@ -33,7 +36,7 @@ def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | No
         [*(_closed_rows(closed) if closed is not None else []), *_exact_rows(exact)],
         numbers=[1],
     )
-    return View(data, [table, _verdict(a, closed, exact)])
+    return View(data, [table, _verdict(a, closed, exact), LINEAR_BLOCK])
 
 
 def closed_data(closed: ClosedForm, exact: ExactResponse) -> dict[str, Any]:
@@ -98,7 +101,7 @@ def _exact_rows(exact: ExactResponse) -> list[list[str]]:
         ["  first excursion", number(exact.first_excursion), "peak before the first impact"],
         ["  first rebound", number(exact.first_rebound), "peak after it"],
         ["  overturns", YES_NO[exact.overturned], after_impacts(exact)],
-        ["  uplift", number(exact.uplift_time), "tau from the start of the pulse"],
+        ["  uplift", number(exact.uplift_time), "tau = p t from the start of the pulse"],
         ["  end of pulse", number(exact.pulse_end - exact.uplift_time), "tau from uplift"],
         ["  first impact", number(exact.first_impact - exact.uplift_time), "tau from uplift"],
     ]
@@ -129,7 +132,7 @@ def _verdict(a: float, closed: ClosedForm | None, exact: ExactResponse) -> str:
         trust = "There is no closed form for this shape: Eqs. 41-42 are for a full sine"
     else:
         use = "All conditions hold, the closed form can be used"
-        trust = use if closed.valid else f"Do not use the closed form, {closed.reason}"
+        trust = use if closed.valid else f"Do not use the closed form here, {closed.reason}"
         if closed.valid and exact.first_excursion > 1 and isnan(exact.first_rebound):
             trust += "; the block passes its critical rotation before its first impact"
         else:

@@ -114,7 +114,7 @@ def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
         ["pulse", *("exact" if each else "sampled" for each in exact), ""],
         ["outcome", *(_ends(each) for each in found), ""],
         ["peak / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
-        ["  over nonlinear", *(number(_over_nonlinear(each, answers), 5) for each in answers.values()), ""],
+        ["  over that of nonlinear", *(number(_over_nonlinear(each, answers), 5) for each in answers.values()), ""],
         ["peak, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
         ["peak, anticlockwise", *(in_degrees(each.peak_negative) for each in found), "deg"],
         ["first excursion", *(number(_data(each, answers)["first_excursion"], 5) for each in answers.values()), ""],
@@ -146,7 +146,7 @@ def _verdict(answers: Mapping[str, Answer]) -> str:
         linear, over = outcome(answers[name]), _over_nonlinear(answers[name], answers)
         if over >= 0:
             off = over - 1
-            said += f" {name} gives {percent(abs(off))} {'more' if off > 0 else 'less'}."
+            said += f" By {name} its peak is {percent(abs(off))} {'higher' if off > 0 else 'lower'}."
         elif linear.overturned != nonlinear.overturned:
             said += f" By {name} it {names.outcome(uplifts=linear.lifted, overturned=linear.overturned)}."
     return said
@@ -186,7 +186,7 @@ def _trust(closed: ClosedForm, exact: ExactResponse) -> str:
     if not closed.conditions["uplift"]:
         return f"it {names.NO_UPLIFT} (a <= 1)."
     use = "all conditions hold, the closed form can be used"
-    said = use if closed.valid else f"do not use the closed form, {closed.reason}"
+    said = use if closed.valid else f"do not use the closed form here, {closed.reason}"
     return f"{said}{how_far_off(closed, exact)}."
 
 
@@ -198,4 +198,4 @@ def _why_no_closed_form(mechanism: Mechanism, pulse: Pulse) -> str:
         if not pulse.segments():
             said += " This pulse has no exact answer either: the linear models are followed on a sampled one."
         return said
-    return "No closed form: Eqs. 41-42 are for a structure whose directions agree."
+    return "No closed form: Eqs. 41-42 are for a structure that rocks alike in both directions."

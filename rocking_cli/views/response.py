@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from math import isinf
 from typing import Any, NamedTuple
@@ -136,6 +136,17 @@ def agreement_data(histories: Histories) -> dict[str, Any]:
     }
 
 
+def models_used(models: Iterable[ModelName]) -> Iterator[str]:
+    """A sentence on what the models are; none where there is the nonlinear one alone."""
+    names = list(models)
+    linear = [name for name in names if name != "nonlinear"]
+    if linear:
+        itself = "nonlinear is the structure itself, " if "nonlinear" in names else ""
+        scaled = " and ".join(name.replace("linear", "kappa") for name in linear)
+        what = f"{' and '.join(linear)} {'are' if len(linear) > 1 else 'is'} its equivalent block with {scaled}"
+        yield f"Models: {itself}{what}."
+
+
 def ending(outcome: OneOutcome) -> str:
     """How a motion ended, as programs read it."""
     return "overturned" if outcome.overturned else "still_rocking" if outcome.still_rocking else "at_rest"
@@ -227,12 +238,14 @@ def view(
     else:
         data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, shown)}
         parts = _tables(f"{title}, under the record", found.runs, found.neighbours, shown)
-        parts += ["", *_tables(f"{title}, under its pulse alone", {1: found.to_pulse}, {}, shown)]
-        parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse))
+        alone = f"{title}, under the {found.fit.pulse.title} in it alone"
+        parts += ["", *_tables(alone, {1: found.to_pulse}, {}, shown)]
+        parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse, found.fit.pulse.title))
+    first = next(iter(found.runs.values()))
     caution = [f"Caution: {mechanism.caution}"] if mechanism.caution else []
-    if structure.misleading and any(name != "nonlinear" for run in found.runs.values() for name in run):
+    if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
-    said = [*parts, restitution_used(structure), *notes, *caution]
+    said = [*parts, *models_used(first), restitution_used(structure), *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
@@ -295,13 +308,15 @@ def _impact_table(title: str, history: History, etas: tuple[float, float]) -> li
     return [table, f"{more} more follow: JSON lists them"] if more > 0 else [table]
 
 
-def share_of_pulse(histories: Histories, to_pulse: Histories) -> str:
-    """A sentence on how much of the response to a record is that to its pulse, by the best model."""
+def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> str:
+    """A sentence on how much of the response to a record is that to its pulse, called so, by the best model."""
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     whole, alone = histories[model], to_pulse[model]
     if whole.overturned or alone.overturned or (whole.peak_ratio and not alone.peak_ratio):
-        return f"By the {model} model it {whole.words} under the record; under its pulse alone it {alone.words}."
+        return (
+            f"By the {model} model it {whole.words} under the record; under the {called} in it alone it {alone.words}."
+        )
     if not whole.peak_ratio:
         return f"By the {model} model it {whole.words} under the record."
     share = 100 * alone.peak_ratio / whole.peak_ratio
-    return f"By the {model} model the pulse alone rocks it to {share:.3g} % of the peak under the record."
+    return f"By the {model} model the {called} alone rocks it to {share:.3g} % of its peak under the record."

@@ -13,6 +13,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import percent
 from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
 from rocking_cli.studies.response import Answer, Histories
+from rocking_cli.views.response import models_used
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.view import ABSENT, Table, heading
 
@@ -72,9 +73,9 @@ class Several:
         fallen = f"{self._fallen} of {len(self._worst)} motions overturn it" if self._fallen else ""
         yield f"By the {self._best} model {fallen or f'none of {len(self._worst)} motions overturns it'}."
         if self._around is not None:
-            near, eta = percent(self._around.amplitude), self._around.restitution
-            yield f"Neighbours: {self._around.count} motions within {near} of each, restitution within {eta:g}."
+            yield f"Neighbours: {self._around.count} motions next to each, {self._around.words}."
         yield governing(self._worst)
+        yield from models_used(self._models)
         yield self._restitution
 
 

@@ -46,7 +46,12 @@ class Results:
 def view(results: Results) -> View:
     """The peaks over the size of each shape, and what becomes of each."""
     parts = [part for each in results.spectra for part in _curve(results, each)]
-    return View(lambda: _all(results), [*parts, *(_verdict(results, each) for each in results.spectra)])
+    said = [_verdict(results, each) for each in results.spectra]
+    if any(each.shape.slenderness is None for each in results.spectra):
+        said.append(
+            "Scale: the structure with all its lengths times this. The larger, the smaller its frequency parameter p."
+        )
+    return View(lambda: _all(results), [*parts, *said])
 
 
 def _all(results: Results) -> dict[str, Any]:
@@ -190,7 +195,10 @@ def _verdict(results: Results, each: Spectrum) -> str:
         if (said := _side(results, each, what, part))
     ]
     return " ".join(
-        [f"{each.shape.structure.name}, 2 pi/p = {each.periods[place]:.3g} s: {_itself(results, each)}.", *sides]
+        [
+            f"{each.shape.structure.name} as given, 2 pi/p = {each.periods[place]:.3g} s: {_itself(results, each)}.",
+            *sides,
+        ]
     )
 
 
@@ -219,14 +227,14 @@ def _side(results: Results, each: Spectrum, what: str, part: slice) -> str:
         return ""
     end = f"down to scale {scales[0]:.3g}" if what == "smaller" else f"up to scale {scales[-1]:.3g}"
     if not falls.any():
-        return f"No {what} one {end} overturns."
+        return f"No {what} size {end} overturns."
     if not results.one:
-        return f"Of the {what} ones {end}, {_most(falls, of, [f'scale {scale:.3g}' for scale in scales])}."
+        return f"Of the {what} sizes {end}, {_most(falls, of, [f'scale {scale:.3g}' for scale in scales])}."
     if (falls == of).all():
-        return f"Every {what} one {end} overturns."
+        return f"Every {what} size {end} overturns."
     least, largest = scales[falls > 0][[0, -1]]
     where = f"at scale {least:.3g}" if least == largest else f"between scale {least:.3g} and {largest:.3g}"
-    return f"Of the {what} ones {end}, {falls.sum()} of {of.sum()} overturn, {where}."
+    return f"Of the {what} sizes {end}, {falls.sum()} of {of.sum()} overturn, {where}."
 
 
 def _blocks(results: Results, each: Spectrum) -> str:

@@ -251,8 +251,8 @@ def _step_or_none(bare: Curve, below: Reals, above: Reals) -> Curve | None:
     low, high = float(below.max()), float(above.min())
     if low < high:
         step = Estimate(float(np.sqrt(low * high)), low, high)
-        why = f"none exceeds up to {low:.4g} and all do from {high:.4g} on: the data show no scatter"
-        return replace(bare, kind="step", step=step, why=f"{why}; levels between these two would")
+        why = f"no run exceeds the limit up to {low:.4g} and all do from {high:.4g} on, so that no scatter is seen"
+        return replace(bare, kind="step", step=step, why=f"{why}; levels between these two would show it")
     under, over = below[below < low], above[above > low]
     if not (under.size and over.size):
         side = "none exceeds below" if under.size else "all exceed above"
@@ -299,7 +299,7 @@ def _tested(curve: Curve) -> str:
     assert curve.goodness is not None and curve.fit is not None
     p = curve.goodness.p_value
     if p is None:
-        said = f"the {curve.kind} curve is not tested: {curve.goodness.why}"
+        said = f"whether the data fit a {curve.kind} curve is not tested: {curve.goodness.why}"
     elif _rejected(curve):
         said = f"do not rely on it: the data reject a {curve.kind} curve (p = {p:.2g})"
     else:

@@ -74,7 +74,10 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     part = totals(seen.group, number * p) / totals(seen.group, number)
     groups, count = _merged(table, part)
     if count < 3:
-        why = f"{count} group{'s' * (count != 1)} with two or more records expected on either side, three are needed"
+        why = (
+            "that takes three groups of runs, each with two or more records expected to exceed the limit and two or "
+            f"more not, and there {'is' if count == 1 else 'are'} {count}"
+        )
         return Goodness(name, why=why)
     group = groups[seen.group]
     rest, weight = seen.exceeding - number * p, slope / (p * q)
@@ -127,7 +130,10 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, lev
     of_records = totals(seen.record, seen.number)
     cell, count = _merged(np.outer(expected / total, of_records))
     if count < 4:
-        why = f"{count} cell{'s' * (count != 1)} with the capacities of two or more records expected, four are needed"
+        why = (
+            "that takes four ranges of levels, each with the capacities of two or more records expected, and "
+            f"there {'is' if count == 1 else 'are'} {count}"
+        )
         return Goodness(name, why=why)
     by_coefficients = _sums(cell, np.full(cell.size, total), np.diff(slopes, axis=0), count)
     expected = totals(cell, expected)

@@ -225,6 +225,6 @@ def few_records(records: int) -> str:
     trials = max([each for each in HELD if each <= records], default=min(HELD))
     low, high = HELD[trials]
     return (
-        f"only {records} distinct record{'s' * (records != 1)}: intervals and bands are a rough guide, those of 95 % "
-        f"held in {low} to {high} % of trials with {trials}"
+        f"only {records} distinct record{'s' * (records != 1)}: intervals and bands are a rough guide: in trials with "
+        f"{trials} records those that should hold in 95 % of cases held in {low} to {high} %"
     )
