@@ -58,7 +58,7 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
             axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
             axes.yaxis.set_major_formatter(PercentFormatter(1.0))
             style.tidy(axes)
-    figure.suptitle(style.plain(title), fontsize=style.TITLE, x=0.01, ha="left", color=style.INK)
+    figure.suptitle(style.plain(style.fitted(title)), fontsize=style.TITLE, x=0.01, ha="left", color=style.INK)
     return figure
 
 
