@@ -168,6 +168,12 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
     )
 
 
+def make_room(axes: Axes, share: float = 0.2) -> None:
+    """Raise the upper end of a panel by a share of its height, so that a note is on no peak."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + share * (high - low))
+
+
 def plain_numbers(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
     """Plain numbers along a logarithmic axis, at these multiples of the powers of ten."""
     axis.set_major_locator(LogLocator(subs=subs))
