@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from dataclasses import replace
 from functools import partial
@@ -410,6 +411,18 @@ class TestFigure:
         size = style.size_of(text.get_text(), style.LABEL)
         assert not ((np.abs(place.real) < size.real / 2) & (np.abs(place.imag) < size.imag / 2)).any()
         assert np.abs(place.imag).min() < size.imag  # and near it
+
+    @pytest.mark.parametrize("word", ["$", "$a", "a$b$", "\udcff", "\u5b57", "\\frac{1", "R_", "_", ""])
+    def test_any_word_of_a_plugin_can_be_drawn(self, word):
+        class Odd(Block):
+            def sketch(self):
+                return Sketch(
+                    lengths=[Length(word, 0j, 1j), Length(word, 0.1 + 0j, 0.2 + 3j, Direction.NEGATIVE)],
+                    angles=[Angle(word, 0j, 1j, 1 + 1j, Direction.POSITIVE)],
+                    hinges={direction: [Hinge(word, direction * 0.5 + 0j, ("block",))] for direction in Direction},
+                )
+
+        style.save(draw_structure(picture(Odd(width=1.0, height=4.0)), word), io.BytesIO(), format="png", dpi=20)
 
     def test_symbols_have_their_subscripts(self):
         for symbol, shown in (

@@ -62,6 +62,7 @@ def test_a_title_is_as_long_as_there_is_room_for():
         assert style.size_of(style.plain(short), style.TITLE).real <= style.WIDTH - 0.3
     assert len(style.fitted(wide)) < len(style.fitted(narrow))
     assert style.fitted("a $ and _") == "a $ and _"
+    assert style.fitted("\udcff\x1b a") == "\udcff\x1b a"  # it is spelled out when it is written
 
 
 def test_overturning_is_named_and_the_fall_is_cut_off():

@@ -252,8 +252,9 @@ def _draw_letters(picture: Picture, rotation: float, pins: Sequence[Pin], labels
         if pin.letter:
             place = complex(every[picture.pins.index(pin)])
             side = complex(np.sign(round((pin.point - middle).real, 9)) or 1.0, 0.6)
-            size = style.size_of(pin.letter, style.LABEL, "bold")
-            labels.write(style.plain(pin.letter), labels.around(place, side, PIN, size, turning=0.6), **look)
+            letter = style.plain(pin.letter)
+            size = style.size_of(letter, style.LABEL, "bold")
+            labels.write(letter, labels.around(place, side, PIN, size, turning=0.6), **look)
 
 
 def _draw_lines(axes: Axes, picture: Picture, labels: Labels) -> None:

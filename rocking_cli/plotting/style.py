@@ -102,9 +102,13 @@ def new_figure(height: float) -> Figure:
 
 def size_of(text: str, points: float, weight: str = "normal") -> complex:
     """Width and height of words of a size of type [inches]; mathematics stands between dollars, a dollar is escaped."""
-    width, height, _ = _measure().get_text_width_height_descent(
-        text.replace(r"\$", "$"), FontProperties(size=points, weight=weight), text.count("$") > text.count(r"\$")
-    )
+    text = printable(text)  # as it will be written
+    math = text.count("$") > text.count(r"\$")
+    with catch_warnings():
+        filterwarnings("ignore", "Glyph .* missing from", UserWarning)
+        width, height, _ = _measure().get_text_width_height_descent(
+            text if math else text.replace(r"\$", "$"), FontProperties(size=points, weight=weight), math
+        )
     return complex(width, height) / DPI
 
 
@@ -115,12 +119,10 @@ def _measure() -> Any:
 
 def fitted(text: str, width: float = WIDTH - 0.3, points: float = TITLE) -> str:
     """As many words of a text as there is room for [inches], without mathematics."""
-    with catch_warnings():
-        filterwarnings("ignore", "Glyph .* missing from", UserWarning)
-        for most in range(LONGEST, 10, -5):
-            short = shorten(text, most, placeholder=" ...")
-            if size_of(plain(short), points).real <= width:
-                break
+    for most in range(LONGEST, 10, -5):
+        short = shorten(text, most, placeholder=" ...")
+        if size_of(plain(short), points).real <= width:
+            break
     return short
 
 
