@@ -53,14 +53,13 @@ class SingleBody(Mechanism):
 
     def sketch(self) -> Sketch:
         (body,) = self.bodies()
-        sides = {Direction.POSITIVE: "O", Direction.NEGATIVE: "O'"}
-        pivots = dict(zip(sides, reversed(self.feet()), strict=True))
+        pivots = dict(zip(Direction, reversed(self.feet()), strict=True))
         alike = isclose(self.alpha(Direction.POSITIVE), self.alpha(Direction.NEGATIVE), rel_tol=1e-9)
         shown = [Direction.POSITIVE] if alike else list(Direction)
         subscript = {Direction.POSITIVE: "" if alike else "₊", Direction.NEGATIVE: "₋"}
         return Sketch(
             outlines={body.name: self.outlines()} if self.outlines() else {},
-            hinges={side: [Hinge(letter, pivots[side], (body.name,))] for side, letter in sides.items()},
+            hinges={side: [Hinge("O" + side.prime, pivots[side], (body.name,))] for side in Direction},
             lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", pivots[s], body.centroid, s) for s in shown)],
             angles=[Angle(f"α{subscript[s]}", pivots[s], pivots[s] + 1j, body.centroid, s) for s in shown],
         )

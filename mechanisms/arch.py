@@ -138,21 +138,32 @@ class Arch(Mechanism):
             outlines[name] = [self._sector(*each) for each in pairwise(edges)]
         inner, outer = complex((r - half) * springing), complex((r + half) * springing)
         beyond = outer + (outer - inner)
-        at = ", ".join(f"{degrees(angle):.4g}°" for angle in self.hinge_angles)
+        links = self._links()
+        _, b, c, _ = self.hinge_angles
+        across = complex(np.exp(1j * ((pi + self._beta) / 2 - b - 0.78 * (c - b))))  # between a centroid and a hinge
+        at = ", ".join(f"{round(degrees(angle), 1):g}°" for angle in self.hinge_angles)
         return Sketch(
             outlines=outlines,
             uniform=True,
             hinges={direction: self._lettered(direction) for direction in Direction},
             lengths=[
                 Length("r", 0j, complex(r * springing * np.exp(-0.3j * self._beta))),
-                Length("t", 1j * (r - half), 1j * (r + half)),
+                Length("t", (r - half) * across, (r + half) * across),
+                *(Length(f"r_{link}", hinge, centroid, Direction.POSITIVE) for link, hinge, _, centroid in links),
             ],
-            angles=[Angle("β", 0j, complex(r * springing), -complex(r * springing).conjugate())],
+            angles=[
+                Angle("β", 0j, complex(r * springing), -complex(r * springing).conjugate()),
+                Angle("φ₀", links[0][1], links[0][1] + r, links[0][2], Direction.POSITIVE),
+                *(
+                    Angle(f"ψ_{link}", hinge, other, centroid, Direction.POSITIVE)
+                    for link, hinge, other, centroid in links
+                ),
+            ],
             lines=[self._thrust_line(direction) for direction in Direction],
             # The ground lies under the springings, which are walked along from left to right.
             ground=[(beyond, 2 * inner - outer), (-(2 * inner - outer).conjugate(), -beyond.conjugate())],
             notes=[
-                f"A, B, C, D at {at} from the left springing (positive) or the right one (negative)",
+                f"A, B, C, D at {at} from the left springing, A', B', C', D' as far from the right one",
                 *(
                     ["joints of the voussoirs: too many to be drawn"]
                     if len(parted) < len(joints) - 1 and self.voussoirs
@@ -167,6 +178,22 @@ class Arch(Mechanism):
         turns = np.exp(1j * ((pi + self._beta) / 2 - np.linspace(start, end, max(2, ceil((end - start) / FINE) + 1))))
         return [*((self.radius + half) * turns).tolist(), *((self.radius - half) * turns[::-1]).tolist()]
 
+    def _links(self) -> list[tuple[str, complex, complex, complex]]:
+        """Each link of the positive direction: name, hinge it is measured from, hinge at its other end, centroid."""
+        A, B, C, D = self.hinges(Direction.POSITIVE)
+        half = self.thickness / 2
+        left = (pi + self._beta) / 2
+        ends = zip(("AB", "BC", "CD"), (A, B, D), (B, C, C), pairwise(self.hinge_angles), strict=True)
+        return [
+            (
+                name,
+                hinge,
+                other,
+                annular_sector(name, 1.0, self.radius - half, self.radius + half, left - a, left - b).centroid,
+            )
+            for name, hinge, other, (a, b) in ends
+        ]
+
     def _lettered(self, direction: Direction) -> list[Hinge]:
         """The hinges with the segments on either side; at a springing there is one, and the ground."""
         cuts = np.array(self._cuts)
@@ -174,7 +201,7 @@ class Arch(Mechanism):
         for letter, point, angle in zip("ABCD", self.hinges(direction), self.hinge_angles, strict=True):
             cut = int(np.abs(cuts - (angle if direction > 0 else self._beta - angle)).argmin())
             sides = [f"segment {k}" for k in (cut, cut + 1) if 0 < k < len(cuts)]
-            hinges.append(Hinge(letter, point, tuple(sides)))
+            hinges.append(Hinge(letter + direction.prime, point, tuple(sides)))
         return hinges
 
     def _thrust_line(self, direction: Direction) -> Line:
@@ -184,7 +211,7 @@ class Arch(Mechanism):
         angles = np.unique([*angles, *self.hinge_angles])
         points = ring.thrust_radius(angles, thrust(ring, self.hinge_angles)) * self.radius
         along = points * np.exp(1j * (pi / 2 + direction * (self._beta / 2 - angles)))
-        return Line(f"line of thrust at uplift, {self.uplift(direction):.4g} g", along.tolist(), direction)
+        return Line(f"line of thrust at uplift, {self.uplift(direction):.3g} g", along.tolist(), direction)
 
 
 def _round_up(value: float, digits: int) -> float:

@@ -144,7 +144,10 @@ class AsymmetricFrame(Mechanism):
             outlines={body.name: [rectangle(body.centroid, *size)] for body, size in zip(bodies, sizes, strict=True)},
             uniform=True,
             hinges={
-                direction: [Hinge(*hinge) for hinge in zip("ABCD", self.hinges(direction), joined, strict=True)]
+                direction: [
+                    Hinge(letter + direction.prime, point, names)
+                    for letter, point, names in zip("ABCD", self.hinges(direction), joined, strict=True)
+                ]
                 for direction in Direction
             },
             lengths=lengths,

@@ -32,14 +32,20 @@ class PointMass(SingleBody):
         return pi / 2 + self.alpha(direction)  # the mass is on the ground
 
     def outlines(self) -> Sequence[Outline]:
-        thin = 0.02 * max(self.height, self.base_width)
+        thin = self._thin
         base = rectangle(0.5j * thin, self.base_width, thin)
         strut = rectangle(0.5j * (thin + self.height), 0.6 * thin, self.height - thin)
         return base, strut, disc(1j * self.height, 2.5 * thin)
 
+    @property
+    def _thin(self) -> float:
+        """How thick the base is drawn [m]; the disc of the mass is five times as wide, and stays above the ground."""
+        return min(0.02 * max(self.height, self.base_width), 0.3 * self.height)
+
     def lengths(self) -> Sequence[Length]:
         left, right = self.feet()
-        return Length("2b", left, right), Length("h", left, left + 1j * self.height)
+        edge = complex(min(left.real, -2.5 * self._thin))
+        return Length("2b", left, right), Length("h", edge, edge + 1j * self.height)
 
     def sketch(self) -> Sketch:
-        return replace(super().sketch(), notes=["the mass is a point, strut and base have none: drawn at will"])
+        return replace(super().sketch(), notes=["the mass is a point, strut and base have none: not to scale"])

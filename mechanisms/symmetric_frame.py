@@ -99,8 +99,8 @@ class SymmetricFrame(Mechanism):
             copies={columns.name: self._axes},
             hinges={
                 direction: [
-                    Hinge("A", complex(direction * b), (columns.name,)),
-                    Hinge("B", -direction * b + top, (columns.name, beam.name)),
+                    Hinge("A" + direction.prime, complex(direction * b), (columns.name,)),
+                    Hinge("B" + direction.prime, -direction * b + top, (columns.name, beam.name)),
                 ]
                 for direction in Direction
             },
@@ -110,5 +110,5 @@ class SymmetricFrame(Mechanism):
                 Length("R", right, columns.centroid, Direction.POSITIVE),
             ],
             angles=[Angle("α", right, right + 1j, columns.centroid, Direction.POSITIVE)],
-            notes=[f"spacing and depth of the beam are not given and change nothing: drawn at will{few}"],
+            notes=[f"spacing and depth of the beam are not to scale: they are not given and change nothing{few}"],
         )

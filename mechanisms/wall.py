@@ -80,9 +80,9 @@ class Wall(Mechanism):
             uniform=True,
             hinges={
                 direction: [
-                    Hinge("A", foot, names[:1]),
-                    Hinge("B", -foot + 2j * h, names),
-                    Hinge("C", foot + 4j * h, names[1:], slide=1j),
+                    Hinge("A" + direction.prime, foot, names[:1]),
+                    Hinge("B" + direction.prime, -foot + 2j * h, names),
+                    Hinge("C" + direction.prime, foot + 4j * h, names[1:], slide=1j),
                 ]
                 for direction, foot in feet.items()
             },

@@ -138,6 +138,23 @@ class TestGif:
         run("animate", EXAMPLES / "frame.yaml", "--record", ACCEL, "--out", "a.gif", "--fps", "5")
         assert (tmp_path / "a.gif").stat().st_size < 1_500_000
 
+    def test_edges_are_smooth_and_white_is_white(self):
+        """Row by row the left edge of a tilted block, where its ink is, lies on a straight line."""
+        run("animate", "--pulse", "sine:0.3g:0.9s", "--out", "a.gif", "--fps", "10")
+        with Image.open("a.gif") as gif:
+            gif.seek(gif.n_frames // 4)
+            frame = np.asarray(gif.convert("RGB"))
+        assert (frame[2, 2] == 255).all()
+        rows = np.arange(140, 320)
+        ink = 255.0 - frame[rows, : frame.shape[1] // 2].max(axis=2)
+        first = (ink > 60).argmax(axis=1)
+        near = first[:, None] + np.arange(-3, 4)
+        weight = np.maximum(np.take_along_axis(ink, near, axis=1) - 30, 0)  # without the face of the block
+        edge = (near * weight).sum(axis=1) / weight.sum(axis=1)
+        line = np.polyfit(rows, edge, 1)
+        assert abs(line[0]) > 0.01  # it is tilted
+        assert np.abs(edge - np.polyval(line, rows)).max() < 0.2  # pixels
+
     @pytest.mark.parametrize(("fps", "time"), [(20, 0.05), (25, 0.04), (30, 0.03), (50, 0.02), (1, 1.0)])
     def test_a_frame_lasts_whole_hundredths(self, fps, time):
         assert frame_time(fps) == time

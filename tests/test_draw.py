@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
+import io
 import json
 from dataclasses import replace
+from functools import partial
+from itertools import combinations
 from math import atan2, degrees, hypot, pi
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from mechanisms._arch_collapse import Ring, thrust
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
+from mechanisms.cone import Cone
+from mechanisms.point_mass import PointMass
 from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
-from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Sketch, box, rotation
+from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Sketch, box, rotation, three_digits
 from rocking_cli.errors import MechanismError
-from rocking_cli.plotting import dimensions
-from rocking_cli.plotting.structure import draw_structure
+from rocking_cli.plotting import dimensions, style
+from rocking_cli.plotting.labels import Labels, mathematics
+from rocking_cli.plotting.panels import Panel
+from rocking_cli.plotting.structure import colour, draw_structure
 from rocking_cli.structure import load_structure
 from rocking_cli.studies.picture import ASSUMED, NODES, picture
 from rocking_cli.testing import MechanismContract
@@ -30,6 +39,29 @@ from tests.test_cli import run, run_json
 FRAME = load_structure(EXAMPLES / "frame.yaml")
 ARCH = load_structure(EXAMPLES / "arch.yaml")
 FILES = sorted(EXAMPLES.glob("*.yaml"))
+OF_STONE = {"density": 2400.0, "depth": 1.0}
+SHAPES = {
+    **{path.stem: partial(load_structure, path) for path in FILES},
+    "slender block": partial(Block, width=0.1, height=10.0),
+    "flat block": partial(Block, width=10.0, height=0.3),
+    "slender wall": partial(Wall, thickness=0.1, height=10.0),
+    "flat wall": partial(Wall, thickness=1.0, height=0.9),
+    "slender point": partial(PointMass, base_width=0.1, height=10.0),
+    "flat point": partial(PointMass, base_width=10.0, height=0.3),
+    "slender cone": partial(Cone, base_radius=0.1, height=10.0),
+    "flat cone": partial(Cone, base_radius=5.0, height=2.0),
+    "slender portico": partial(SymmetricFrame, column_width=0.1, column_height=10.0, mass_ratio=2.0),
+    "flat portico": partial(SymmetricFrame, column_width=5.0, column_height=0.5, mass_ratio=2.0, columns=9),
+    "slender frame": partial(
+        AsymmetricFrame, column_width=0.1, left_height=10.0, right_height=7.0, spacing=1.0, beam_depth=0.2, **OF_STONE
+    ),
+    "flat frame": partial(
+        AsymmetricFrame, column_width=0.5, left_height=1.0, right_height=1.2, spacing=12.0, beam_depth=0.1, **OF_STONE
+    ),
+    "small angle": partial(Arch, radius=10.0, thickness=0.3, inclusion_angle_deg=100.0),
+    "thin arch": partial(Arch, radius=10.0, thickness=1.1, inclusion_angle_deg=180.0),
+    "thick arch": partial(Arch, radius=3.0, thickness=1.2, inclusion_angle_deg=180.0),
+}
 
 
 class Bare(Mechanism):
@@ -202,16 +234,40 @@ class TestWhatIsMeasured:
 
     def test_of_an_arch(self):
         assert self.values(ARCH) == pytest.approx({"r": 10.0, "t": 1.5, "β": np.radians(157.5)})
+        values = self.values(ARCH, Direction.POSITIVE)
+        A, B, C, D = ARCH.hinges(Direction.POSITIVE)
+        assert values["φ₀"] == pytest.approx(np.angle(B - A))
+        inner, outer = 9.25, 10.75
+        for link, one, other, k in (("AB", A, B, 0), ("BC", B, C, 1), ("CD", D, C, 2)):
+            # Independent: the link in small pieces.
+            turns = np.linspace(*ARCH.hinge_angles[k : k + 2], 20_001)
+            middles = (pi + np.radians(157.5)) / 2 - (turns[1:] + turns[:-1]) / 2
+            centroid = np.exp(1j * middles).mean() * 2 / 3 * (outer**3 - inner**3) / (outer**2 - inner**2)
+            assert values[f"r_{link}"] == pytest.approx(abs(centroid - one))
+            assert values[f"ψ_{link}"] == pytest.approx(abs(np.angle((centroid - one) / (other - one))))
 
     def test_the_texts_have_the_numbers(self):
         assert Length("2b", 1j, 0.7 + 1j).text == "2b = 0.7 m"
         assert Angle("α", 0j, 1j, 1 + 1j).text == "α = 45°"
 
+    @pytest.mark.parametrize(
+        ("value", "text"),
+        [(1.44309, "1.44"), (12.8756, "12.9"), (157.5, "157.5"), (2500, "2500"), (0.01234, "0.0123"), (1e-5, "1e-05")],
+    )
+    def test_three_digits_are_enough_to_check_by(self, value, text):
+        assert three_digits(value) == text
+
     def test_the_hinges_have_the_papers_letters(self):
         for structure in (FRAME, ARCH):
             for direction in Direction:
                 lettered = {hinge.letter: hinge.point for hinge in structure.sketch().hinges[direction]}
-                assert lettered == dict(zip("ABCD", structure.hinges(direction), strict=True))
+                letters = ["A", "B", "C", "D"] if direction > 0 else ["A'", "B'", "C'", "D'"]
+                assert lettered == dict(zip(letters, structure.hinges(direction), strict=True))
+        for path in FILES:
+            of = {
+                d: [pin.letter for pin in picture(load_structure(path)).pins if pin.direction is d] for d in Direction
+            }
+            assert of[Direction.NEGATIVE] == [f"{each}'" if each else "" for each in of[Direction.POSITIVE]]
 
 
 class TestLineOfThrust:
@@ -244,7 +300,7 @@ class TestLineOfThrust:
             assert (np.abs(np.abs(z) - 10.0) <= 0.75 + 1e-6).all()
             for hinge in arch.hinges(line.direction):
                 assert np.abs(z - hinge).min() < 1e-6
-            assert f"{arch.uplift(line.direction):.4g} g" in line.name
+            assert f"{arch.uplift(line.direction):.3g} g" in line.name
 
     def test_its_multiplier_is_the_uplift_of_the_mechanism(self):
         state = thrust(Ring(ARCH.thickness / ARCH.radius, np.radians(157.5)), ARCH.hinge_angles)
@@ -295,7 +351,7 @@ class TestFigure:
         words = " ".join(text.get_text() for axes in figure.axes for text in axes.texts)
         for each in [*structure.sketch().lengths, *structure.sketch().angles]:
             if each.direction is not Direction.NEGATIVE:
-                assert each.text in words
+                assert mathematics(each) in words
 
     def test_the_displaced_panels_show_the_block_at_its_rotation(self):
         block = Block(width=0.7, height=2.8)
@@ -304,7 +360,7 @@ class TestFigure:
         for direction in Direction:
             axes = by_title[direction.label]
             phi = 0.5 * block.critical_rotation(direction)
-            assert f"{phi:.4g} rad = {degrees(phi):.4g}°" in axes.get_title()
+            assert f"{phi:.3g} rad = {three_digits(degrees(phi))}°" in axes.get_title()
             filled = [each for each in axes.patches if isinstance(each, Polygon) and each.get_fill()]
             corners = filled[0].get_xy()[:4] @ [1, 1j]
             foot = complex(direction * 0.35)
@@ -319,6 +375,75 @@ class TestFigure:
         rows, inside = dimensions.in_rows([first, second, across, Length("d", 3 + 3j, 5 + 4j)], low, high)
         assert rows["left"] == [[first, second], [across]]
         assert [each.symbol for each in inside] == ["d"]
+
+    @pytest.mark.parametrize("structure", SHAPES, ids=str)
+    def test_words_neither_meet_nor_leave_the_picture(self, structure):
+        figure = draw_structure(picture(SHAPES[structure]()), "a title")
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        inside = figure.bbox
+        words = [text for axes in figure.axes for text in [*axes.texts, axes.title] if text.get_text()]
+        areas = []
+        for text in [*words, *(text for text in figure.texts if text.get_text())]:
+            box_of = text.get_window_extent(canvas.get_renderer())
+            assert inside.x0 <= box_of.x0 and box_of.x1 <= inside.x1, text.get_text()
+            assert inside.y0 <= box_of.y0 and box_of.y1 <= inside.y1, text.get_text()
+            if text.get_rotation() % 90 == 0:  # of what is turned obliquely the box is too large
+                areas.append((text.get_text(), box_of))
+        for (one, area), (other, beside) in combinations(areas, 2):
+            shared = [
+                min(area.x1, beside.x1) - max(area.x0, beside.x0),
+                min(area.y1, beside.y1) - max(area.y0, beside.y0),
+            ]
+            assert min(shared) < 3, f"{one} lies on {other}"  # pixels: an extent has room around its letters
+
+    def test_words_lie_beside_the_line_they_name(self):
+        """A label of a length alone in a panel: none of the points of the line is under it."""
+        figure = Figure(figsize=(4, 4))
+        panel = Panel(0j, 1 + 1j, (0.5, 0.5, 0.5, 0.5), scale=3.0)
+        axes = panel.axes(figure)
+        labels = Labels(axes, panel)
+        dimensions.draw_inside(axes, [Length("R", 0.1 + 0.2j, 0.5 + 0.9j)], [], panel, labels)
+        (text,) = (each for each in axes.texts if each.get_text())
+        assert text.get_text() == "$R$ = 0.806 m"
+        along = np.linspace(0.1 + 0.2j, 0.5 + 0.9j, 200)
+        place = (along - complex(*text.xy)) / np.exp(1j * np.radians(text.get_rotation())) * panel.scale
+        size = style.size_of(text.get_text(), style.LABEL)
+        assert not ((np.abs(place.real) < size.real / 2) & (np.abs(place.imag) < size.imag / 2)).any()
+        assert np.abs(place.imag).min() < size.imag  # and near it
+
+    @pytest.mark.parametrize("word", ["$", "$a", "a$b$", "\udcff", "\u5b57", "\\frac{1", "R_", "_", ""])
+    def test_any_word_of_a_plugin_can_be_drawn(self, word):
+        class Odd(Block):
+            def sketch(self):
+                return Sketch(
+                    lengths=[Length(word, 0j, 1j), Length(word, 0.1 + 0j, 0.2 + 3j, Direction.NEGATIVE)],
+                    angles=[Angle(word, 0j, 1j, 1 + 1j, Direction.POSITIVE)],
+                    hinges={direction: [Hinge(word, direction * 0.5 + 0j, ("block",))] for direction in Direction},
+                )
+
+        style.save(draw_structure(picture(Odd(width=1.0, height=4.0)), word), io.BytesIO(), format="png", dpi=20)
+
+    def test_symbols_have_their_subscripts(self):
+        for symbol, shown in (
+            ("R₁", "$R_{1}$"), ("2H₁", "$2H_{1}$"), ("r_BC", r"$r_{\mathrm{BC}}$"), ("α₋", "$α_{-}$"), ("2b", "$2b$"),
+            ("height", "height"), ("a $", r"a \$"),
+        ):  # fmt: skip
+            assert mathematics(Length(symbol, 0j, 2 + 0j)) == f"{shown} = 2 m"
+
+    @pytest.mark.parametrize("direction", list(Direction))
+    def test_a_link_of_an_arch_has_one_colour(self, direction):
+        """The segments between two hinges: AB, BC and CD each in its own, and what stays at rest in another."""
+        arch = Arch(radius=10.0, thickness=1.1, inclusion_angle_deg=180.0)
+        shown = picture(arch)
+        cuts = np.array(arch._cuts)
+        middles = (cuts[1:] + cuts[:-1]) / 2
+        along = middles if direction > 0 else pi - middles
+        expected = [k - 1 if 0 < k < 4 else None for k in np.searchsorted(arch.hinge_angles, along)]
+        assert list(shown.links[direction]) == expected
+        assert None in expected and {0, 1, 2} < set(expected)
+        colours = {colour(shown, k, direction) for k in range(len(expected))}
+        assert colours == {*style.BODIES, style.RESTING}
 
     def test_a_body_given_by_numbers_is_a_dashed_disc(self):
         figure = draw_structure(picture(RigidBody(R=1.5, alpha_deg=14.0, inertia_ratio=4 / 3)), "numbers")

@@ -54,6 +54,45 @@ def test_figures_12_and_13_kappa2_is_the_better_for_arches():
             assert all(np.abs(two - 1).max() < np.abs(one - 1).max() for one, two in pairs)
 
 
+def test_figure_11_errors_of_the_free_period_are_small_and_grow_for_less_slender_arches():
+    """As the text has it: small in general, largest at the bottom right, where arches are the least slender."""
+    worst = [
+        max(np.abs(y - 1).max() for y in curves(figure, row, column).values())
+        for figure in [paper_figure(11)]
+        for row in range(2)
+        for column in range(2)
+    ]
+    assert worst == sorted(worst) and worst[0] < 0.21
+
+
+@pytest.mark.parametrize("number", [7, 11, 12, 13])
+def test_a_curve_is_whole_or_the_caption_says_where_it_is_cut(number):
+    paper = paper_figure(number)
+    drawn = draw_paper_figure(paper)
+    cut = False
+    for axes, panel in zip(drawn.axes, [panel for row in paper.panels for panel in row], strict=True):
+        low, high = axes.get_ylim()
+        values = np.concatenate([curve.y for curve in panel.curves])
+        assert values.min() > low
+        cut |= bool(values.max() > high)
+    assert cut == (number == 7) == ("cut off" in drawn.get_supxlabel())
+
+
+def test_a_legend_that_all_panels_share_is_on_none_of_them():
+    drawn = draw_paper_figure(paper_figure(13))
+    assert not any(axes.get_legend() for axes in drawn.axes)
+    (legend,) = drawn.legends
+    assert next(text.get_text() for text in legend.get_texts()).startswith(r"$\beta$")
+    panels = draw_paper_figure(record_response(read_record(EXAMPLES / "accel.csv"))).subfigs[1].axes
+    assert all(axes.get_legend() for axes in panels)  # where they differ each has its own
+
+
+def test_curves_are_close_where_they_bend():
+    for curve in paper_figure(11).panels[0][0].curves:
+        turn = np.diff(np.arctan2(np.diff(curve.y) / np.ptp(curve.y), np.diff(curve.x)))
+        assert np.abs(turn).max() < np.radians(15)  # between two chords of a panel as wide as high
+
+
 def test_figure_10_wider_and_thinner_arches_are_the_more_slender():
     figure = paper_figure(10)
     for column in (0, 1):

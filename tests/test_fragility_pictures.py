@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import io
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from scipy.stats import binomtest
 
@@ -176,6 +178,26 @@ def test_a_surface_is_drawn_as_contours_between_the_runs():
     middle = contours.get_paths()[list(contours.levels).index(0.5)].vertices
     np.testing.assert_allclose(found.surface.probability(*middle.T), 0.5, atol=0.01)
     assert words(figure)[0] == f"does not exceed ({(~exceeded).sum()})"
+
+
+@pytest.mark.parametrize("spread", [0.2, 0.4, 1.5])
+def test_names_of_contours_are_whole_and_apart(spread):
+    random = np.random.default_rng(3)
+    x1, x2 = np.exp(random.normal(size=(2, 150)))
+    figure = draw_surface(
+        bivariate(x1, x2, np.log(x1) + np.log(x2) > spread * random.normal(size=150)),
+        ("PGA [g]", "PGV [m/s]"),
+        "a frame",
+    )
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    (axes,) = figure.axes
+    names = [text for text in axes.texts if text.get_text()]
+    assert {text.get_text() for text in names} == {"10 %", "25 %", "50 %", "75 %", "90 %"}
+    areas = [text.get_window_extent(canvas.get_renderer()) for text in names]
+    assert all(axes.bbox.x0 < each.x0 and each.x1 < axes.bbox.x1 for each in areas)
+    assert all(axes.bbox.y0 < each.y0 and each.y1 < axes.bbox.y1 for each in areas)
+    assert not any(one.overlaps(other) for one, other in combinations(areas, 2))
 
 
 def test_runs_without_a_surface_are_drawn_with_the_reason():

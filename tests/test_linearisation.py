@@ -20,9 +20,10 @@ from rocking_cli.core.advice import grade, preferred_kappa
 from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.plotting.linearisation import draw_linearisation
 from rocking_cli.structure import load_structure
 from rocking_cli.studies.linearisation import linearisation
-from rocking_cli.studies.trust import trust
+from rocking_cli.studies.trust import preferred, trust
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -338,3 +339,17 @@ def test_a_structure_without_a_critical_rotation_is_refused_by_name(tmp_path):
 
 def test_the_json_is_one_object():
     assert json.loads(run("error", EXAMPLES / "arch.yaml", "--json").stdout)["symmetric"] is True
+
+
+def test_the_preferred_kappa_is_the_boldest_line_and_what_is_not_drawn_is_said():
+    arch = load_structure(EXAMPLES / "arch.yaml")
+    rho = np.array([1.02, 2.0, 10.0])
+    curve = linearisation(arch, Direction.POSITIVE, [0.2, 0.5], rho)
+    asked = linearisation(arch, Direction.POSITIVE, [0.5], [2.0])
+    assert preferred([asked]) == 2
+    right = draw_linearisation([curve], [asked], "arch").axes[1]
+    widths = {line.get_label(): line.get_linewidth() for line in right.get_lines()}
+    assert widths[r"$\kappa_2$"] > widths[r"$\kappa_1$"]
+    assert curve.overturning_ratio1[0] < 0.5 and "50 %" in right.get_legend().get_title().get_text()
+    close = linearisation(arch, Direction.POSITIVE, [0.2, 0.5], rho[1:])
+    assert not draw_linearisation([close], [asked], "arch").axes[1].get_legend().get_title().get_text()

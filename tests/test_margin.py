@@ -13,6 +13,7 @@ from rocking_cli.dynamics.model import build_model, build_models
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
 from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
@@ -217,3 +218,12 @@ def test_a_missing_record_of_several_leaves_the_others():
     result = CliRunner().invoke(main, [str(word) for word in words])
     assert result.exit_code == 5 and "no.AT2" in result.stderr
     assert len(json.loads(result.stdout)["motions"]) == 1
+
+
+@pytest.mark.parametrize(("uplift", "mark"), [(0.05, "<"), (0.5, "|"), (9.0, ">")])
+def test_where_it_uplifts_is_marked_on_the_axis_or_pointed_to(uplift, mark):
+    (axes,) = draw_margins({"a": Margin(AROUND, uplift, FACTORS, np.zeros(FACTORS.size))}, "title").axes
+    (drawn,) = (line for line in axes.get_lines() if line.get_marker() in ("<", "|", ">"))
+    assert drawn.get_marker() == mark
+    assert axes.get_xlim()[0] <= drawn.get_xdata()[0] <= axes.get_xlim()[1]
+    assert ("arrowhead" in axes.get_xlabel()) == (mark != "|")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from mechanisms.block import Block
 from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.plotting import style
-from rocking_cli.plotting.history import draw_history
+from rocking_cli.plotting.history import FELT, draw_history
 from rocking_cli.plotting.record import draw_record
 from rocking_cli.plotting.thinning import BINS, visible
 
@@ -35,6 +36,33 @@ def test_the_record_stands_above_and_the_responses_below_with_their_impacts():
     assert len(marked) == 3
     assert marked[0][0] == histories["nonlinear"].impacts[0, 0]
     assert "time [s]" in below.get_xlabel() and "phi" in below.get_ylabel()
+
+
+def test_notes_are_on_no_peak_and_the_marks_say_which_impacts_they_are():
+    """A motion whose peak is where its name stands: late, and to the right."""
+    late = GroundMotion("late", 0.01, np.concatenate([np.zeros(400), -PULSE.acceleration[::-1]]))
+    figure = draw_history(respond(BLOCK, late), late, "a block")
+    FigureCanvasAgg(figure).draw()
+    above, below = figure.axes
+    (note,) = (text for text in above.texts if "PGA" in text.get_text())
+    bottom = above.transData.inverted().transform(note.get_window_extent())[0, 1]
+    assert above.get_lines()[0].get_ydata().max() < bottom
+    (key,) = (text.get_text() for text in below.texts if "impacts" in text.get_text())
+    assert f"{100 * FELT:g} %" in key
+    for axes, name in zip(draw_record(late, measure(late)).axes, ("PGA", "PGV", "PGD"), strict=False):
+        low, high = axes.get_ylim()
+        assert any(name in text.get_text() for text in axes.texts)
+        assert axes.get_lines()[0].get_ydata().max() < high - 0.15 * (high - low)
+
+
+def test_a_title_is_as_long_as_there_is_room_for():
+    wide, narrow = (f"{letter * 6} " * 20 for letter in "Wi")
+    for text in (wide, narrow, "W" * 300, "a $ and _ and ^"):
+        short = style.fitted(text)
+        assert style.size_of(style.plain(short), style.TITLE).real <= style.WIDTH - 0.3
+    assert len(style.fitted(wide)) < len(style.fitted(narrow))
+    assert style.fitted("a $ and _") == "a $ and _"
+    assert style.fitted("\udcff\x1b a") == "\udcff\x1b a"  # it is spelled out when it is written
 
 
 def test_overturning_is_named_and_the_fall_is_cut_off():

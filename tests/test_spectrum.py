@@ -203,6 +203,7 @@ class TestPicture:
             assert star.get_xdata()[0] == pytest.approx(shapes[0].period)
             if np.isfinite(value):
                 assert star.get_ydata()[0] == pytest.approx(value)
+        assert any("0.1 rad = 5.73°" in text.get_text() for text in figure.legends[0].get_texts())
         assert "overturns" in [label.get_text() for label in above.get_yticklabels()]
 
     def test_of_one_motion_it_has_one_panel(self, shapes):

@@ -52,11 +52,11 @@ class CappedBlock(Mechanism):
         return pi / 2
 
     def sketch(self) -> Sketch:
-        """Pivots with a letter, the size, and a bust that is drawn at will; the block has its shape already."""
+        """Pivots with a letter, the size, and a bust that is not to scale; the block has its shape already."""
         b, top = self.width / 2, 1j * self.height
         return Sketch(
             outlines={"cap": [disc(top + 0.5j * b, b / 2)]},
             hinges={direction: [Hinge("O", complex(direction * b), ("block",))] for direction in Direction},
             lengths=[Length("2b", complex(-b), complex(b)), Length("2h", complex(-b), -b + top)],
-            notes=["the cap is a point: drawn at will"],
+            notes=["the cap is a point: not to scale"],
         )

@@ -31,5 +31,6 @@ from rocking_cli.core.sketch import Outline as Outline
 from rocking_cli.core.sketch import Sketch as Sketch
 from rocking_cli.core.sketch import disc as disc
 from rocking_cli.core.sketch import rectangle as rectangle
+from rocking_cli.core.sketch import three_digits as three_digits
 from rocking_cli.core.statics import Statics as Statics
 from rocking_cli.core.statics import statics as statics

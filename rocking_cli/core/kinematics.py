@@ -29,6 +29,11 @@ class Direction(IntEnum):
         return self.name.lower()
 
     @property
+    def prime(self) -> str:
+        """What a hinge of this direction has after its letter: A is that of the positive direction, A' of the other."""
+        return "" if self > 0 else "'"
+
+    @property
     def opposite(self) -> Direction:
         """The other direction."""
         return Direction(-self)

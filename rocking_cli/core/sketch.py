@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import degrees
+from math import degrees, floor, log10
 
 import numpy as np
 
@@ -65,8 +65,8 @@ class Length:
 
     @property
     def text(self) -> str:
-        """Symbol, number and unit."""
-        return f"{self.symbol} = {self.value:.5g} m"
+        """Symbol, number in three digits, and unit."""
+        return f"{self.symbol} = {three_digits(self.value)} m"
 
 
 @dataclass(frozen=True)
@@ -86,8 +86,8 @@ class Angle:
 
     @property
     def text(self) -> str:
-        """Symbol, number and unit."""
-        return f"{self.symbol} = {degrees(self.value):.4g}°"
+        """Symbol, number in three digits, and unit."""
+        return f"{self.symbol} = {three_digits(degrees(self.value))}°"
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Sketch:
     ground : sequence of sequence of complex
         Lines of the ground, which is on the right of someone who walks along them. Without any: level under the pivots.
     notes : sequence of str
-        What to know when looking at it, such as sizes that are not given and drawn at will.
+        What to know when looking at it, such as what is not to scale because its size is not given.
     """
 
     outlines: Mapping[str, Sequence[Outline]] = field(default_factory=dict)
@@ -138,6 +138,13 @@ class Sketch:
             if isinstance(given, str) or not all(isinstance(each, kind) for each in given):
                 what = "of texts" if kind is str else f"of {kind.__name__}"
                 raise TypeError(f"{name} of a sketch must be a sequence {what}, got {given!r}")
+
+
+def three_digits(value: float) -> str:
+    """A positive number in three digits and at least one decimal, as many as a picture can be checked by."""
+    if not 1e-3 <= value < 1e5:
+        return f"{value:.3g}"
+    return f"{round(value, max(1, 2 - floor(log10(value)))):g}"
 
 
 def rectangle(centre: complex, width: float, height: float) -> Outline:

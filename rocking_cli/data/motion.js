@@ -78,7 +78,7 @@ function structureStage(svg, picture, colours, low, high) {
     moving = picture.parts.map((part, k) => {
       const group = shape(plane, "g", {class: "part"});
       for (const each of part.outlines)
-        shape(group, "path", {class: part.assumed ? "body assumed" : "body", fill: colours[k], d: outline(each)});
+        shape(group, "path", {class: part.assumed ? "body assumed" : "body", d: outline(each)});
       shape(group, "circle", {class: "centroid", r: 3 / scale});
       return group;
     });
@@ -92,8 +92,10 @@ function structureStage(svg, picture, colours, low, high) {
   function show(rotation) {
     const side = rotation < 0 ? "negative" : "positive";
     const places = picture.parts.map(part => placed(part, rotation));
-    moving.forEach((group, k) => group.setAttribute("transform",
-      `translate(${places[k].x},${places[k].y}) rotate(${places[k].psi * 180 / Math.PI})`));
+    moving.forEach((group, k) => {
+      group.setAttribute("transform", `translate(${places[k].x},${places[k].y}) rotate(${places[k].psi * 180 / Math.PI})`);
+      group.setAttribute("fill", colours[side][k]); // of its link in this direction
+    });
     for (const {pin, X, Y, mark, letter} of pins) {
       const seen = rotation !== 0 && pin.direction === side;
       mark.style.display = letter.style.display = seen ? "" : "none";

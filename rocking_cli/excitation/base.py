@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,6 +128,22 @@ class GroundMotion:
         if self.every == 1:
             return self
         return replace(self, dt=self.every * self.dt, acceleration=self.acceleration[:: self.every], every=1)
+
+    def plot(self, file: str | Path | None = None) -> Any:
+        """Draw it as `rocking_cli.record` does: acceleration, velocity, displacement and Arias intensity over time.
+
+        Parameters
+        ----------
+        file : str or Path, optional
+            Where to write the picture too: .png, .svg or .pdf.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        from rocking_cli import record  # by its public name: a motion knows nothing of pictures
+
+        return record(self).plot(file)
 
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion with every acceleration multiplied by `factor`, named so.

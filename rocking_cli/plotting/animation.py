@@ -1,7 +1,7 @@
 """A structure moving under a ground motion, the traces below: as an animated GIF, and as a page.
 
-Of a GIF what stands still is drawn once; only the structure and the cursor are drawn anew for each frame, at twice the
-size and then reduced, which smooths them: some 10 ms a frame.
+Of a GIF what stands still is drawn once; only the structure and the cursor are drawn anew for each frame, by the
+renderer of matplotlib itself, which smooths them.
 """
 
 from __future__ import annotations
@@ -12,15 +12,17 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from io import BytesIO
 from math import ceil
-from pathlib import Path
-from textwrap import shorten
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.path import Path
+from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import Affine2D, IdentityTransform
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
@@ -36,10 +38,12 @@ from rocking_cli.text import printable
 
 Reals = NDArray[np.float64]
 DOTS = 100  # an inch of a frame
-FINER = 2  # times as large when the structure is drawn
+FINER = 2  # times as large when what stands still is drawn
 TALLEST = 3.4  # inches of the structure
-TITLE, FOOT, TRACE, GAP, LEFT = 0.6, 0.42, 0.95, 0.12, 0.62  # inches
-SHADES = (0.25, 0.5, 0.75)  # between a colour and those it is drawn on, for smooth edges
+TITLE, FOOT, TRACE, GAP, LEFT = 0.6, 0.42, 0.95, 0.12, 0.82  # inches
+SHADES = (0.2, 0.4, 0.6, 0.8)  # between a colour and those it is drawn on, for smooth edges
+PIN = 3.0  # pixels: radius of a hinge
+NEARLY_WHITE = 0.97
 HOLD = 1.5  # s that the last frame stays
 
 
@@ -91,10 +95,12 @@ def _frames(stage: _Stage, film: Film, times: Reals, advance: Callable[[int], No
 def _palette() -> Image.Image:
     """The colours of a GIF: those of the style, and shades to white and to ink. Few colours make small files."""
     colours = {to_rgb("white"), to_rgb(style.INK)}
-    for each in (*style.BODIES, style.EARTH, style.CURSOR, style.INK, style.FAINT):
+    for each in (*style.BODIES, style.RESTING, style.EARTH, style.CURSOR, style.INK, style.FAINT):
         colour, white, ink = (np.array(to_rgb(c)) for c in (each, "white", style.INK))
         for other in (white, ink):
             colours |= {tuple(colour + share * (other - colour)) for share in (0.0, *SHADES)}
+    # The nearest of a palette is not found to the last bit: what is nearly white must not be taken for white.
+    colours = {each for each in colours if min(each) < NEARLY_WHITE or min(each) == 1}
     image = Image.new("P", (1, 1))
     image.putpalette([round(255 * part) for colour in sorted(colours) for part in colour])
     return image
@@ -118,7 +124,7 @@ class _Stage:
         tall = ceil((below + panel.inches.imag + TITLE) * DOTS) / DOTS
         figure = Figure(figsize=(style.WIDTH, tall), dpi=DOTS * FINER)
         figure.text(
-            GAP / style.WIDTH, 1 - 0.1 / tall, shorten(title, style.LONGEST, placeholder=" ..."), va="top",
+            GAP / style.WIDTH, 1 - 0.1 / tall, style.fitted(title), va="top",
             fontsize=style.TITLE, color=style.INK, parse_math=False,
         )  # fmt: skip
         axes = panel.axes(figure)
@@ -131,15 +137,12 @@ class _Stage:
         _draw_traces(upper, lower, film, start, end)
         drawn = BytesIO()
         style.save(figure, drawn, format="png", dpi=DOTS * FINER)
-        self._fine = Image.open(drawn).convert("RGB")
-        self._coarse = self._fine.reduce(FINER)
-        width, height = self._coarse.size
-        top = height - round((panel.corner.imag + panel.inches.imag) * DOTS)
-        bottom = height - round(panel.corner.imag * DOTS)
-        self._region = 0, top, width, bottom
-        self._scale = panel.scale * DOTS * FINER
+        self._still = np.asarray(Image.open(drawn).convert("RGB").reduce(FINER))
+        height, width, _ = self._still.shape
+        self._renderer: Any = RendererAgg(width, height, DOTS)  # type: ignore[no-untyped-call]
+        self._scale = panel.scale * DOTS
         left = panel.low.real - panel.around[0] / panel.scale - GAP / panel.scale
-        self._origin = complex(left, panel.high.imag + panel.around[3] / panel.scale)
+        self._origin = complex(left, panel.low.imag - (panel.around[2] + panel.corner.imag) / panel.scale)
         self._strip = [
             (
                 *(axes.transData.transform((t, 0.0))[0] / FINER for t in (start, end)),
@@ -152,46 +155,59 @@ class _Stage:
 
     def frame(self, time: float, rotation: float, ratio: float) -> Image.Image:
         """One frame, in colours."""
-        frame = self._coarse.copy()
-        left, top, right, bottom = self._region
-        fine = self._fine.crop(tuple(FINER * each for each in (left, top, right, bottom)))  # type: ignore[arg-type]
-        self._draw_structure(ImageDraw.Draw(fine), rotation)
-        frame.paste(fine.reduce(FINER), (left, top))
+        pixels = np.asarray(self._renderer.buffer_rgba())
+        pixels[..., :3] = self._still
+        pixels[..., 3] = 255
+        places = self._draw_structure(rotation)
+        frame = Image.fromarray(pixels[..., :3])
         pen = ImageDraw.Draw(frame)
+        for letter, place in places:
+            pen.text(
+                (place.real + 5, frame.height - place.imag - 5), letter, fill=style.INK, font=_font(12, bold=True),
+                anchor="lb", stroke_width=2, stroke_fill="white",
+            )  # fmt: skip
         start, end = self._times
         share = (time - start) / (end - start) if end > start else 0.0
         for x0, x1, y0, y1 in self._strip:
             x = round(x0 + share * (x1 - x0))
             pen.line([(x, frame.height - y1), (x, frame.height - y0)], fill=style.CURSOR, width=2)
-        now = f"t = {time:6.2f} s    φ/φ_cr = {round(ratio, 2) + 0.0:+.2f}"
+        now = f"t = {time:6.2f} s    φ/φcr = {round(ratio, 2) + 0.0:+.2f}"
         pen.text((frame.width - 12, 30), now, fill=style.INK, font=_font(13), anchor="ra")
         return frame
 
-    def _draw_structure(self, pen: ImageDraw.ImageDraw, rotation: float) -> None:
+    def _draw_structure(self, rotation: float) -> list[tuple[str, complex]]:
+        """Draw parts and hinges; the letters of these, and where they are [pixels]."""
         picture = self._film.picture
         outlines, pins = picture.placed(rotation)
-        for k, polygons in enumerate(outlines):
-            for each in polygons:
-                pen.polygon(self._pixels(each), fill=colour(picture, k), outline=style.INK, width=3)
         direction = Direction.NEGATIVE if rotation < 0 else Direction.POSITIVE
-        for pin, place in zip(picture.pins, pins, strict=True):
-            if pin.direction is direction and rotation != 0:
-                ((x, y),) = self._pixels(np.array([place]))
-                pen.ellipse((x - 6, y - 6, x + 6, y + 6), fill="white", outline=style.INK, width=FINER)
-                pen.text(
-                    (x + 10, y - 10), pin.letter, fill=style.INK, font=_font(12 * FINER, bold=True), anchor="lb",
-                    stroke_width=3, stroke_fill="white",
-                )  # fmt: skip
+        pen = self._renderer.new_gc()
+        pen.set_foreground(style.INK)
+        pen.set_linewidth(self._renderer.points_to_pixels(style.MEDIUM))
+        pen.set_joinstyle("round")
+        pen.set_snap(False)  # it moves by less than a pixel
+        for k, polygons in enumerate(outlines):
+            fill = to_rgb(colour(picture, k, direction))
+            for each in polygons:
+                corners = self._pixels(np.append(each, each[0]))
+                self._renderer.draw_path(pen, Path(corners, closed=True), IdentityTransform(), fill)
+        shown = [] if rotation == 0 else [k for k, pin in enumerate(picture.pins) if pin.direction is direction]
+        for x, y in self._pixels(pins[shown]):
+            ring = Affine2D().scale(PIN).translate(x, y)
+            self._renderer.draw_path(pen, Path.unit_circle(), ring, to_rgb("white"))
+        pen.restore()
+        places = self._pixels(pins[shown]) @ np.array([1, 1j])
+        return [(picture.pins[k].letter, complex(place)) for k, place in zip(shown, places, strict=True)]
 
-    def _pixels(self, z: NDArray[np.complex128]) -> list[tuple[float, float]]:
+    def _pixels(self, z: NDArray[np.complex128]) -> NDArray[np.float64]:
+        """Where points are, from the lower left corner, shape (n, 2)."""
         away = (z - self._origin) * self._scale
-        return list(zip(away.real.tolist(), (-away.imag).tolist(), strict=True))
+        return np.stack([away.real, away.imag], axis=-1)
 
 
 @cache
 def _font(size: int, *, bold: bool = False) -> ImageFont.FreeTypeFont:
-    folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
-    return ImageFont.truetype(str(folder / ("DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf")), size)
+    name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
+    return ImageFont.truetype(f"{matplotlib.get_data_path()}/fonts/ttf/{name}", size)
 
 
 def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float) -> None:
@@ -204,6 +220,8 @@ def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float)
         tall = 1.1 * max(float(np.abs(values).max()), 1e-3)
         axes.set_ylim(-tall, tall)
         axes.set_ylabel(label, fontsize=style.LABEL)
+        axes.yaxis.set_label_coords(-(LEFT - 0.3) / (style.WIDTH - LEFT - GAP), 0.5)  # whatever the numbers are
+        axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
         style.tidy(axes)
     for level in (-1.0, 1.0):

@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from rocking_cli.core import Angle, Length
 from rocking_cli.plotting import style
+from rocking_cli.plotting.labels import Labels, Place, mathematics
 from rocking_cli.plotting.panels import Panel
 
-ROW = 0.24  # inches from a dimension line to the next
+ROW = 0.26  # inches from a dimension line to the next
 FIRST = 0.27  # inches from the structure to the first, with the ground between
 EDGE = 0.02  # of the size: how near a length is to the edge that it is drawn outside of
 ARC = 0.42  # inches: radius of an angle, at most
+BEYOND = 0.13  # inches from a dimension line to the words that it is too short for
+LOOK: dict[str, Any] = {"fontsize": style.LABEL, "color": style.MEASURE, "zorder": 6}
+BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}  # words on a line interrupt it
+BARE, WORDS = 0.16, 0.85  # inches at a side without rows, and for words there
+WIDE = 0.5  # rad: of an angle
+FLAT = 0.2  # height over width of what has no room for angles
 SIDES = ("left", "right", "below", "above")
 Rows = dict[str, list[list[Length]]]
 """The lengths of each side, in rows from the structure outwards."""
@@ -38,15 +46,22 @@ def in_rows(lengths: Sequence[Length], low: complex, high: complex) -> tuple[Row
     return rows, inside
 
 
-def room(rows: Rows, side: str) -> float:
-    """What the rows of a side need [inches]."""
-    return FIRST + ROW * len(rows[side]) + 0.02 if rows[side] else 0.12
+def room(rows: Rows, low: complex, high: complex) -> tuple[float, float, float, float]:
+    """What is needed on each side of a structure from `low` to `high` [inches]."""
+    left, right, below, above = (FIRST + ROW * len(rows[side]) + 0.06 if rows[side] else BARE for side in SIDES)
+    wide, tall = (high - low).real, (high - low).imag
+    if tall > wide:  # what is written inside of it may have no room there
+        right = max(right, WORDS)
+    if tall < FLAT * wide:
+        above = max(above, 1.5 * ARC)
+    return left, right, below, above
 
 
-def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: complex) -> None:
+def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: complex, labels: Labels) -> None:
     """Draw the rows around the box of the structure from `low` to `high` [m]."""
     outwards = {"left": -1, "right": 1, "below": -1j, "above": 1j}
     edges = {"left": low.real, "right": high.real, "below": low.imag, "above": high.imag}
+    short = []
     for side, out in outwards.items():
         upright = side in ("left", "right")
         for k, row in enumerate(rows[side]):
@@ -56,49 +71,77 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
                 for z, end in zip((each.start, each.end), ends, strict=True):
                     past = end + out * 0.04 / panel.scale
                     axes.plot([z.real, past.real], [z.imag, past.imag], color=style.MEASURE, linewidth=style.HAIR)
+                    labels.keep_off([z, past])
                 _arrow(axes, *ends)
-                beyond = 0.11 * out / panel.scale if each.value * panel.scale < _wide(each.text) else 0
-                _write(axes, sum(ends) / 2 + beyond, "center", each.text, turned=90.0 if upright else 0.0)
+                text = mathematics(each)
+                size = style.size_of(text, style.LABEL)
+                middle = sum(ends) / 2 * panel.scale
+                if each.value * panel.scale > size.real + 0.2:
+                    place = Place(middle, 90.0 if upright else 0.0, 0.0)
+                    labels.put(text, place, size, bbox=BEHIND, **LOOK)
+                    labels.keep_off(ends)
+                else:
+                    short.append((text, out, ends, middle, size))
+    for text, out, ends, middle, size in short:
+        labels.keep_off(ends)
+        labels.write(text, _beside(out, middle, 0.5 * abs(ends[1] - ends[0]) * panel.scale, size), **LOOK)
 
 
-def draw_inside(axes: Axes, lengths: Sequence[Length], angles: Sequence[Angle], panel: Panel) -> None:
-    """Draw lengths between their points, and angles at their apexes."""
+def _beside(out: complex, middle: complex, half: float, size: complex) -> list[Place]:
+    """Places for words of a size that a dimension line, `half` long to either side, is too short for [inches]."""
+    upright = out.imag == 0
+    along, turned = (1j, 90.0) if upright else (1 + 0j, 0.0)
+    slack = 0.5 * size.real + half + 0.06
+    places = [  # beyond it, shifted along it as far as past its ends
+        Place(middle + beyond * out + shift * slack * along, turned, 2 * abs(shift) + 10 * abs(beyond - BEYOND))
+        for beyond in (BEYOND, 0.2, 0.36, 0.0, -BEYOND)
+        for shift in (0.0, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0)
+    ]
+    if upright:  # or level, at its side or past its ends
+        places += [Place(middle + (size.real / 2 + 0.08) * out + 1j * up, 0.0, 2.0) for up in (0.0, 0.1, -0.1, 0.2)]
+        ends = [side * 1j * (half + 0.12) for side in (1, -1)]
+        places += [Place(middle + aside * out + end, 0.0, 4.0) for aside in (0.0, 0.2, -0.2) for end in ends]
+    return places
+
+
+def draw_inside(axes: Axes, lengths: Sequence[Length], angles: Sequence[Angle], panel: Panel, labels: Labels) -> None:
+    """Draw lengths between their points, and angles at their apexes, and write beside them what they are."""
     for each in lengths:
         _arrow(axes, each.start, each.end)
-        slope = float(np.degrees(np.angle(each.end - each.start)))
-        upright = (slope + 90) % 180 - 90  # to be read from below or from the right
-        if each.value * panel.scale > 0.85 * _wide(each.text):
-            _write(axes, each.start + 0.55 * (each.end - each.start), "center", each.text, turned=upright)
-        else:  # too short for its text, which goes to the right of it
-            beside = each.start + 0.85 * (each.end - each.start) + 0.12 / panel.scale
-            _write(axes, beside, "left", each.text)
-    for angle in angles:
-        arms = angle.start - angle.apex, angle.end - angle.apex
-        radius = min(ARC / panel.scale, 0.7 * abs(arms[1]))
-        turn = float(np.angle(arms[1] / arms[0]))
-        first = arms[0] / abs(arms[0])
-        arc = angle.apex + radius * first * np.exp(1j * turn * np.linspace(0, 1, 40))
-        axes.plot(arc.real, arc.imag, color=style.MEASURE, linewidth=style.THIN)
-        for arm in arms:
-            end = angle.apex + arm / abs(arm) * min(abs(arm), 1.25 * radius)
-            axes.plot(
-                [angle.apex.real, end.real], [angle.apex.imag, end.imag],
-                color=style.MEASURE, linewidth=style.HAIR, linestyle=(0, (4, 2)),
-            )  # fmt: skip
-        _write(axes, *_beside_arc(angle.apex, radius, first, turn, panel.scale), angle.text)
+        labels.keep_off([each.start, each.end])
+    arcs = [(angle, *_draw_arc(axes, angle, panel, labels)) for angle in angles]
+    # A narrow angle has the fewest places for its words, a wide one the most.
+    for angle, radius, towards in (each for each in arcs if each[0].value < WIDE):
+        _write_angle(angle, radius, towards, labels)
+    for each in sorted(lengths, key=lambda length: length.value):
+        text = mathematics(each)
+        labels.write(text, labels.along(each.start, each.end, style.size_of(text, style.LABEL)), **LOOK)
+    for angle, radius, towards in (each for each in arcs if each[0].value >= WIDE):
+        _write_angle(angle, radius, towards, labels)
 
 
-def _beside_arc(apex: complex, radius: float, first: complex, turn: float, scale: float) -> tuple[complex, str]:
-    """Where an angle is written, and which end of the text that is: before the arc or, if it is small, at its side."""
-    gap = 0.06 / scale
-    middle = first * np.exp(0.5j * turn)
-    if abs(turn) < 1:  # small: outside of the first arm, away from the second
-        outside = -1j * np.sign(turn) * first
-        place = apex + first * radius + outside * gap * (1 if abs(outside.real) > 0.5 else 1.6)
-        return place, "right" if outside.real < -0.5 else "left"
-    if abs(middle.real) > 0.5:
-        return apex + middle * (radius + gap), "left" if middle.real > 0 else "right"
-    return apex + middle * (radius + 2 * gap), "center"
+def _write_angle(angle: Angle, radius: float, towards: complex, labels: Labels) -> None:
+    text = mathematics(angle)
+    labels.write(text, labels.around(angle.apex, towards, radius, style.size_of(text, style.LABEL)), **LOOK)
+
+
+def _draw_arc(axes: Axes, angle: Angle, panel: Panel, labels: Labels) -> tuple[float, complex]:
+    """Draw an angle; the radius of its arc [inches], and in which direction its middle lies."""
+    arms = angle.start - angle.apex, angle.end - angle.apex
+    radius = min(ARC / panel.scale, 0.7 * abs(arms[1]))
+    turn = float(np.angle(arms[1] / arms[0]))
+    first = arms[0] / abs(arms[0])
+    arc = angle.apex + radius * first * np.exp(1j * turn * np.linspace(0, 1, 40))
+    axes.plot(arc.real, arc.imag, color=style.MEASURE, linewidth=style.THIN)
+    labels.keep_off(arc)
+    for arm in arms:
+        end = angle.apex + arm / abs(arm) * min(abs(arm), 1.25 * radius)
+        axes.plot(
+            [angle.apex.real, end.real], [angle.apex.imag, end.imag],
+            color=style.MEASURE, linewidth=style.HAIR, linestyle=(0, (4, 2)),
+        )  # fmt: skip
+        labels.keep_off([angle.apex, end])
+    return radius * panel.scale, first * complex(np.exp(0.5j * turn))
 
 
 def _side(each: Length, low: complex, high: complex) -> str | None:
@@ -133,17 +176,4 @@ def _arrow(axes: Axes, start: complex, end: complex) -> None:
             "arrowstyle": "<|-|>,head_width=0.12,head_length=0.3", "color": style.MEASURE, "linewidth": style.THIN,
             "shrinkA": 0, "shrinkB": 0,
         },
-    )  # fmt: skip
-
-
-def _wide(text: str) -> float:
-    """About how wide a text is, with some room for the arrows [inches]."""
-    return 0.075 * len(text) + 0.1
-
-
-def _write(axes: Axes, place: complex, end: str, text: str, turned: float = 0.0) -> None:
-    axes.annotate(
-        text, (place.real, place.imag), ha=end, va="center", rotation=turned, fontsize=style.TICK,
-        color=style.MEASURE, parse_math=False, annotation_clip=False, zorder=6,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.6},
     )  # fmt: skip

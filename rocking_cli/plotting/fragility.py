@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
@@ -30,6 +31,7 @@ DRAWN_RUNS = 3000  # runs and records that are drawn one by one, at most
 DRAWN_LADDERS = 300
 LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
 FRACTILES = ((0.16, "16 %"), (0.5, "median"), (0.84, "84 %"))
+MARGIN = 0.08  # of the plane: without names of contours
 CROWDED = 15  # levels of shaking from which on not every one is counted out
 
 
@@ -280,10 +282,11 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
             across, up, surface.probability(*np.meshgrid(across, up)), levels=LEVELS, colors=style.INK,
             linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],
         )  # fmt: skip
-        names = axes.clabel(drawn, fmt=lambda level: f"{level:.0%}", fontsize=style.TICK)
-        for name in names:
+        for name in axes.clabel(
+            drawn, manual=_label_places(drawn, across, up), fmt=lambda level: f"{100 * level:g} %", fontsize=style.TICK
+        ):
             name.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
-            name.set_clip_on(True)
+            name.set_zorder(6)  # over the marks
         handles.append(Line2D([], [], color=style.INK, label="probability of exceedance"))
     said = [surface.warning] if surface.warning else []
     said += [f"one of {every} is drawn"] if every > 1 else []
@@ -298,6 +301,20 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     columns = 1 if surface.kind == "none" or said else 2
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=style.TICK, frameon=False)
     return figure
+
+
+def _label_places(drawn: QuadContourSet, across: Reals, up: Reals) -> list[tuple[float, float]]:
+    """Where contours are named: each at another part of its way through the middle of the plane, clear of its edges."""
+    places = []
+    for k, path in enumerate(drawn.get_paths()):
+        line = np.asarray(path.vertices, np.float64)
+        ends = np.array([[across[0], up[0]], [across[-1], up[-1]]])
+        shares = np.log(line / ends[0]) / np.log(ends[1] / ends[0])
+        inside = line[(np.abs(shares - 0.5) < 0.5 - MARGIN).all(axis=1)]
+        if len(inside):
+            x, y = inside[int((k + 0.5) / len(LEVELS) * len(inside))].tolist()
+            places.append((x, y))
+    return places
 
 
 def _some(found: Bivariate, number: Integers, every: int) -> tuple[Reals, Reals]:

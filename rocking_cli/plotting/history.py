@@ -22,6 +22,7 @@ FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a c
 FELT = 0.02  # of the strongest impact: weaker ones, of a chatter to rest, are not marked
 SHORTEST = 0.1  # s of the time axis
 POINTS = 1000  # of a pulse
+IMPACTS = f"impacts of {100 * FELT:g} % of the strongest and more, in the order of the legend"
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
 
 
@@ -114,6 +115,7 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
         seen = visible(part)
         axes.plot(seen * up.dt, part[seen], color=style.FAINT, linewidth=style.CURVE, zorder=1)
         named += f"; grey: {up.name}, vertical, {up.pga:.3g} g"
+    style.make_room(axes)
     style.note(axes, named)
     style.tidy(axes)
 
@@ -127,9 +129,7 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
     axes.set_ylim(-1.3 * tall, tall)  # room for the impacts below
     axes.set_ylabel(r"rotation $\phi/\phi_{cr}$, clockwise up", fontsize=style.LABEL)
     place = (0.005, (len(histories) + 1.2) * LANE)
-    axes.annotate(
-        "impacts, in the order of the legend", place, xycoords="axes fraction", fontsize=style.SMALL, color=style.FAINT
-    )
+    axes.annotate(IMPACTS, place, xycoords="axes fraction", fontsize=style.SMALL, color=style.INK)
     if not any(run.lifted for run in histories.values()):
         axes.text(0.5, 0.6, names.NO_UPLIFT, transform=axes.transAxes, ha="center", fontsize=style.LABEL)
     falls_up = any(run.fell_to == Direction.POSITIVE for run in histories.values())  # into the right corner

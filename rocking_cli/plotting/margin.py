@@ -31,12 +31,20 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     for level in LEVELS:
         axes.axhline(level, color=style.FAINT, linewidth=style.THIN, linestyle=":")
     axes.axvline(1.0, color=style.FAINT, linewidth=style.CURVE)
+    beyond = False
     for k, (name, each) in enumerate(margins.items()):
         look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
         axes.plot(each.factors, each.overturned, label=shorten(name, NAME, placeholder=" ..."), **look)
         axes.plot(1.0, each.itself, color=look["color"], clip_on=False, **style.STAR)
-        if each.uplift is not None and each.factors[0] <= each.uplift <= each.factors[-1]:
-            axes.plot(each.uplift, 0.0, color=look["color"], clip_on=False, marker="|", markersize=12, linestyle="none")
+        if each.uplift is not None:
+            # What lifts it may lie beyond the factors: an arrowhead at that end points to it.
+            low, high = each.factors[0], each.factors[-1]
+            mark = "<" if each.uplift < low else ">" if each.uplift > high else "|"
+            beyond |= mark != "|"
+            axes.plot(
+                min(max(each.uplift, low), high), 0.0, color=look["color"], clip_on=False, marker=mark,
+                markersize=12 if mark == "|" else 7, linestyle="none",
+            )  # fmt: skip
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(FixedLocator(TICKS))
     axes.xaxis.set_minor_locator(NullLocator())
@@ -44,7 +52,8 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     axes.set_ylim(-0.03, 1.03)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     axes.set_ylabel("share that overturns", fontsize=style.LABEL)
-    axes.set_xlabel("factor on the motion (star: as it is; tick: from where it uplifts)", fontsize=style.LABEL)
+    arrow = ", arrowhead: beyond" if beyond else ""
+    axes.set_xlabel(f"factor on the motion (star: as it is; tick: from where it uplifts{arrow})", fontsize=style.LABEL)
     axes.margins(x=0.01)
     style.tidy(axes)
     if len(margins) > 1:

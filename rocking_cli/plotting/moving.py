@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -61,7 +62,10 @@ def moving(
     """
     return {
         "picture": film.picture.as_dict(),
-        "colours": [colour(film.picture, k) for k in range(len(film.picture.parts))],
+        "colours": {
+            direction.label: [colour(film.picture, k, direction) for k in range(len(film.picture.parts))]
+            for direction in Direction
+        },
         "film": film.as_dict(max(FINEST, film.end / MOST)),
         "charts": list(charts),
         "label": label,

@@ -33,6 +33,8 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     _draw_curve(panels[0], motion, motion.acceleration / STANDARD_GRAVITY, "acceleration [g]")
     _draw_curve(panels[1], motion, motion.velocity, "velocity [m/s]")
     _draw_curve(panels[2], motion, motion.displacement, "displacement [m]")
+    for axes in panels[:3]:
+        style.make_room(axes)
     style.note(panels[0], f"PGA {measures.pga:.3g} g")
     style.note(panels[1], f"PGV {measures.pgv:.3g} m/s")
     style.note(panels[2], f"PGD {measures.pgd:.3g} m")

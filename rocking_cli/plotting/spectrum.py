@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import degrees
 from textwrap import shorten
 
 import numpy as np
@@ -97,7 +98,10 @@ def _within(each: Spectrum) -> Reals:
 def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float], top: float, *, every: bool) -> None:
     """Shade between two fractiles, up to the top where the upper one overturns; `every` motion too, faintly."""
     lower, upper = (np.minimum(each.fractile(q), top) * _within(each) for q in bounds)
-    axes.fill_between(each.periods, lower, upper, color=style.distinct(k)["color"], alpha=0.15, linewidth=0)
+    colour = style.distinct(k)["color"]
+    axes.fill_between(each.periods, lower, upper, color=colour, alpha=0.15, linewidth=0)
+    for edge in (lower, upper):  # up to where it overturns
+        axes.plot(each.periods, np.where(edge < top, edge, np.nan), color=colour, linewidth=style.MEDIUM, zorder=2.2)
     if every:
         curves = np.where(np.isfinite(each.peak_ratio), each.peak_ratio, np.nan) * _within(each)
         clear = min(1.0, CLEAR / len(curves))  # of many the fractiles must still be seen
@@ -172,7 +176,7 @@ def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None) -> 
     for k, each in enumerate(spectra):
         alpha = each.shape.slenderness
         name = style.plain(shorten(each.shape.structure.name, NAME, placeholder=" ..."))
-        label = rf"blocks, $\alpha$ = {alpha:g} rad" if alpha is not None else name
+        label = rf"blocks, $\alpha$ = {alpha:g} rad = {degrees(alpha):.3g}°" if alpha is not None else name
         handles.append(Line2D([], [], label=label, **style.distinct(k)))
     if any(each.given is not None for each in spectra):
         handles.append(Line2D([], [], label="as given", color=style.INK, **style.STAR))

@@ -5,28 +5,30 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 from math import degrees, floor, log10
-from textwrap import fill, shorten
+from textwrap import fill
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
-from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from rocking_cli.core import Angle, Direction, Length, Line
+from rocking_cli.core import Angle, Direction, Length, Line, three_digits
 from rocking_cli.plotting import dimensions, style
+from rocking_cli.plotting.labels import EDGE, MARK, Labels, mathematics
 from rocking_cli.plotting.panels import GAP, Panel, lay_out
 from rocking_cli.studies.picture import Picture, Pin, box_around
 
 Points = NDArray[np.complex128]
 HEAD, FOOT = 0.42, 0.34  # inches above a panel for its heading, and below it for the scale
-TITLE, NOTE, ROW = 0.34, 0.13, 0.13  # inches: of the title, and of a line of notes or under a panel
+TITLE, NOTE, ROW = 0.34, 0.13, 0.17  # inches: of the title, and of a line of notes or under a panel
 NARROWEST = 0.95  # inches: a slender structure still needs room for its words
+PIN = 0.035  # inches: radius of a hinge
 EARTH = 0.08  # inches: depth of the hatches of the ground
 LONGEST_BAR = 0.8  # inches: of the scale
-WORDS = 46  # characters of a line under a panel
+WORDS = 40  # characters of a line under a panel
 NOTES = 125  # characters of a line of notes
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
@@ -51,7 +53,7 @@ def draw_structure(picture: Picture, title: str, ratio: float = 1.0) -> Figure:
     low, high = _box_at_rest(picture)
     shown = [each for each in picture.sketch.lengths if each.direction is not Direction.NEGATIVE]
     rows, inside = dimensions.in_rows(shown, low, high)
-    rest = Panel(low, high, tuple(dimensions.room(rows, side) for side in dimensions.SIDES))  # type: ignore[arg-type]
+    rest = Panel(low, high, dimensions.room(rows, low, high))
     sides = {direction: _displaced_panel(picture, turn) for direction, turn in turned.items()}
     words = {direction: _words(picture, direction) for direction in Direction}
     foot = FOOT + ROW * max(text.count("\n") + bool(text) for text in words.values())
@@ -64,7 +66,7 @@ def draw_structure(picture: Picture, title: str, ratio: float = 1.0) -> Figure:
         panel.corner += 1j * below
     width, height = figure.get_size_inches()
     for text, x, y, place, size in (
-        (shorten(title, style.LONGEST, placeholder=" ..."), GAP, height - 0.09, "top", style.TITLE),
+        (style.fitted(title), GAP, height - 0.09, "top", style.TITLE),
         (notes, GAP, 0.07, "bottom", style.SMALL),
     ):
         figure.text(x / width, y / height, text, va=place, fontsize=size, color=style.INK, parse_math=False)
@@ -72,29 +74,37 @@ def draw_structure(picture: Picture, title: str, ratio: float = 1.0) -> Figure:
     axes = rest.axes(figure)
     axes.set_title("at rest", fontsize=style.LABEL, color=style.INK)
     draw_ground(axes, picture, rest)
+    labels = _labels(axes, picture, rest, 0.0)
     _draw_parts(axes, picture, 0.0)
-    _draw_lines(axes, picture)
-    dimensions.draw_outside(axes, rows, rest, low, high)
+    _draw_lines(axes, picture, labels)
+    pins = _draw_pins(axes, picture, 0.0, _at_rest(picture), rest, labels)
+    dimensions.draw_outside(axes, rows, rest, low, high, labels)
+    _draw_letters(picture, 0.0, pins, labels)
     angles = [each for each in picture.sketch.angles if each.direction is not Direction.NEGATIVE]
-    dimensions.draw_inside(axes, inside, angles, rest)
-    _draw_pins(axes, picture, 0.0, _at_rest(picture), rest)
+    dimensions.draw_inside(axes, inside, angles, rest, labels)
     draw_scale(axes, rest)
     for direction, panel in sides.items():
         axes = panel.axes(figure)
         phi = abs(turned[direction])
         times = "" if ratio == 1 else f"{ratio:g} "
         axes.set_title(
-            f"{direction.label} ({SENSE[direction]})\nφ = {times}φ_cr = {phi:.4g} rad = {degrees(phi):.4g}°",
+            f"{direction.label} ({SENSE[direction]})\n"
+            rf"$\phi$ = {times}$\phi_{{cr}}$ = {phi:.3g} rad = {three_digits(degrees(phi))}°",
             fontsize=style.LABEL, color=style.INK,
         )  # fmt: skip
         draw_ground(axes, picture, panel)
         _draw_outline_at_rest(axes, picture)
         _draw_parts(axes, picture, turned[direction])
-        _draw_pins(axes, picture, turned[direction], [pin for pin in picture.pins if pin.direction is direction], panel)
+        labels = _labels(axes, picture, panel, turned[direction])
+        own = [pin for pin in picture.pins if pin.direction is direction]
+        pins = _draw_pins(axes, picture, turned[direction], own, panel, labels)
+        _draw_letters(picture, turned[direction], pins, labels)
         draw_scale(axes, panel)
-        axes.annotate(
-            words[direction], (0.5, 0.0), (0, -72 * FOOT), xycoords="axes fraction", textcoords="offset points",
-            ha="center", va="top", fontsize=style.SMALL, color=style.MEASURE, annotation_clip=False, parse_math=False,
+        half = max((style.size_of(line, style.LABEL).real / 2 for line in words[direction].split("\n")), default=0.0)
+        middle = min(max(panel.corner.real + panel.inches.real / 2, GAP + half), style.WIDTH - GAP - half)
+        figure.text(
+            middle / width, (panel.corner.imag - FOOT) / height, words[direction],
+            ha="center", va="top", fontsize=style.LABEL, color=style.MEASURE,
         )  # fmt: skip
     return figure
 
@@ -133,9 +143,17 @@ def _words(picture: Picture, direction: Direction) -> str:
     every: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
     if not any(each.direction is Direction.NEGATIVE for each in every):
         return ""
-    return fill(
-        ", ".join(each.text.replace(" ", "\N{NO-BREAK SPACE}") for each in every if each.direction is direction), WORDS
-    )
+    lines: list[str] = []
+    wide = 0
+    for each in every:
+        if each.direction is direction:
+            wide += len(each.text) + 2
+            if not lines or wide > WORDS:
+                lines.append(mathematics(each))
+                wide = len(each.text)
+            else:
+                lines[-1] += ", " + mathematics(each)
+    return "\n".join(lines)
 
 
 def _of(line: Line) -> str:
@@ -143,28 +161,27 @@ def _of(line: Line) -> str:
 
 
 def _at_rest(picture: Picture) -> list[Pin]:
-    """Hinges to mark at rest: those of the positive direction, and of the other what is called otherwise."""
-    if not picture.sketch.hinges:  # found, without letters
-        return list(picture.pins)
+    """Hinges to mark at rest: of a linkage those of the positive direction, else all."""
     positive = [pin for pin in picture.pins if pin.direction is Direction.POSITIVE]
-    letters = {pin.letter for pin in positive}
-    return positive + [pin for pin in picture.pins if pin not in positive and pin.letter not in letters]
+    return positive if picture.sketch.hinges and len(positive) > 1 else list(picture.pins)
 
 
-def colour(picture: Picture, k: int) -> str:
-    """The colour of a part: that of its body."""
-    return style.BODIES[picture.parts[k].body % len(style.BODIES)]
+def colour(picture: Picture, k: int, direction: Direction = Direction.POSITIVE) -> str:
+    """The colour of a part while it rocks in a direction: that of its link."""
+    link = picture.links[direction][k]
+    return style.RESTING if link is None else style.BODIES[link % len(style.BODIES)]
 
 
 def _draw_parts(axes: Axes, picture: Picture, rotation: float) -> None:
     outlines, _ = picture.placed(rotation)
     centroids = picture.at(np.array([rotation]))[0][:, 0]
+    direction = Direction.NEGATIVE if rotation < 0 else Direction.POSITIVE
     for k, (part, polygons) in enumerate(zip(picture.parts, outlines, strict=True)):
         dashes = (0, (3, 2)) if part.assumed else "-"
         for each in polygons:
             axes.add_patch(
                 Polygon(
-                    _xy(each), closed=True, facecolor=colour(picture, k), edgecolor=style.INK,
+                    _xy(each), closed=True, facecolor=colour(picture, k, direction), edgecolor=style.INK,
                     linewidth=style.MEDIUM, linestyle=dashes, joinstyle="round",
                 )
             )  # fmt: skip
@@ -182,41 +199,69 @@ def _draw_outline_at_rest(axes: Axes, picture: Picture) -> None:
             )
 
 
-def _draw_pins(axes: Axes, picture: Picture, rotation: float, pins: Sequence[Pin], panel: Panel) -> None:
-    """Mark hinges and pivots with their letters, joined by a line where all have one."""
+def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labels:
+    """The words of a panel, which keep off the structure's edges and centroids, and off the ground."""
+    labels = Labels(axes, panel)
+    outlines, _ = picture.placed(rotation)
+    for part, polygons in zip(picture.parts, outlines, strict=True):
+        for each in [*polygons, *part.outlines]:
+            labels.keep_off([*each, each[0]], EDGE)
+    for centroid in picture.at(np.array([rotation]))[0][:, 0]:
+        labels.keep_off([centroid], MARK)
+    for line in picture.ground:
+        labels.keep_off(line, EDGE)
+        labels.keep_off(np.concatenate([line[:1], _hatches(line, panel).ravel()]), EDGE / 2)
+    return labels
+
+
+def _draw_pins(
+    axes: Axes, picture: Picture, rotation: float, pins: Sequence[Pin], panel: Panel, labels: Labels
+) -> Sequence[Pin]:
+    """Mark hinges and pivots, joined by a line where all have a letter."""
     if not pins:
-        return
+        return pins
     _, every = picture.placed(rotation)
     z = np.array([every[picture.pins.index(pin)] for pin in pins])
     centroids = picture.at(np.array([rotation]))[0][:, 0]
     for pin, place in zip(pins, z, strict=True):
+        labels.keep_off([place], MARK)
         if picture.parts[pin.part].assumed:  # its shape is not known: show what carries it
             arm = np.array([place, centroids[pin.part]])
             axes.plot(arm.real, arm.imag, color=style.INK, linewidth=style.THIN, zorder=3)
+            labels.keep_off(arm, EDGE)
         if pin.slide:
             guide = place + pin.slide / abs(pin.slide) * np.array([-0.22, 0.22]) / panel.scale
             axes.plot(guide.real, guide.imag, color=style.EARTH, linewidth=style.BOLD, zorder=3)
+            labels.keep_off(guide)
     if len(pins) > 2 and all(pin.letter for pin in pins):
         axes.plot(z.real, z.imag, color=style.INK, linewidth=style.THIN, linestyle=(0, (6, 2, 1, 2)), zorder=3)
+        labels.keep_off(z)
     axes.plot(
         z.real, z.imag, linestyle="none", marker="o", markersize=4.5, zorder=5,
         color="white", markeredgecolor=style.INK, markeredgewidth=style.MEDIUM,
     )  # fmt: skip
+    return pins
+
+
+def _draw_letters(picture: Picture, rotation: float, pins: Sequence[Pin], labels: Labels) -> None:
+    """Name the hinges, each where its letter is outside of the structure if there is room."""
+    _, every = picture.placed(rotation)
     middle = (picture.extent[0] + picture.extent[1]) / 2
-    for pin, place in zip(pins, z, strict=True):
-        out = pin.point - middle
-        side = complex(np.sign(round(out.real, 9)) or 1.0, 0.6)
-        axes.annotate(
-            pin.letter, (place.real, place.imag), (8 * side.real, 8 * side.imag), textcoords="offset points",
-            ha="center", va="center", fontsize=style.LABEL, fontweight="bold", color=style.INK, zorder=7,
-            annotation_clip=False, path_effects=[withStroke(linewidth=2, foreground="white")],
-        )  # fmt: skip
+    look: dict[str, Any] = {"fontsize": style.LABEL, "fontweight": "bold", "color": style.INK, "zorder": 7}
+    for pin in pins:
+        if pin.letter:
+            place = complex(every[picture.pins.index(pin)])
+            side = complex(np.sign(round((pin.point - middle).real, 9)) or 1.0, 0.6)
+            letter = style.plain(pin.letter)
+            size = style.size_of(letter, style.LABEL, "bold")
+            labels.write(letter, labels.around(place, side, PIN, size, turning=0.6), **look)
 
 
-def _draw_lines(axes: Axes, picture: Picture) -> None:
+def _draw_lines(axes: Axes, picture: Picture, labels: Labels) -> None:
     for each in _lines(picture):
         z = np.asarray(each.points)
         axes.plot(z.real, z.imag, zorder=3, **style.THRUST)
+        labels.keep_off(z)
 
 
 def _lines(picture: Picture) -> list[Line]:
@@ -228,13 +273,19 @@ def draw_ground(axes: Axes, picture: Picture, panel: Panel) -> None:
     """Draw the ground, hatched."""
     for line in picture.ground:
         axes.plot(line.real, line.imag, color=style.EARTH, linewidth=style.BOLD, zorder=1)
-        ticks: list[Points] = []
-        for start, end in pairwise(line):
-            along = (end - start) / abs(end - start)
-            count = max(1, int(abs(end - start) * panel.scale / EARTH))
-            at = start + (end - start) * (np.arange(count) + 0.5) / count
-            ticks += [np.array([z, z + EARTH / panel.scale * along * np.exp(-2.4j)]) for z in at]
-        axes.add_collection(LineCollection([_xy(each) for each in ticks], colors=style.EARTH, linewidths=style.THIN))
+        ticks = [_xy(each) for each in _hatches(line, panel)]
+        axes.add_collection(LineCollection(ticks, colors=style.EARTH, linewidths=style.THIN))
+
+
+def _hatches(line: Points, panel: Panel) -> Points:
+    """The hatches under a line of the ground, shape (n, 2): from where to where."""
+    ticks: list[Points] = []
+    for start, end in pairwise(line):
+        along = (end - start) / abs(end - start)
+        count = max(1, int(abs(end - start) * panel.scale / EARTH))
+        at = start + (end - start) * (np.arange(count) + 0.5) / count
+        ticks += [np.array([z, z + EARTH / panel.scale * along * np.exp(-2.4j)]) for z in at]
+    return np.array(ticks)
 
 
 def draw_scale(axes: Axes, panel: Panel) -> None:

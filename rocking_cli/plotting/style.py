@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from textwrap import shorten
 from typing import IO, Any
 from warnings import catch_warnings, filterwarnings
 
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -18,13 +21,15 @@ from rocking_cli.text import printable
 
 WIDTH = 7.2  # inches: the width of a page of text
 DPI = 150
-LONGEST = 95  # characters of a heading
+MARGIN = 0.9  # inches at the sides of a panel, at most
+LONGEST = 120  # characters of a heading
 INK, FAINT, SHADE, GRID = "#222222", "#9a9a9a", "#eeeeee", "#dddddd"
 TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
 HAIR, THIN, CURVE, MEDIUM, BOLD = 0.4, 0.6, 0.7, 1.0, 1.6  # weights of line [pt]
 LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 # A structure: bodies apart by darkness too, marks in ink, what is measured in blue, thrust in a dash of its own.
 BODIES = ("#dfe6ec", "#f1e2c6", "#c2cdd8")
+RESTING = "#f4f3f0"  # what stays at rest while the links of a structure move
 EARTH, MEASURE = "#8a7f70", "#2b5d86"
 CURSOR = "#c4371a"
 TRACE: dict[str, Any] = {"color": INK, "linestyle": "-", "linewidth": 0.9}
@@ -95,10 +100,35 @@ def new_figure(height: float) -> Figure:
     return Figure(figsize=(WIDTH, height), dpi=DPI, layout="constrained")
 
 
+def size_of(text: str, points: float, weight: str = "normal") -> complex:
+    """Width and height of words of a size of type [inches]; mathematics stands between dollars, a dollar is escaped."""
+    text = printable(text)  # as it will be written
+    math = text.count("$") > text.count(r"\$")
+    with catch_warnings():
+        filterwarnings("ignore", "Glyph .* missing from", UserWarning)
+        width, height, _ = _measure().get_text_width_height_descent(
+            text if math else text.replace(r"\$", "$"), FontProperties(size=points, weight=weight), math
+        )
+    return complex(width, height) / DPI
+
+
+@cache
+def _measure() -> Any:
+    return RendererAgg(1, 1, DPI)  # type: ignore[no-untyped-call]
+
+
+def fitted(text: str, width: float = WIDTH - 0.3, points: float = TITLE) -> str:
+    """As many words of a text as there is room for [inches], without mathematics."""
+    for most in range(LONGEST, 10, -5):
+        short = shorten(text, most, placeholder=" ...")
+        if size_of(plain(short), points).real <= width:
+            break
+    return short
+
+
 def heading(axes: Axes, text: str) -> None:
     """The title of a picture, above its first panel; a $ in a name is a $."""
-    short = shorten(text, LONGEST, placeholder=" ...")
-    axes.set_title(short, loc="left", fontsize=TITLE, color=INK, parse_math=False)
+    axes.set_title(fitted(text, WIDTH - MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
 def plain(text: str) -> str:
@@ -138,6 +168,12 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
         parse_math=False,  # a $ in a name is a $
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
     )
+
+
+def make_room(axes: Axes, share: float = 0.2) -> None:
+    """Raise the upper end of a panel by a share of its height, so that a note is on no peak."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + share * (high - low))
 
 
 def plain_numbers(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:

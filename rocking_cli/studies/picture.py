@@ -136,6 +136,31 @@ class Picture:
         outlines = [[carried(k, each) for each in part.outlines] for k, part in enumerate(self.parts)]
         return outlines, np.array([complex(carried(pin.part, np.array(pin.point))) for pin in self.pins])
 
+    @cached_property
+    def links(self) -> Mapping[Direction, tuple[int | None, ...]]:
+        """The link of a direction that each part belongs to, counted along its hinges; None of what stays at rest."""
+        return {direction: self._links(direction) for direction in Direction}
+
+    def _links(self, direction: Direction) -> tuple[int | None, ...]:
+        motions = self.mechanism.motion(np.array([0.5 * self.phi_cr[direction]]), direction)
+        size = abs(self.extent[1] - self.extent[0])
+        # A link is what turns as fast, and would move one and the same point as fast.
+        speeds = [np.array([size * motion.dpsi[0], motion.carry(0j)[1][0]]) for motion in motions]
+        along = [name for hinge in self.sketch.hinges.get(direction, ()) for name in hinge.bodies]
+        bodies = {part.name: part.body for part in self.parts}
+        found: list[Points] = []
+        of_body: dict[int, int | None] = {}
+        for body in [*(bodies[name] for name in along if name in bodies), *range(len(speeds))]:
+            here = speeds[body]
+            if np.abs(here).max() <= SAME * size:
+                of_body[body] = None
+                continue
+            alike = [k for k, each in enumerate(found) if np.abs(here - each).max() <= SAME * size]
+            if not alike:
+                found.append(here)
+            of_body[body] = alike[0] if alike else len(found) - 1
+        return tuple(of_body[part.body] for part in self.parts)
+
     @property
     def furthest(self) -> float:
         """How far it can be displaced in either direction, as a multiple of phi_cr."""

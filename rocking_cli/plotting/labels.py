@@ -1,0 +1,136 @@
+"""Where the words of a drawing go: beside what they name, off the lines, and within their panel."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
+
+from rocking_cli.core import Angle, Length
+from rocking_cli.plotting import style
+from rocking_cli.plotting.panels import Panel
+
+Points = NDArray[np.complex128]
+STEP = 0.025  # inches between the points of a line that words keep off
+GAPS = (0.03, 0.1, 0.18, 0.28, 0.45)  # inches between words and a line
+MOST = 10_000  # points of a line, however far it goes beyond the picture
+CLEAR = 0.02  # inches around words
+AWAY = 8.0  # what an inch between words and what they name costs, in points of a line that they would lie on
+OUTSIDE = 1000.0  # what it an inch out of the panel costs
+EDGE, LINE, MARK, WORD = 1.0, 2.0, 6.0, 30.0  # what it costs to lie on a point of each
+SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉₊₋", "0123456789+-")
+
+
+def mathematics(each: Length | Angle) -> str:
+    """Symbol, number and unit with the subscript as a subscript; what is no symbol stays a word."""
+    number = style.plain(each.text.removeprefix(each.symbol))
+    match = re.fullmatch(r"(\d*[^\W\d_]'?)(?:_(\w+)|([₀-₉₊₋]+))?", each.symbol)
+    if match is None:
+        return style.plain(each.symbol) + number
+    letter, word, digits = match.groups()
+    below = rf"_{{\mathrm{{{word}}}}}" if word else f"_{{{digits.translate(SUBSCRIPTS)}}}" if digits else ""
+    return f"${letter}{below}$" + number
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where words could go: their middle [inches], how far they are turned [degrees], and what is against it."""
+
+    middle: complex
+    turned: float
+    cost: float
+
+
+class Labels:
+    """The words of one panel, each where it covers least of all that is drawn there."""
+
+    def __init__(self, axes: Axes, panel: Panel) -> None:
+        self._axes, self._scale = axes, panel.scale
+        (left, right), (below, above) = axes.get_xlim(), axes.get_ylim()
+        self._low, self._high = complex(left, below) * self._scale, complex(right, above) * self._scale
+        self._points: list[Points] = []
+        self._costs: list[NDArray[np.float64]] = []
+
+    def keep_off(self, z: Iterable[complex] | Points, cost: float = LINE) -> None:
+        """Take note of a line through points [m], or of a single one."""
+        ends = np.asarray(z if isinstance(z, np.ndarray) else list(z), np.complex128) * self._scale
+        reach = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(ends)))])
+        count = min(int(reach[-1] / STEP) + 1 + (reach[-1] > 0), MOST)
+        along = np.linspace(0.0, reach[-1], count)
+        self._note(np.interp(along, reach, ends.real) + 1j * np.interp(along, reach, ends.imag), cost)
+
+    def _note(self, points: Points, cost: float) -> None:
+        self._points.append(points)
+        self._costs.append(np.full(points.size, cost))
+
+    def write(self, text: str, places: Iterable[Place], **look: Any) -> None:
+        """Write words at the best of some places."""
+        points, costs = np.concatenate([[], *self._points]), np.concatenate([[], *self._costs])
+        size = style.size_of(text, float(look["fontsize"]), str(look.get("fontweight", "normal")))
+
+        def against(place: Place) -> float:
+            turn = np.exp(1j * np.radians(place.turned))
+            local = (points - place.middle) / turn
+            hit = (np.abs(local.real) < size.real / 2 + CLEAR) & (np.abs(local.imag) < size.imag / 2 + CLEAR)
+            # Half of the level box around the turned words.
+            half = complex(abs(turn.real), abs(turn.imag)) * size.real / 2
+            half += complex(abs(turn.imag), abs(turn.real)) * size.imag / 2
+            above, below = place.middle + half - self._high, self._low - (place.middle - half)
+            over = max(0.0, above.real, below.real) + max(0.0, above.imag, below.imag)
+            return float(costs[hit].sum()) + place.cost + OUTSIDE * over
+
+        best = min(places, key=against)
+        self.put(text, best, size, **look)
+
+    def put(self, text: str, place: Place, size: complex | None = None, **look: Any) -> None:
+        """Write words at a place, for others to keep off."""
+        size = style.size_of(text, float(look["fontsize"])) if size is None else size
+        at = place.middle / self._scale
+        self._axes.annotate(
+            text, (at.real, at.imag), ha="center", va="center", rotation=place.turned, rotation_mode="anchor",
+            annotation_clip=False, path_effects=[withStroke(linewidth=2.5, foreground="white")], **look,
+        )  # fmt: skip
+        across = np.linspace(-0.5, 0.5, 2 + int(size.real / STEP)) * size.real
+        up = np.linspace(-0.5, 0.5, 5) * size.imag
+        turn = np.exp(1j * np.radians(place.turned))
+        self._note((place.middle + turn * (across[:, None] + 1j * up)).ravel(), WORD)
+
+    def along(self, start: complex, end: complex, size: complex) -> Iterator[Place]:
+        """Places beside a line [m] for words of a size: along it where they fit, else to its sides."""
+        start, end = start * self._scale, end * self._scale
+        length = abs(end - start)
+        unit = (end - start) / length if length > 0 else 1 + 0j
+        turned = (float(np.degrees(np.angle(unit))) + 90 + 1e-6) % 180 - 90  # read from below or from the right
+        for share in np.linspace(0.15, 0.85, 15):
+            at, off_middle = start + share * (end - start), 3 * abs(share - 0.5)
+            for gap in GAPS:
+                if min(share, 1 - share) * 2 * length > size.real:
+                    for side in (1j, -1j):
+                        yield Place(at + side * unit * (gap + size.imag / 2), turned, off_middle + AWAY * gap)
+                for side in (1.0, -1.0):
+                    reach = gap + size.real / 2 + abs(unit.real) * size.imag / 2
+                    yield Place(at + side * reach, 0.0, 1.5 + off_middle + AWAY * gap)
+                    reach = gap + size.imag / 2 + abs(unit.imag) * size.real / 2
+                    yield Place(at + 1j * side * reach, 0.0, 2.0 + off_middle + AWAY * gap)
+        for tip, out in ((start, -unit), (end, unit)):
+            for gap in GAPS:
+                reach = gap + abs(out.real) * size.real / 2 + abs(out.imag) * size.imag / 2
+                yield Place(tip + out * reach, 0.0, 8.0 + AWAY * gap)
+
+    def around(
+        self, apex: complex, towards: complex, radius: float, size: complex, turning: float = 4.0
+    ) -> Iterator[Place]:
+        """Places around a point [m] for words of a size, beyond a radius [inches], best in one direction."""
+        apex *= self._scale
+        for turn in np.linspace(-np.pi, np.pi, 25)[1:]:
+            way = towards / abs(towards) * np.exp(1j * turn)
+            for gap in (0.03, 0.08, 0.15, 0.25, 0.4):
+                # The nearest edge of the words is so far from the point.
+                reach = min(size.real / 2 / max(abs(way.real), 1e-9), size.imag / 2 / max(abs(way.imag), 1e-9))
+                yield Place(apex + (radius + gap + reach) * way, 0.0, turning * abs(float(turn)) + AWAY * gap)
