@@ -96,6 +96,13 @@ class Carrier:
             )
         return Spot(body, point)
 
+    def foot(self, name: str | None, loc: Loc) -> Spot:
+        """The point of a body under its centroid at the height of its lowest corner. Raises `Refused`."""
+        body = self.body(name, loc)
+        centroid = self.bodies[body].centroid
+        lowest = min((float(np.asarray(shape).imag.min()) for shape in self.outlines.get(body, ())), default=0.0)
+        return Spot(body, complex(centroid.real, lowest))
+
     def count(self, body: str, *, each: bool) -> int:
         """How many a thing on a body stands for."""
         return self.alike.get(body, 1) if each else 1

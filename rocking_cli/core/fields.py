@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
@@ -99,6 +100,10 @@ class Described(BaseModel):
     """What a user describes by fields: unknown ones are refused, and one that has a unit takes texts with units."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
+        """What was given; the rest is as it is by default."""
+        return ((key, getattr(self, key)) for key in type(self).model_fields if key in self.model_fields_set)
 
     @field_validator("*", mode="before")
     @classmethod

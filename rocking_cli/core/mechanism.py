@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from inspect import isfunction
 from math import sqrt
@@ -19,6 +19,7 @@ from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_er
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
+from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.loads import Load
 from rocking_cli.core.restitution import kinematic_restitution
@@ -105,6 +106,8 @@ class Mechanism(Described, ABC):
     loads: list[Load] | None = Field(None, max_length=1000, description="masses and forces it carries; see Loads")
     ties: list[Tie] | None = Field(None, max_length=1000, description="ties, tendons and springs; see Ties")
 
+    interlock: Interlock | None = Field(None, description="friction of walls that cross it; see Interlock")
+
     @model_validator(mode="before")
     @classmethod
     def _not_yet(cls, data: Any) -> Any:
@@ -156,10 +159,6 @@ class Mechanism(Described, ABC):
         kept = {key: getattr(self, key) for key in self.model_fields_set}
         return type(self).from_fields({**kept, **(update or {})})
 
-    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """What was given; the rest is as it is by default."""
-        return ((key, getattr(self, key)) for key in type(self).model_fields if key in self.model_fields_set)
-
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any]) -> Self:
         """The mechanism with these fields.
@@ -184,10 +183,10 @@ class Mechanism(Described, ABC):
             self._check_one_sided()
             self._check_restitution()
             self._mass_factor  # noqa: B018 - a density without a volume is refused here
-            if not (self.loads or self.ties):
+            if not self._is_laden:
                 return
             if not self.has_mass:
-                key = "loads" if self.loads else "ties"
+                key = "loads" if self.loads else "ties" if self.ties else "interlock"
                 raise Refused((), key, "the structure has no masses: give density and depth, or its mass")
             limits = {direction: self.limit(direction) for direction in self.directions}
             follow = {direction: partial(self.followed, direction=direction) for direction in Direction}
@@ -269,6 +268,8 @@ class Mechanism(Described, ABC):
         for key in ("loads", "ties"):
             if things := getattr(self, key):
                 changed[key] = [thing.enlarged(factor) for thing in things]
+        if self.interlock is not None:
+            changed["interlock"] = self.interlock.enlarged(factor)
         return self.model_copy(update=changed)
 
     @abstractmethod
@@ -324,10 +325,23 @@ class Mechanism(Described, ABC):
     @cached_property
     def _hung(self) -> Sequence[tuple[Loc, Attached]]:
         """What hangs on it, each with its place among the fields."""
-        if not (self.loads or self.ties):
+        if not self._is_laden:
             return ()
         carrier = Carrier.of(self.bodies(), self.sketch(), self.alike())
-        return tuple(attach(carrier, self.loads or [], self.ties or []))
+        found = list(attach(carrier, self.loads or [], self.ties or []))
+        if self.interlock is not None:
+            density = self.interlock.density or self.density
+            if density is None:
+                raise Refused(
+                    ("interlock",), "density", "is missing: the weight of the crossing walls is their friction"
+                )
+            foot = carrier.foot(self.interlock.body, ("interlock",))
+            found.append((("interlock",), self.interlock.attached(foot, density, self.gravity)))
+        return found
+
+    @property
+    def _is_laden(self) -> bool:
+        return bool(self.loads or self.ties or self.interlock)
 
     @property
     def attached(self) -> Sequence[Attached]:

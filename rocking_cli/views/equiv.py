@@ -12,6 +12,7 @@ from rocking_cli.core.equivalence import AGREEMENT, alike
 from rocking_cli.core.restitution import why_none
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.views.hung import hung_data, hung_in_words
 from rocking_cli.views.parameters import PARAMETERS, values
 from rocking_cli.views.restitution import restitution_source
 from rocking_cli.views.view import Table, View, heading, number
@@ -26,6 +27,7 @@ def view(structure: Prepared) -> View:
         "gravity": mechanism.gravity,
         "symmetric": _symmetric(structure),
         "one_sided": mechanism.one_sided,
+        "hung": hung_data(mechanism),
         "per_unit_mass": not mechanism.has_mass,
         "restitution": restitution_source(mechanism),
         "caution": mechanism.caution or None,
@@ -55,7 +57,7 @@ def view(structure: Prepared) -> View:
             "periods and overturning times, `rocking respond` motions."
         )
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
-    said += list(_hung(mechanism))
+    said += [*hung_in_words(mechanism), *_supported(mechanism)]
     said += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(data, [table, *said])
 
@@ -127,11 +129,8 @@ def _sentence(side: Side) -> str:
     )
 
 
-def _hung(mechanism: Mechanism) -> Iterator[str]:
-    """Sentences on what hangs on a structure and holds it."""
-    if mechanism.attached:
-        names = ", ".join(dict.fromkeys(each.name for each in mechanism.attached))
-        yield f"With {names}."
+def _supported(mechanism: Mechanism) -> Iterator[str]:
+    """A sentence on what it leans on, if it does."""
     if mechanism.one_sided is not None:
         r = mechanism.eta(mechanism.directions[0])
         how = "as given" if mechanism.rebound is not None else "by Housner's impacts in sequence"

@@ -1,0 +1,60 @@
+"""The friction of crossing walls, which hold a facade back by the courses they share with it."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from rocking_cli.core.attached import ConstantForce, Spot
+from rocking_cli.core.fields import Described, Name, length, quantity
+
+NAME = "interlock"
+SHARE = 0.4  # of the sliding force of all courses: the code's, for blocks that are laid with care
+ARM = 1 / 3  # of the height: where the friction of courses under their own weight acts
+
+
+class Interlock(Described):
+    """Friction between the courses of a facade and of the walls that cross it [Circolare 7/2019, C8.7.1.2].
+
+    F = 0.4 n (n + 1) (h_b/l) mu l^2 t_s w of each crossing wall, at a third of the height above the foot: constant,
+    against the motion in either direction, and without inertia. What the crossing walls carry themselves is left out.
+    """
+
+    courses: int = quantity("number of courses in the height", symbol="n", example=40, ge=1, le=10_000)
+    overlap: float = length("length by which blocks overlap", symbol="l", example=0.2)
+    thickness: float = length("thickness of a crossing wall", symbol="t_s", example=0.5)
+    friction: float = quantity("coefficient of friction", symbol="mu", example=0.577, default=0.577, gt=0, le=2)
+    walls: int = quantity("number of crossing walls", example=2, default=1, ge=1, le=100)
+    height: float = length("height of the courses above the foot", symbol="h", example=8.0)
+    density: float | None = quantity(
+        "density of the crossing walls; left out, that of the structure", unit="kg/m3", default=None, gt=0, le=1e6
+    )
+    body: Name | None = Field(None, description="the body they hold, by its name in the picture; of one, left out")
+
+    def force(self, density: float, gravity: float) -> float:
+        """The friction of one crossing wall [N].
+
+        Parameters
+        ----------
+        density : float
+            Of the crossing walls [kg/m3].
+        gravity : float
+            [m/s2].
+
+        Examples
+        --------
+        >>> walls = Interlock(courses=40, overlap=0.2, thickness=0.5, walls=2, height=8.0)
+        >>> round(walls.force(18000 / 9.80665, 9.80665))
+        136264
+        """
+        n, course = self.courses, self.height / self.courses
+        weight = density * gravity  # w, per volume
+        return SHARE * n * (n + 1) * (course / self.overlap) * self.friction * self.overlap**2 * self.thickness * weight
+
+    def attached(self, foot: Spot, density: float, gravity: float) -> ConstantForce:
+        """What the equation of motion sees of all of them, on a body whose foot is at a point."""
+        spot = Spot(foot.body, foot.at + 1j * ARM * self.height)
+        return ConstantForce(NAME, spot, complex(-self.walls * self.force(density, gravity)), friction=True)
+
+    def enlarged(self, factor: float) -> Interlock:
+        """The same courses of a structure of another size."""
+        return self.model_copy(update={key: factor * getattr(self, key) for key in ("overlap", "thickness", "height")})
