@@ -8,6 +8,8 @@ import click
 
 from rocking_cli.cli import complete, options, terminal
 
+PARTS = ("loads", "ties", "interlock")  # what hangs on any mechanism, and has fields of its own
+
 if TYPE_CHECKING:
     from rocking_cli.core.registry import Registry
 
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 @options.as_json
 def command(name: str | None, file: str | None, checked: bool, as_json: bool) -> None:
     """List the mechanisms that are installed and the package each comes from; with NAME, its fields.
+
+    `loads`, `ties` and `interlock` are no mechanisms, and hang on any: with one of them as NAME, its fields.
 
     `--check` holds what a mechanism says to its bodies and their motion, prints what passes and what fails with the
     traceback of an error of its own, and ends with 3 if anything fails. FILE is a structure to check it on.
@@ -40,6 +44,10 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
         from rocking_cli.cli.mechanism_check import check
 
         check(name, file, registry, as_json)
+    elif name in PARTS and name not in registry:
+        from rocking_cli.views.mechanisms import part
+
+        terminal.show(part(str(name)), as_json=as_json)
     elif name is not None:
         from rocking_cli.views.mechanisms import view
 

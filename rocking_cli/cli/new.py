@@ -10,6 +10,7 @@ from rocking_cli.cli import complete, options, terminal
 
 STUDY = "study"
 """Not a mechanism: a study file is printed for it. A mechanism that a package calls so works, and is not printed."""
+LONG = 40  # characters of a field and its value, above which the comment stands
 UNITS = "A bare number is in the unit in brackets; 800 mm or 12 ft are read too."
 
 
@@ -88,7 +89,8 @@ def template(cls: Any) -> str:
             example = ""
         entry = f"{'' if used else '# '}{row['field']}: {example}"
         fill_in = "fill in: " if row["field"] in missing else ""
-        lines.append(f"{entry:<32}  # {fill_in}{row['description']}{symbol}{unit}{limits}")
+        comment = f"# {fill_in}{row['description']}{symbol}{unit}{limits}"
+        lines += [f"{entry:<32}  {comment}"] if len(entry) <= LONG else [comment, entry]
     if missing:
         lines.insert(2, f"# Fill in {', '.join(missing)}: the mechanism gives no example.")
     return "\n".join(lines) + "\n"
@@ -97,4 +99,6 @@ def template(cls: Any) -> str:
 def _yaml(value: Any) -> str:
     if isinstance(value, list):
         return f"[{', '.join(_yaml(item) for item in value)}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_yaml(item)}' for key, item in value.items())}}}"
     return str(value)

@@ -95,18 +95,35 @@ class Mechanism(Described, ABC):
         None, description="coefficient of restitution eta; absent: from kinematics"
     )
     density: float | None = quantity(
-        "density; with depth it gives the masses", unit="kg/m3", default=None, gt=0, le=1e6
+        "density; with depth it gives the masses", unit="kg/m3", example=1800.0, default=None, gt=0, le=1e6
     )
-    depth: float | None = quantity("size out of plane", unit="m", default=None, gt=0, le=1e6)
-    mass: float | None = quantity("mass of the whole structure", unit="kg", default=None, gt=0, le=1e15)
+    depth: float | None = quantity("size out of plane", unit="m", example=1.0, default=None, gt=0, le=1e6)
+    mass: float | None = quantity("mass of the whole structure", unit="kg", example=5000.0, default=None, gt=0, le=1e15)
     one_sided: Literal["positive", "negative"] | None = Field(
-        None, description="the only direction it rocks in, such as away from side walls that it leans on"
+        None,
+        examples=["positive"],
+        description="the only direction it rocks in, such as away from side walls that it leans on",
     )
-    rebound: float | None = quantity("rate after an impact on them over that before", default=None, ge=0, lt=1)
-    loads: list[Load] | None = Field(None, max_length=1000, description="masses and forces it carries; see Loads")
-    ties: list[Tie] | None = Field(None, max_length=1000, description="ties, tendons and springs; see Ties")
-
-    interlock: Interlock | None = Field(None, description="friction of walls that cross it; see Interlock")
+    rebound: float | None = quantity(
+        "rate after an impact on them over that before", example=0.5, default=None, ge=0, lt=1
+    )
+    loads: list[Load] | None = Field(
+        None,
+        max_length=1000,
+        examples=[[{"name": "floor", "mass": 1000.0, "at": [0.0, 2.0]}]],
+        description="masses and forces it carries; `rocking mechanisms loads` lists their fields",
+    )
+    ties: list[Tie] | None = Field(
+        None,
+        max_length=1000,
+        examples=[[{"name": "bar", "from": {"ground": [-3.0, 2.0]}, "to": {"at": [0.0, 2.0]}, "stiffness": 1e6}]],
+        description="ties, tendons and springs; `rocking mechanisms ties` lists their fields",
+    )
+    interlock: Interlock | None = Field(
+        None,
+        examples=[{"courses": 10, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 2.0}],
+        description="friction of walls that cross it; `rocking mechanisms interlock` lists its fields",
+    )
 
     @model_validator(mode="before")
     @classmethod

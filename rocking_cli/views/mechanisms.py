@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from rocking_cli.core import Mechanism
+from rocking_cli.core.interlock import Interlock
+from rocking_cli.core.loads import Load
+from rocking_cli.core.ties import Face, Place, Tie
 from rocking_cli.core.verdict import Verdict
 from rocking_cli.units import units_of
 from rocking_cli.views.view import ABSENT, Table, View
 
+COLUMNS = ["field", "symbol", "unit", "bounds", "default", "meaning"]
 BOUNDS = (
     ("gt", ">"),
     ("ge", ">="),
@@ -54,22 +59,10 @@ def view(cls: type[Mechanism], package: str) -> View:
         "caution": cls.caution or None,
         "fields": rows,
     }
-    cells = [
-        [
-            row["field"],
-            row["symbol"],
-            row["unit"],
-            row["bounds"],
-            "required" if row["required"] else ABSENT if row["default"] is None else str(row["default"]),
-            row["description"],
-        ]
-        for row in rows
-    ]
-    columns = ["field", "symbol", "unit", "bounds", "default", "meaning"]
     kinds = dict.fromkeys(tuple(row["units"]) for row in rows if len(row["units"]) > 1)
     taken = "; ".join(", ".join(units) for units in kinds)
     parts: list[Table | str] = [
-        Table(f"{cls.mechanism}: {cls.title}", columns, cells),
+        Table(f"{cls.mechanism}: {cls.title}", COLUMNS, _cells(rows)),
         f"A bare number is in the unit of its field; taken with their unit, as in 800 mm: {taken}.",
         f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'by nobody yet'}"
         + (f"\ncaution:  {cls.caution}" if cls.caution else ""),
@@ -77,7 +70,27 @@ def view(cls: type[Mechanism], package: str) -> View:
     return View(data, parts)
 
 
-def fields(cls: type[Mechanism]) -> list[dict[str, Any]]:
+PARTS: dict[str, tuple[str, dict[str, type[BaseModel]]]] = {
+    "loads": ("a load, one of the list `loads` of any mechanism", {"": Load}),
+    "ties": ("a tie, one of the list `ties` of any mechanism", {"": Tie, "from, to, path": Place, "bed": Face}),
+    "interlock": ("the friction of crossing walls, `interlock` of any mechanism", {"": Interlock}),
+}
+"""What hangs on any mechanism, by the field it is given in."""
+
+
+def part(name: str) -> View:
+    """The fields of what hangs on a mechanism: of `PARTS`."""
+    title, models = PARTS[name]
+    tables: list[Table | str] = []
+    data: dict[str, Any] = {"part": name, "title": title, "fields": {}}
+    for where, model in models.items():
+        rows = fields(model)
+        data["fields"][where or name] = rows
+        tables += [Table(f"{name}: {title}" if not where else f"{where}: {model.__doc__}", COLUMNS, _cells(rows))]
+    return View(data, tables)
+
+
+def fields(cls: type[BaseModel]) -> list[dict[str, Any]]:
     """The fields of a mechanism's file: name, unit, symbol, bounds, default, description; its own before the common."""
     found = []
     for key, info in cls.model_fields.items():
@@ -90,7 +103,7 @@ def fields(cls: type[Mechanism]) -> list[dict[str, Any]]:
         ]
         found.append(
             {
-                "field": key,
+                "field": info.alias or key,
                 "unit": extra.get("unit", ""),
                 "units": list(units_of(str(extra.get("unit", "")))),
                 "symbol": extra.get("symbol", ""),
@@ -99,10 +112,24 @@ def fields(cls: type[Mechanism]) -> list[dict[str, Any]]:
                 "default": None if info.default is PydanticUndefined else info.default,
                 "example": info.examples[0] if info.examples else None,
                 "description": info.description or "",
-                "common": key in Mechanism.model_fields,
+                "common": issubclass(cls, Mechanism) and key in Mechanism.model_fields,
             }
         )
     return sorted(found, key=lambda row: row["common"])
+
+
+def _cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
+    return [
+        [
+            row["field"],
+            row["symbol"],
+            row["unit"],
+            row["bounds"],
+            "required" if row["required"] else ABSENT if row["default"] is None else str(row["default"]),
+            row["description"],
+        ]
+        for row in rows
+    ]
 
 
 def checked(name: str, package: str, file: str | None, verdicts: Sequence[Verdict]) -> View:
