@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import sqrt
 from typing import Literal
@@ -31,7 +31,6 @@ MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
 FALLEN = 1e6  # rad: no acceleration turns a linear block back from there; without weight one might, beyond all meaning
 ALIKE = 1e-9  # of the largest: tables of two directions that differ by rounding alone
-NOT_HELD = np.zeros((0, 2, 5))
 # Columns of `numbers`: the kernel's own names, which numba would have to be loaded for.
 LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED = range(12)
 COLUMNS = 12
@@ -50,8 +49,10 @@ class Model:
         What to call the structure.
     phi_cr : tuple of float
         Critical rotation in the positive and the negative direction [rad], or the limit where there is none.
-    numbers, forces, angles, certain, held : ndarray
-        See `rocking_cli.dynamics.kernels.Deck`; `held` has no rows where all forces scale with g.
+    numbers, forces, angles, certain : ndarray
+        See `rocking_cli.dynamics.kernels.Deck`.
+    held : ndarray, shape (cells, 2, 5)
+        The part of the first force that does not scale with g, see `Table`; of no rows where there is none.
     ends_at_limit : tuple of bool
         Whether a direction has no critical rotation: `phi_cr` then is the kinematic limit, the only end it has.
     one_sided : Direction, optional
@@ -72,8 +73,8 @@ class Model:
     forces: Reals
     angles: Reals
     certain: Reals
-    held: Reals
     tables: tuple[Table, Table] | None = None
+    held: Reals = field(default_factory=lambda: np.zeros((0, 2, 5)))
     ends_at_limit: tuple[bool, bool] = (False, False)
     one_sided: Direction | None = None
     uplift_error: float = 0.0
@@ -197,12 +198,13 @@ def _nonlinear(label: str, mechanism: Mechanism, statics: tuple[Statics, Statics
         np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
     )
     tied = any(table.held.size for table in tables)
-    held = np.stack([_rows(table.held, len(table.forces)) for table in tables], axis=1) if tied else NOT_HELD
+    held = np.stack([_rows(table.held, len(table.forces)) for table in tables], axis=1) if tied else np.zeros((0, 2, 5))
     phi_cr = statics[0].reference, statics[1].reference
     ends = statics[0].phi_cr is None, statics[1].phi_cr is None
     return Model(
-        "nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, held, tables=tables, ends_at_limit=ends
-    )
+        "nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables=tables, held=held,
+        ends_at_limit=ends,
+    )  # fmt: skip
 
 
 def _rows(held: Reals, count: int) -> Reals:
@@ -267,4 +269,4 @@ def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equ
     phi_cr = blocks[0].phi_cr, blocks[1].phi_cr
     error = uplift_error(Equivalence(*blocks)) if name == "linear1" else 0.0
     certain = np.zeros((1, 2))
-    return Model(name, label, phi_cr, np.array(numbers), forces, angles, certain, NOT_HELD, uplift_error=error)
+    return Model(name, label, phi_cr, np.array(numbers), forces, angles, certain, uplift_error=error)

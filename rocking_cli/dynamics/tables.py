@@ -6,7 +6,7 @@ Cubics with exact slopes at both ends of every cell. Near a lock, where the iner
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -34,21 +34,21 @@ class Table:
         Likewise phi [rad] and dphi/dq = 1/sqrt(I).
     certain : ndarray, shape (n,)
         From the start of each cell on, the ground acceleration over g that no more stops an outward motion.
-    held : ndarray, shape (n, 5)
-        The cubic of Q/(g sqrt(I)), the part of the first force that does not scale with g, and from the start of each
-        cell on the largest Q/(g |B|); of no rows if nothing ties the structure.
     nodes : ndarray, shape (n + 1,)
         phi at the ends of the cells [rad].
     cell : float
         Width of a cell, in q [kg^(1/2) m].
+    held : ndarray, shape (n, 5)
+        The cubic of Q/(g sqrt(I)), the part of the first force that does not scale with g, and from the start of each
+        cell on the largest Q/(g |B|); of no rows if nothing ties the structure.
     """
 
     forces: Reals
     angles: Reals
     certain: Reals
-    held: Reals
     nodes: Reals
     cell: float
+    held: Reals = field(default_factory=lambda: np.zeros((0, 5)))
 
     @property
     def end(self) -> float:
@@ -134,9 +134,9 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Ta
         np.hstack(forces),
         np.hstack([_cubics(width, phi, c), _cubics(width, c, dc)]),
         certain[:-1],
-        held if at.Q.any() else held[:0],
         phi,
         width,
+        held if at.Q.any() else held[:0],
     )
 
 

@@ -112,10 +112,16 @@ def fields(cls: type[BaseModel]) -> list[dict[str, Any]]:
                 "default": None if info.default is PydanticUndefined else info.default,
                 "example": info.examples[0] if info.examples else None,
                 "description": info.description or "",
-                "common": issubclass(cls, Mechanism) and key in Mechanism.model_fields,
+                "common": _is_common(cls, key),
             }
         )
     return sorted(found, key=lambda row: row["common"])
+
+
+def _is_common(cls: type[BaseModel], key: str) -> bool:
+    """Whether every mechanism has a field, and this one says nothing of its own on it."""
+    own = cls.__mro__[: cls.__mro__.index(Mechanism)] if issubclass(cls, Mechanism) else [cls]
+    return not any(key in vars(each).get("__annotations__", {}) for each in own)
 
 
 def _cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
