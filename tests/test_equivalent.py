@@ -160,7 +160,7 @@ class TestVerdict:
     def test_far_apart_is_a_break(self):
         found = equivalent([load_structure(BLOCK), load_structure(WALL)], PULSE, eta="own")
         assert found.relative_spread > 0.2
-        assert "facade is the farthest" in " ".join(judge(found))
+        assert "storey wall is the farthest" in " ".join(judge(found))
 
 
 class TestCommand:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from importlib.resources import files
 from typing import Any
 
 import click
 
 from rocking_cli.cli import complete, options, terminal
 
+STARTERS = ("facade", "parapet", "gable", "pinnacle", "corner", "bell_cell", "column_with_tendon", "statue")
+"""What people have, each a file in the data of the package. A mechanism that a package calls so comes first."""
 STUDY = "study"
 """Not a mechanism: a study file is printed for it. A mechanism that a package calls so works, and is not printed."""
 LONG = 40  # characters of a field and its value, above which the comment stands
@@ -15,16 +18,18 @@ UNITS = "A bare number is in the unit in brackets; 800 mm or 12 ft are read too.
 
 
 @click.command(short_help="Print a commented structure file, or study, that works as it is.")
-@click.argument("name", shell_complete=complete.mechanisms(STUDY))
+@click.argument("name", shell_complete=complete.mechanisms(STUDY, *STARTERS))
 @options.as_json
 def command(name: str, as_json: bool) -> None:
-    """Print a commented structure file of the mechanism NAME that works as it is; `study` is a fragility study.
+    """Print a commented structure file that works as it is: of the mechanism NAME, or of what people have.
 
-    The study is of block.yaml beside it.
+    These are facade, parapet, gable, pinnacle, corner, bell_cell, column_with_tendon and statue. `study` is a fragility
+    study, of block.yaml beside it.
 
     \b
     Example:
       rocking new arch > arch.yaml
+      rocking new facade > facade.yaml
       rocking new study > study.yaml
     """
     if name == STUDY:
@@ -37,6 +42,10 @@ def command(name: str, as_json: bool) -> None:
     from rocking_cli.structure import parse_structure
 
     registry = Registry()
+    if name in STARTERS and name not in registry:
+        text = (files("rocking_cli") / "data" / "starters" / f"{name}.yaml").read_text(encoding="utf-8")
+        _print({"starter": name, "yaml": text}, as_json=as_json)
+        return
     text = template(registry[name])
     try:
         parse_structure(text, f"rocking new {name}", name, registry)

@@ -20,7 +20,7 @@ LEVEL = 1e-9  # of the height of a structure: corners that are so much lower are
 
 @dataclass(frozen=True)
 class PointPeak:
-    """How far a point moves at most, in either sense: to the side and up [m]."""
+    """How far a point moves at most, in either sense: to the side and up [m]; NaN if the structure overturns."""
 
     name: str
     at: complex
@@ -30,7 +30,10 @@ class PointPeak:
 
 @dataclass(frozen=True)
 class TiePeak:
-    """The force [N] and the elongation [m] of a tie where they are largest, with their signs; tension is positive."""
+    """The force [N] and the elongation [m] of a tie where they are largest, with their signs; tension is positive.
+
+    NaN if the structure overturns.
+    """
 
     name: str
     force: float
@@ -79,8 +82,16 @@ class Watched:
         return [thing for thing in self.mechanism.attached if isinstance(thing, Spring | SpringBed)]
 
     def peaks(self, history: History) -> Movements:
-        """The largest values of a history, of samples or between them: a place depends on the rotation alone."""
-        reached = {direction: _reached(history, direction) for direction in self.mechanism.directions}
+        """The largest values of a history, also between its samples: a place depends on the rotation alone.
+
+        NaN of one that overturns, as its peak is; the impacts before are none the less.
+        """
+        reached = {
+            direction: history.peak_positive if direction > 0 else history.peak_negative
+            for direction in self.mechanism.directions
+        }
+        if history.overturned:
+            reached = dict.fromkeys(reached, float("nan"))
         return Movements(
             [self._point(name, spot, reached) for name, spot in self.points.items()],
             [self._tie(tie, reached) for tie in self.ties],
@@ -130,15 +141,6 @@ class Watched:
 
 def _way(phi: float) -> Reals:
     return np.linspace(0.0, phi, BETWEEN)
-
-
-def _reached(history: History, direction: Direction) -> float:
-    """The largest rotation of a history in a direction; of one that overturns, the last that was sampled."""
-    peak = history.peak_positive if direction > 0 else history.peak_negative
-    if np.isnan(peak):
-        turned = direction * history.phi[np.isfinite(history.phi)]
-        return float(turned.max(initial=0.0))
-    return peak
 
 
 def _strained(

@@ -42,7 +42,8 @@ def installed(found: Sequence[Installed]) -> View:
         {"mechanisms": [each._asdict() for each in found]},
         [
             Table("Mechanisms", ["mechanism", "what it is", "package"], cells),
-            "`rocking mechanisms NAME` lists the fields of one, `rocking new NAME` prints a file to start from.",
+            "`rocking mechanisms NAME` lists the fields of one, `rocking new NAME` prints a file to start from. Loads, "
+            "ties and supports hang on any of them: `rocking mechanisms loads`, `ties`, `interlock`.",
         ],
     )
 
