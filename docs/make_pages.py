@@ -25,7 +25,7 @@ RUNS = ("run", "draw")  # the kinds of parts that are made by a command, with an
 
 def pages() -> list[Path]:
     """The README and all pages, the tutorial first: it writes the file that others use."""
-    found = [*DOCS.glob("*.md"), *DOCS.glob("mechanisms/*.md"), PROJECT / "README.md"]
+    found = [*DOCS.glob("*.md"), *DOCS.glob("mechanisms/*.md"), *DOCS.glob("walls/*.md"), PROJECT / "README.md"]
     return sorted(found, key=lambda page: (page.name != "tutorial.md", page))
 
 

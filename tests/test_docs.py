@@ -21,7 +21,8 @@ from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
 
 DOCS = PROJECT / "docs"
-PAGES = sorted([PROJECT / "README.md", PROJECT / "CONTRIBUTING.md", *DOCS.glob("*.md"), *DOCS.glob("mechanisms/*.md")])
+OWN = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md"]
+PAGES = sorted([*OWN, *DOCS.glob("*.md"), *DOCS.glob("mechanisms/*.md"), *DOCS.glob("walls/*.md")])
 MECHANISMS = [name for name in Registry() if Registry().package_of(name).startswith("rocking-cli ")]
 
 
