@@ -32,6 +32,7 @@ from rocking_cli.core import (
     quantity,
     rotation,
 )
+from rocking_cli.core.coefficients import coefficients
 from rocking_cli.errors import MechanismError
 
 FINE = radians(1.0)  # of an arc that is drawn straight
@@ -211,7 +212,11 @@ class Arch(Mechanism):
         angles = np.unique([*angles, *self.hinge_angles])
         points = ring.thrust_radius(angles, thrust(ring, self.hinge_angles)) * self.radius
         along = points * np.exp(1j * (pi / 2 + direction * (self._beta / 2 - angles)))
-        return Line(f"line of thrust at uplift, {self.uplift(direction):.3g} g", along.tolist(), direction)
+        rest = np.zeros(1)
+        bare = coefficients(rest, direction, self.bodies(), self.motion(rest, direction))  # a sketch knows no loads yet
+        without = ", without loads and ties" if self.loads or self.ties else ""
+        name = f"line of thrust at uplift, {bare.G[0] / bare.B[0]:.3g} g{without}"
+        return Line(name, along.tolist(), direction)
 
 
 def _round_up(value: float, digits: int) -> float:

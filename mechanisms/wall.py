@@ -41,6 +41,10 @@ class Wall(Mechanism):
     thickness: float = length("thickness", symbol="2b", example=0.3)
     height: float = length("height between foot and top support", symbol="4h", example=3.0)
 
+    @property
+    def _alpha(self) -> float:
+        return atan2(2 * self.thickness, self.height)
+
     def bodies(self) -> Sequence[Body]:
         h = self.height / 4
         return (
@@ -51,7 +55,7 @@ class Wall(Mechanism):
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         foot = complex(direction * self.thickness / 2)
         R = hypot(self.thickness, self.height / 2) / 2
-        tilt = self.critical_rotation(direction) - phi  # alpha - phi
+        tilt = self._alpha - phi
         top = foot + 4j * R * np.cos(tilt)  # it stays above the foot pivot
         upper = RigidMotion(
             foot + 1j * self.height,
@@ -68,7 +72,7 @@ class Wall(Mechanism):
         return pi / 2  # the two blocks lie folded
 
     def critical_rotation(self, direction: Direction) -> float:
-        return atan2(2 * self.thickness, self.height)  # alpha: both pivots and the mid hinge are in line
+        return self._alpha  # both pivots and the mid hinge are in line
 
     def sketch(self) -> Sketch:
         lower, upper = self.bodies()

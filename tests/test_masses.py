@@ -103,3 +103,17 @@ def test_the_caution_is_right():
     assert multiplier(0.5) == pytest.approx(wall.uplift(Direction.POSITIVE), rel=1e-12)
     assert all(multiplier(share) == pytest.approx(2 * thickness / (share * height)) for share in (0.3, 0.6, 0.9))
     assert multiplier(0.8) < multiplier(0.6) < multiplier(0.5)
+
+
+@pytest.mark.parametrize("given", [{"mass": 5e4}, {"density": 2000.0, "depth": 1.0}])
+@pytest.mark.parametrize("name", ["wall", "arch", "block", "symmetric_frame", "cone"])
+def test_the_same_with_a_mass_of_the_whole(name, given):
+    """Masses change what is per kilogram, and nothing else."""
+    bare = load_structure(EXAMPLES / f"{name}.yaml")
+    if name == "cone" and "density" in given:
+        given = {"mass": 5e4}  # a shell has no volume
+    heavy = bare.model_copy(update=given)
+    for direction in Direction:
+        assert heavy.uplift(direction) == pytest.approx(bare.uplift(direction), rel=1e-12)
+        assert heavy.critical_rotation(direction) == pytest.approx(bare.critical_rotation(direction), rel=1e-9)
+        assert heavy.eta(direction) == pytest.approx(bare.eta(direction), rel=1e-12)
