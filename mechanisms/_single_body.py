@@ -8,7 +8,7 @@ from math import atan2, isclose
 from rocking_cli.core import (
     Angle,
     Direction,
-    Hinge,
+    Joint,
     Length,
     Mechanism,
     Outline,
@@ -40,6 +40,11 @@ class SingleBody(Mechanism):
         left, right = self.feet()
         return (rotation(phi, right if direction > 0 else left, -direction),)
 
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        left, right = self.feet()
+        foot = right if direction > 0 else left
+        return (Joint("O" + direction.prime, foot, (self.bodies()[0].name,)),)
+
     def critical_rotation(self, direction: Direction) -> float:
         return self.alpha(direction)  # the centroid stands over the pivot
 
@@ -59,7 +64,7 @@ class SingleBody(Mechanism):
         subscript = {Direction.POSITIVE: "" if alike else "₊", Direction.NEGATIVE: "₋"}
         return Sketch(
             outlines={body.name: self.outlines()} if self.outlines() else {},
-            hinges={side: [Hinge("O" + side.prime, pivots[side], (body.name,))] for side in Direction},
+            hinges={direction: self.joints(direction) for direction in Direction},
             lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", pivots[s], body.centroid, s) for s in shown)],
             angles=[Angle(f"α{subscript[s]}", pivots[s], pivots[s] + 1j, body.centroid, s) for s in shown],
         )

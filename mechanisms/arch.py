@@ -16,7 +16,7 @@ from rocking_cli.core import (
     Angle,
     Body,
     Direction,
-    Hinge,
+    Joint,
     Length,
     Line,
     Mechanism,
@@ -124,6 +124,23 @@ class Arch(Mechanism):
         along = middles if direction > 0 else self._beta - middles
         return tuple(links[k] for k in np.searchsorted(self.hinge_angles, along))
 
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        """With the segments on either side, and the face of the lower; at a springing there is one, and the ground."""
+        cuts, joints = np.array(self._cuts), []
+        for letter, point, angle in zip("ABCD", self.hinges(direction), self.hinge_angles, strict=True):
+            cut = int(np.abs(cuts - (angle if direction > 0 else self._beta - angle)).argmin())
+            sides = [f"segment {k}" for k in (cut, cut + 1) if 0 < k < len(cuts)]
+            # Seen from the springing of its half of the ring: the segment that bears comes first, then the other.
+            on_the_left = cuts[cut] <= self._beta / 2
+            bodies = tuple(sides if on_the_left else sides[::-1])
+            normal = point / abs(point) * (-1j if on_the_left else 1j)  # along the ring
+            joints.append(
+                Joint(
+                    letter + direction.prime, point, bodies, normal=normal, face=bodies[0] if len(bodies) > 1 else None
+                )
+            )
+        return joints
+
     def limit(self, direction: Direction) -> float:
         return four_bar_limit(direction, *self.hinges(direction))
 
@@ -146,7 +163,7 @@ class Arch(Mechanism):
         return Sketch(
             outlines=outlines,
             uniform=True,
-            hinges={direction: self._lettered(direction) for direction in Direction},
+            hinges={direction: self.joints(direction) for direction in Direction},
             lengths=[
                 Length("r", 0j, complex(r * springing * np.exp(-0.3j * self._beta))),
                 Length("t", (r - half) * across, (r + half) * across),
@@ -194,16 +211,6 @@ class Arch(Mechanism):
             )
             for name, hinge, other, (a, b) in ends
         ]
-
-    def _lettered(self, direction: Direction) -> list[Hinge]:
-        """The hinges with the segments on either side; at a springing there is one, and the ground."""
-        cuts = np.array(self._cuts)
-        hinges = []
-        for letter, point, angle in zip("ABCD", self.hinges(direction), self.hinge_angles, strict=True):
-            cut = int(np.abs(cuts - (angle if direction > 0 else self._beta - angle)).argmin())
-            sides = [f"segment {k}" for k in (cut, cut + 1) if 0 < k < len(cuts)]
-            hinges.append(Hinge(letter + direction.prime, point, tuple(sides)))
-        return hinges
 
     def _thrust_line(self, direction: Direction) -> Line:
         ring = Ring(self.thickness / self.radius, self._beta)

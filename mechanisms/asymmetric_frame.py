@@ -13,7 +13,7 @@ from rocking_cli.core import (
     Angle,
     Body,
     Direction,
-    Hinge,
+    Joint,
     Length,
     Mechanism,
     Reals,
@@ -101,6 +101,16 @@ class AsymmetricFrame(Mechanism):
         sb, top, span = direction * self.column_width / 2, 1j * self.left_height, self.spacing
         return sb + 0j, -sb + top, span - sb + top, span + sb + top - 1j * self.right_height
 
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        left, beam, right = (body.name for body in self.bodies())
+        a, b, c, d = self.hinges(direction)
+        return (
+            Joint("A" + direction.prime, a, (left,)),
+            Joint("B" + direction.prime, b, (left, beam), face=beam),
+            Joint("C" + direction.prime, c, (right, beam), face=beam),
+            Joint("D" + direction.prime, d, (right,)),
+        )
+
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         return four_bar(phi, direction, *self.hinges(direction))
 
@@ -123,7 +133,6 @@ class AsymmetricFrame(Mechanism):
         lower = span + deep if deep.imag < 0 else 0j  # foot
         base = 1j * lower.imag
         sizes = [(2 * b, self.left_height), (span + 2 * b, self.beam_depth), (2 * b, self.right_height)]
-        joined = [(left.name,), (left.name, beam.name), (beam.name, right.name), (right.name,)]
         lengths = [
             Length("2b", lower - b, lower + b),
             Length("2H", complex(-b), -b + top),
@@ -143,13 +152,7 @@ class AsymmetricFrame(Mechanism):
         return Sketch(
             outlines={body.name: [rectangle(body.centroid, *size)] for body, size in zip(bodies, sizes, strict=True)},
             uniform=True,
-            hinges={
-                direction: [
-                    Hinge(letter + direction.prime, point, names)
-                    for letter, point, names in zip("ABCD", self.hinges(direction), joined, strict=True)
-                ]
-                for direction in Direction
-            },
+            hinges={direction: self.joints(direction) for direction in Direction},
             lengths=lengths,
             angles=angles,
             ground=[(-4 * b + 0j, span / 2 + 0j, span / 2 + deep, span + 4 * b + deep)],

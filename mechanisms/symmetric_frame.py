@@ -12,7 +12,7 @@ from rocking_cli.core import (
     Angle,
     Body,
     Direction,
-    Hinge,
+    Joint,
     Length,
     Mechanism,
     Reals,
@@ -77,6 +77,14 @@ class SymmetricFrame(Mechanism):
     def limit(self, direction: Direction) -> float:
         return pi / 2  # the columns lie flat
 
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        columns, beam = (body.name for body in self.bodies())
+        b = complex(direction * self.column_width / 2)
+        return (
+            Joint("A" + direction.prime, b, (columns,)),
+            Joint("B" + direction.prime, -b + 1j * self.column_height, (columns, beam), face=beam, level=True),
+        )
+
     def critical_rotation(self, direction: Direction) -> float:
         return atan2(self.column_width, self.column_height)  # Eq. 37
 
@@ -97,13 +105,7 @@ class SymmetricFrame(Mechanism):
                 beam.name: [rectangle(beam.centroid, self._axes[-1].real + 2 * b, 2 * b)],
             },
             copies={columns.name: self._axes},
-            hinges={
-                direction: [
-                    Hinge("A" + direction.prime, complex(direction * b), (columns.name,)),
-                    Hinge("B" + direction.prime, -direction * b + top, (columns.name, beam.name)),
-                ]
-                for direction in Direction
-            },
+            hinges={direction: self.joints(direction) for direction in Direction},
             lengths=[
                 Length("2b", complex(-b), right),
                 Length("2h", complex(-b), -b + top),

@@ -12,7 +12,7 @@ from rocking_cli.core import (
     Angle,
     Body,
     Direction,
-    Hinge,
+    Joint,
     Length,
     Mechanism,
     Reals,
@@ -71,25 +71,26 @@ class Wall(Mechanism):
     def limit(self, direction: Direction) -> float:
         return pi / 2  # the two blocks lie folded
 
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        lower, upper = (body.name for body in self.bodies())
+        foot, h = complex(direction * self.thickness / 2), self.height / 4
+        return (
+            Joint("A" + direction.prime, foot, (lower,)),
+            Joint("B" + direction.prime, -foot + 2j * h, (lower, upper), face=lower),
+            Joint("C" + direction.prime, foot + 4j * h, (upper,), slide=1j),
+        )
+
     def critical_rotation(self, direction: Direction) -> float:
         return self._alpha  # both pivots and the mid hinge are in line
 
     def sketch(self) -> Sketch:
         lower, upper = self.bodies()
-        h, names = self.height / 4, (lower.name, upper.name)
-        feet = {direction: complex(direction * self.thickness / 2) for direction in Direction}
-        left, right = feet[Direction.NEGATIVE], feet[Direction.POSITIVE]
+        h, right = self.height / 4, complex(self.thickness / 2)
+        left = -right
         return Sketch(
             outlines={body.name: [rectangle(body.centroid, self.thickness, 2 * h)] for body in (lower, upper)},
             uniform=True,
-            hinges={
-                direction: [
-                    Hinge("A" + direction.prime, foot, names[:1]),
-                    Hinge("B" + direction.prime, -foot + 2j * h, names),
-                    Hinge("C" + direction.prime, foot + 4j * h, names[1:], slide=1j),
-                ]
-                for direction, foot in feet.items()
-            },
+            hinges={direction: self.joints(direction) for direction in Direction},
             lengths=[
                 Length("2b", left, right),
                 Length("4h", left, left + 4j * h),

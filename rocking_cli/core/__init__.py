@@ -16,6 +16,7 @@ from rocking_cli.core.fields import Vertex as Vertex
 from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length
 from rocking_cli.core.fields import quantity as quantity
+from rocking_cli.core.joints import Joint as Joint
 from rocking_cli.core.kinematics import Direction as Direction
 from rocking_cli.core.kinematics import Reals as Reals
 from rocking_cli.core.kinematics import RigidMotion as RigidMotion

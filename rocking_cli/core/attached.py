@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.kinematics import Direction, Points, Reals
@@ -39,6 +41,13 @@ Follow = Callable[[Spot], Path]
 """Gives the path of a point."""
 
 
+class Push(NamedTuple):
+    """A force on a point of a body, or of the ground."""
+
+    spot: Spot
+    force: Points  # Fx + i Fy [N], shape (n,)
+
+
 class Attached(Protocol):
     """Something that hangs on a mechanism."""
 
@@ -49,6 +58,10 @@ class Attached(Protocol):
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
         """Add its share to coefficients."""
+        ...
+
+    def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
+        """The forces that it exerts on bodies and the ground, beside inertia and weight."""
         ...
 
 
@@ -86,6 +99,10 @@ class PointMass:
         total.V[:] += down * (z.imag - self.spot.at.imag)
         total.B[:] += direction * across * dz.real
         total.dB[:] += direction * across * ddz.real
+
+    def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
+        """None: it has inertia and weight only."""
+        return ()
 
     def product(self, one: complex, other: complex) -> float:
         """The mass inner product of two velocities of its point."""
@@ -130,6 +147,10 @@ class ConstantForce:
         total.dQ[:] -= _dot(force, ddz)
         total.U[:] -= _dot(force, z - self.spot.at)
 
+    def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
+        """Itself."""
+        return (Push(self.spot, np.full(follow(self.spot).z.shape, self.in_direction(direction))),)
+
 
 Sense = Literal["tension", "compression"]
 
@@ -163,13 +184,10 @@ class Spring:
         """e = L - L(0) [m] and the first two derivatives of L, each shape (n,)."""
         paths = [follow(spot) for spot in self.spots]
         e, first, second = (np.zeros(paths[0].z.shape) for _ in range(3))
-        for one, other, here, there in zip(self.spots, self.spots[1:], paths, paths[1:], strict=False):
-            rest = abs(other.at - one.at)
-            if rest <= TOGETHER * (1 + abs(one.at)):
-                rest = 0.0
+        for (one, here), (other, there) in pairwise(zip(self.spots, paths, strict=True)):
             d, dd, ddd = there.z - here.z, there.dz - here.dz, there.ddz - here.ddz
-            span, speed = np.abs(d), np.abs(dd)
-            met = span <= NEAR * speed if rest == 0.0 else np.zeros(span.shape, bool)
+            span, speed, rest = np.abs(d), np.abs(dd), _apart(one, other)
+            met = _met(d, dd, rest)
             with np.errstate(divide="ignore", invalid="ignore"):
                 rate = np.where(met, speed, _dot(d, dd) / span)  # L' = dr.dr'/L
                 bend = np.where(met, _dot(dd, ddd) / speed, (speed**2 + _dot(d, ddd) - rate**2) / span)
@@ -200,6 +218,19 @@ class Spring:
         total.Q[:] += self.count * n * first
         total.dQ[:] += self.count * (slope * first**2 + n * second)
         total.U[:] += self.count * self._energy(e)
+
+    def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
+        """N along each piece of its path, on both of its ends."""
+        n = self.count * self.force(self.elongation(follow)[0])
+        paths = [follow(spot) for spot in self.spots]
+        pushes = []
+        for (one, here), (other, there) in pairwise(zip(self.spots, paths, strict=True)):
+            d, dd = there.z - here.z, there.dz - here.dz
+            along = np.where(_met(d, dd, _apart(one, other)), dd, d).astype(np.complex128)
+            size = np.abs(along)
+            pull = along * (n / np.where(size == 0, 1.0, size))  # points that stay together do not pull
+            pushes += [Push(one, pull), Push(other, -pull)]
+        return pushes
 
     def slack_at(self, e: Reals) -> Reals:
         """What changes its sign where it goes slack or comes into play, if it acts in one sense only [N]."""
@@ -251,10 +282,25 @@ class SpringBed:
         for spring in self.springs:
             spring.act(total, direction, follow)
 
+    def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
+        """Those of its springs."""
+        return [push for spring in self.springs for push in spring.forces(direction, follow)]
+
 
 def springs_of(thing: Attached) -> Sequence[Spring]:
     """The elastic ties that a thing acts as; none of a load or a force."""
     return [thing] if isinstance(thing, Spring) else thing.springs if isinstance(thing, SpringBed) else []
+
+
+def _apart(one: Spot, other: Spot) -> float:
+    """The distance of two points at rest [m]; 0 if they are one."""
+    rest = abs(other.at - one.at)
+    return 0.0 if rest <= TOGETHER * (1 + abs(one.at)) else rest
+
+
+def _met(d: Points, dd: Points, rest: float) -> NDArray[np.bool_]:
+    """Where two points that met at rest are still so near that their distance is its derivative times phi."""
+    return np.abs(d) <= NEAR * np.abs(dd) if rest == 0.0 else np.zeros(d.shape, bool)
 
 
 def _dot(u: complex | Points, v: Points) -> Reals:

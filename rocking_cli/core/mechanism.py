@@ -20,6 +20,7 @@ from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.interlock import Interlock
+from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.loads import Load
 from rocking_cli.core.restitution import kinematic_restitution
@@ -29,7 +30,7 @@ from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
-    "bodies", "motion", "limit", "sketch", "alike", "volume", "total_mass", "coefficients", "kinetic_inertia",
+    "bodies", "motion", "limit", "sketch", "joints", "alike", "volume", "total_mass", "coefficients", "kinetic_inertia",
     "potential_energy", "uplift", "rebound_from_impacts",    "critical_rotation", "restitution_from_kinematics", "eta",
 )  # fmt: skip
 """The methods of `Mechanism` in which a plugin says or overrides what its mechanics is."""
@@ -304,6 +305,10 @@ class Mechanism(Described, ABC):
     def sketch(self) -> Sketch:
         """What a picture shows beside the bodies and their motion; optional, by default nothing."""
         return Sketch()
+
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        """Where bodies bear on the ground and on one another, for the check of a history; by default unknown."""
+        return ()
 
     def alike(self) -> Mapping[str, int]:
         """Of bodies that stand for several which move alike: how many, by their names; by default none does."""
