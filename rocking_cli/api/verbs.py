@@ -270,6 +270,7 @@ def respond(
     >>> answer["nonlinear"].words
     'rocks'
     """
+    from rocking_cli.studies.contact import Contacts
     from rocking_cli.views import history_table
     from rocking_cli.views.response import runs_view
 
@@ -278,6 +279,8 @@ def respond(
     chosen = _models(models) if models is not None else ready.default_models
     found = histories.respond(ready.mechanism, shaking, models=chosen, release=release, tail=tail, rtol=rtol)
     title = heading(ready.mechanism) + (f", {shaking.name}" if shaking is not None else "")
+    nonlinear = found.get("nonlinear")
+    contacts = {1: Contacts(ready.mechanism).check(nonlinear, shaking)} if nonlinear is not None else {}
 
     def columns() -> Columns:
         blocks = list(history_table.blocks({str(name): run for name, run in found.items()}, shaking))
@@ -288,7 +291,7 @@ def respond(
 
         return draw_history(found, shaking, title, uplift=ready.uplift)
 
-    return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism), columns, figure)
+    return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism, contacts), columns, figure)
 
 
 def respond_each(

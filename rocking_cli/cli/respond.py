@@ -249,7 +249,7 @@ class _Job:
 
         mechanism, title = self._structure.mechanism, heading(self._structure.mechanism)
         try:
-            found = answer(self._structure.models(self._names), given, self._asked)
+            found = answer(self._structure, self._names, given, self._asked)
         except RockingError as error:
             if not self._several or given is None:
                 raise

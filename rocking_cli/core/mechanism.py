@@ -25,6 +25,7 @@ from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.loads import Load
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Outline, Sketch
+from rocking_cli.core.strength import Strength
 from rocking_cli.core.ties import Tie
 from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
@@ -125,6 +126,14 @@ class Mechanism(Described, ABC):
         examples=[{"courses": 10, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 2.0}],
         description="friction of walls that cross it; `rocking mechanisms interlock` lists its fields",
     )
+    friction: float | None = quantity(
+        "coefficient of friction of its joints, which histories are held to", example=0.6, default=None, gt=0, le=10
+    )
+    strength: Strength | None = Field(
+        None,
+        examples=[{"stress": 3e6, "width": 0.05}],
+        description="what its contacts bear; `rocking mechanisms strength` lists its fields",
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -201,6 +210,7 @@ class Mechanism(Described, ABC):
             self._check_one_sided()
             self._check_restitution()
             self._mass_factor  # noqa: B018 - a density without a volume is refused here
+            self._check_strength()
             if not self._is_laden:
                 return
             if not self.has_mass:
@@ -222,6 +232,12 @@ class Mechanism(Described, ABC):
         if self.one_sided is not None and self.rebound is None and self.rebound_from_impacts() is None:
             reason = "is missing: only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
             raise Refused((), "rebound", reason)
+
+    def _check_strength(self) -> None:
+        if self.strength is not None and not self.has_mass:
+            raise Refused((), "strength", "the structure has no masses: give density and depth, or its mass")
+        if self.strength is not None and self.depth is None:
+            raise Refused((), "depth", "is missing: the contacts are as long as the structure is deep")
 
     def _check_restitution(self) -> None:
         """Refuse a restitution with which an impact would add energy."""
@@ -286,8 +302,9 @@ class Mechanism(Described, ABC):
         for key in ("loads", "ties"):
             if things := getattr(self, key):
                 changed[key] = [thing.enlarged(factor) for thing in things]
-        if self.interlock is not None:
-            changed["interlock"] = self.interlock.enlarged(factor)
+        for key in ("interlock", "strength"):
+            if (part := getattr(self, key)) is not None:
+                changed[key] = part.enlarged(factor)
         return self.model_copy(update=changed)
 
     @abstractmethod

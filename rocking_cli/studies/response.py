@@ -7,9 +7,11 @@ from dataclasses import dataclass, field
 
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.studies.contact import Contact, Contacts
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 
 Histories = Mapping[ModelName, History]
@@ -64,6 +66,10 @@ class Answer:
         What became of the neighbours of the motion, under each polarity; empty if there were to be none.
     fit, to_pulse : PulseFit and mapping of str to History, optional
         The pulse in the motion, and the histories under it alone.
+    contacts : mapping of int to Contact
+        What the nonlinear history asks of the contacts, under each polarity; empty without that history.
+    to_pulse_contact : Contact, optional
+        The same under the pulse alone.
     """
 
     given: Scaled | None
@@ -72,6 +78,8 @@ class Answer:
     neighbours: Mapping[int, Neighbours]
     fit: PulseFit | None = None
     to_pulse: Histories | None = None
+    contacts: Mapping[int, Contact] = field(default_factory=dict)
+    to_pulse_contact: Contact | None = None
 
 
 def histories(
@@ -81,8 +89,10 @@ def histories(
     return {model.name: follow(model, motion, release=release or 0.0, tail=tail, rtol=rtol) for model in models}
 
 
-def answer(models: Sequence[Model], given: Scaled | None, asked: Question) -> Answer:
-    """Follow the models of a structure under a motion, or freely from a release."""
+def answer(structure: Prepared, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Answer:
+    """Follow models of a structure under a motion, or freely from a release."""
+    models = structure.models(names)
+    contacts = Contacts(structure.mechanism)
 
     def respond(motion: GroundMotion | None) -> Histories:
         return histories(models, motion, asked.release, asked.tail, asked.rtol)
@@ -97,8 +107,13 @@ def answer(models: Sequence[Model], given: Scaled | None, asked: Question) -> An
         for sign, motion in under.items()
         if asked.around.count
     }
-    alone = respond(fit.alone(first)) if fit is not None and first is not None else None
-    return Answer(given, first, runs, near, fit, alone)
+    checked = {sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items() if "nonlinear" in run}
+    if fit is None or first is None:
+        return Answer(given, first, runs, near, contacts=checked)
+    pulse = fit.alone(first)
+    alone = respond(pulse)
+    checked_alone = contacts.check(alone["nonlinear"], pulse) if "nonlinear" in alone else None
+    return Answer(given, first, runs, near, fit, alone, checked, checked_alone)
 
 
 def _find(motion: GroundMotion, shape: str) -> PulseFit:

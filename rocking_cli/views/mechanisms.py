@@ -11,6 +11,7 @@ from pydantic_core import PydanticUndefined
 from rocking_cli.core import Mechanism
 from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.loads import Load
+from rocking_cli.core.strength import Strength
 from rocking_cli.core.ties import Face, Place, Tie
 from rocking_cli.core.verdict import Verdict
 from rocking_cli.units import units_of
@@ -75,6 +76,7 @@ PARTS: dict[str, tuple[str, dict[str, type[BaseModel]]]] = {
     "loads": ("a load, one of the list `loads` of any mechanism", {"": Load}),
     "ties": ("a tie, one of the list `ties` of any mechanism", {"": Tie, "from, to, path": Place, "bed": Face}),
     "interlock": ("the friction of crossing walls, `interlock` of any mechanism", {"": Interlock}),
+    "strength": ("what contacts bear, `strength` of any mechanism", {"": Strength}),
 }
 """What hangs on any mechanism, by the field it is given in."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from math import isinf
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, Mechanism
@@ -17,9 +18,11 @@ from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.studies.contact import Contact
 from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Answer, Histories, Question, Runs
+from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import Table, View, in_degrees, number
 
@@ -33,12 +36,28 @@ class Shown(NamedTuple):
     ----------
     watched : Watched or None
         Points and ties, whose movement is shown.
+    contacts : mapping of int to Contact
+        What the nonlinear history asks of its contacts, by polarity.
     etas : tuple of float, or None
         Restitution of impacts that end positive and negative motion; with it the impacts are listed.
     """
 
     watched: Watched | None = None
     etas: tuple[float, float] | None = None
+    contacts: Mapping[int, Contact] = MappingProxyType({})
+
+    def contact(self, polarity: int, name: ModelName) -> dict[str, Any] | None:
+        """What the history of a model asks of its contacts; None of a linear one, which knows of no joints."""
+        if name != "nonlinear" or polarity not in self.contacts or self.watched is None:
+            return None
+        return contact_data(self.contacts[polarity], self.watched.mechanism)
+
+    def contact_words(self, polarity: int) -> list[str]:
+        """A sentence on that, if there is anything to say."""
+        if polarity not in self.contacts or self.watched is None:
+            return []
+        said = contact_words(self.contacts[polarity], self.watched.mechanism)
+        return [said] if said else []
 
 
 NOTHING_MORE = Shown()
@@ -94,7 +113,7 @@ def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: Shown = NOTHING
     """Responses and neighbours, under their polarities if there are two."""
     each = {
         str(polarity): {
-            "responses": histories_data(histories, shown),
+            "responses": histories_data(histories, shown, polarity),
             "agreement": agreement_data(histories),
             "neighbours": neighbours_data(near[polarity]) if polarity in near else None,
             "verdict": verdict(histories),
@@ -104,9 +123,11 @@ def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: Shown = NOTHING
     return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]}
 
 
-def histories_data(histories: Histories, shown: Shown = NOTHING_MORE) -> dict[str, Any]:
+def histories_data(histories: Histories, shown: Shown = NOTHING_MORE, polarity: int = 1) -> dict[str, Any]:
     """The response of each model."""
-    return {name: _history_data(run, shown) for name, run in histories.items()}
+    return {
+        name: {**_history_data(run, shown), "contact": shown.contact(polarity, name)} for name, run in histories.items()
+    }
 
 
 def neighbours_data(near: Neighbours) -> dict[str, Any]:
@@ -224,7 +245,7 @@ def view(
         Whether to list the impacts: the first in a table, all in the data.
     """
     mechanism, given = structure.mechanism, found.given
-    shown = Shown(Watched(mechanism), structure.etas if impacts else None)
+    shown = Shown(Watched(mechanism), structure.etas if impacts else None, found.contacts)
     notes = vertical_notes(found.first, mechanism.gravity) if found.first is not None else []
     data: dict[str, Any] = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
@@ -236,10 +257,12 @@ def view(
     if found.fit is None or found.to_pulse is None:
         parts = _tables(title, found.runs, found.neighbours, shown)
     else:
-        data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, shown)}
+        checked = {1: found.to_pulse_contact} if found.to_pulse_contact is not None else {}
+        of_pulse = shown._replace(contacts=checked)
+        data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, of_pulse)}
         parts = _tables(f"{title}, under the record", found.runs, found.neighbours, shown)
         alone = f"{title}, under the {found.fit.pulse.title} in it alone"
-        parts += ["", *_tables(alone, {1: found.to_pulse}, {}, shown)]
+        parts += ["", *_tables(alone, {1: found.to_pulse}, {}, of_pulse)]
         parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse, found.fit.pulse.title))
     first = next(iter(found.runs.values()))
     caution = [f"Caution: {mechanism.caution}"] if mechanism.caution else []
@@ -249,9 +272,9 @@ def view(
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
-def runs_view(title: str, runs: Runs, mechanism: Mechanism) -> View:
+def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, Contact]) -> View:
     """Responses alone, under one polarity or both."""
-    shown = Shown(Watched(mechanism))
+    shown = Shown(Watched(mechanism), contacts=contacts)
     return View(lambda: runs_data(runs, {}, shown), _tables(title, runs, {}, shown))
 
 
@@ -264,6 +287,7 @@ def _tables(
         heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
         parts += [_table(heading, histories, shown.watched), verdict(histories)]
         parts += [str(near[polarity])] if polarity in near else []
+        parts += shown.contact_words(polarity)
         if shown.etas is not None:
             for name, run in histories.items():
                 parts += ["", *_impact_table(f"{heading}: impacts, {name}", run, shown.etas)]

@@ -1,0 +1,296 @@
+"""Whether a history holds: the friction that its contacts need, and whether they last.
+
+The equations of motion take for granted that no joint slides, opens or crushes. The forces at the joints show where
+that is so: at every sample while the structure rocks, at its first uplift and on both sides of every impact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.reactions import Reactions, at_uplift, impulses, reactions
+from rocking_cli.dynamics.history import History
+from rocking_cli.excitation.base import GroundMotion
+
+Reals = NDArray[np.float64]
+Places = NDArray[np.intp]
+BEARS = 0.01  # of N as rocking starts: with less a joint bears nothing that friction could be asked of
+NEAR_PEAK = 0.9  # of the largest demand: how long it lasts is how long there is more than that
+BLOCK = 25_000  # states at a time: their matrices never stand in memory all at once
+NONE = float("nan")
+DEMAND, PULL, USED = range(3)
+
+
+@dataclass(frozen=True)
+class Crushing:
+    """The largest force normal to a contact over what the contact bears.
+
+    Parameters
+    ----------
+    used : float
+        N over the strength; above 1 it crushes.
+    joint : str
+        Where.
+    time : float
+        When [s].
+    """
+
+    used: float
+    joint: str
+    time: float
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """What a history asks of its contacts; NaN where there is nothing to say, such as of a structure at rest.
+
+    Parameters
+    ----------
+    friction_needed : float
+        The largest |T|/N of any joint while the structure rocks, where N is above 1 % of its value as rocking starts.
+    joint : str
+        Which joint; empty where the joints are not known, and all are sums over the whole.
+    time : float
+        When [s].
+    duration : float
+        The longest time on end for which it needs more than `friction` [s]; without that, for which, around its peak,
+        it needs more than 90 % of `friction_needed`.
+    least_normal : float
+        The smallest N of any joint while it rocks [N], per unit mass of a structure without masses.
+    impact_friction : float
+        The largest |dP_x|/dP_y of any impact; NaN where it does not follow, see `rocking_cli.core.reactions.impulses`.
+    lost : float
+        When first a joint would have to pull, or an impact to throw one apart [s]; NaN: never.
+    lost_joint : str
+        Which.
+    whole : bool
+        Whether the joints are not known: then there are sums over the whole structure, on level ground.
+    friction : float or None
+        What there is.
+    slides : float
+        When first more is needed than there is [s]; NaN: never.
+    crushing : Crushing or None
+        Of a structure whose strength is given.
+    times, demand : ndarray, shape (n,)
+        The friction needed over time; 0 at rest. At an impact there are two values at one time.
+    """
+
+    friction_needed: float
+    joint: str
+    time: float
+    duration: float
+    least_normal: float
+    impact_friction: float
+    lost: float
+    lost_joint: str
+    whole: bool
+    friction: float | None
+    slides: float
+    crushing: Crushing | None
+    times: Reals
+    demand: Reals
+
+    @property
+    def holds(self) -> bool:
+        """Whether the history holds as far as is known: no joint opens, slides or crushes."""
+        crushes = self.crushing is not None and self.crushing.used > 1
+        return bool(np.isnan(self.lost) and np.isnan(self.slides)) and not crushes
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """The check of any history of a structure.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    """
+
+    mechanism: Mechanism
+
+    def check(self, history: History, motion: GroundMotion | None) -> Contact:
+        """Hold a history against what its contacts can do.
+
+        Parameters
+        ----------
+        history : History
+            Of the nonlinear model.
+        motion : GroundMotion or None
+            The ground motion it is the response to.
+        """
+        states = _states(self.mechanism, history, motion)
+        # For each state the largest of all joints, and which: friction needed, pull, and force over strength.
+        most = np.full((3, states.time.size), -np.inf)
+        most[DEMAND] = 0.0
+        joint = np.zeros(most.shape, np.int64)
+        for direction in self.mechanism.directions:
+            mine = np.flatnonzero(states.rocks & (states.sign == direction))
+            for start in range(0, mine.size, BLOCK):
+                part = mine[start : start + BLOCK]
+                most[:, part], joint[:, part] = self._worst(direction, states, part)
+        return self._summed_up(history, states, most, joint)
+
+    def _worst(self, direction: Direction, states: _States, part: Places) -> tuple[Reals, Places]:
+        """The three quantities of some states, each of the joint where it is largest, and the places of these."""
+        found = reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
+        normal, bears = found.normal, np.maximum(BEARS * self._at_uplift[direction].normal, 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            needed = np.where(normal > bears, np.abs(found.shear) / normal, 0.0)
+            each = np.stack([needed, -normal, normal / self._capacity(found)])
+        each = np.where(np.isnan(each), -np.inf, each)
+        joint = each.argmax(axis=1)
+        return np.take_along_axis(each, joint[:, None], axis=1)[:, 0], joint
+
+    def _summed_up(self, history: History, states: _States, most: Reals, joint: Places) -> Contact:
+        friction, time = self.mechanism.friction, states.time
+        thrown = {direction: self._impulses[direction] for direction in _ended(history)}
+        hits = [found for found in thrown.values() if found is not None]
+        lost, lost_joint = self._lost(history, states, most[PULL], joint[PULL])
+        if not states.rocks.any():
+            return Contact(
+                NONE, "", NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, None, time, most[DEMAND]
+            )  # fmt: skip
+        peak = int(most[DEMAND].argmax())
+        needed = float(most[DEMAND, peak])
+        starts, ends = _stretches(time, most[DEMAND], NEAR_PEAK * needed if friction is None else friction)
+        if friction is None:
+            around = (starts <= time[peak]) & (time[peak] <= ends)
+            starts, ends = starts[around], ends[around]
+        loaded = int(most[USED].argmax())
+        return Contact(
+            friction_needed=needed,
+            joint=self._letter(states, joint[DEMAND], peak),
+            time=float(time[peak]),
+            duration=float((ends - starts).max(initial=0.0)),
+            least_normal=-float(most[PULL].max()),
+            impact_friction=max((_ratio(found) for found in hits), default=NONE) if len(hits) == len(thrown) else NONE,
+            lost=lost,
+            lost_joint=lost_joint,
+            whole=any(found.is_whole for found in self._at_uplift.values()),
+            friction=friction,
+            slides=float(starts[0]) if friction is not None and starts.size else NONE,
+            crushing=Crushing(float(most[USED, loaded]), self._letter(states, joint[USED], loaded), float(time[loaded]))
+            if np.isfinite(most[USED, loaded])
+            else None,
+            times=time,
+            demand=most[DEMAND],
+        )
+
+    def _lost(self, history: History, states: _States, pull: Reals, joint: Places) -> tuple[float, str]:
+        """When contact is first lost, and where: at a joint that has to pull, or at an impact that throws one apart."""
+        moments: list[tuple[float, str]] = []
+        pulls = np.flatnonzero(pull >= 0)
+        if pulls.size:
+            moments.append((float(states.time[pulls[0]]), self._letter(states, joint, int(pulls[0]))))
+        for direction, first in _ended(history).items():
+            found = self._impulses[direction]
+            if found is not None and (thrown := found.normal[:, 0] <= 0).any():
+                moments.append((first, found.joints[int(thrown.argmax())].letter))
+        return min(moments, default=(NONE, ""))
+
+    def _letter(self, states: _States, joint: Places, k: int) -> str:
+        joints = self._at_uplift[Direction(int(states.sign[k]))].joints
+        return joints[int(joint[k])].letter
+
+    @cached_property
+    def _at_uplift(self) -> Mapping[Direction, Reactions]:
+        """What each joint bears as rocking starts."""
+        return {direction: at_uplift(self.mechanism, direction) for direction in self.mechanism.directions}
+
+    @cached_property
+    def _impulses(self) -> Mapping[Direction, Reactions | None]:
+        return {direction: impulses(self.mechanism, direction) for direction in self.mechanism.directions}
+
+    def _capacity(self, found: Reactions) -> Reals:
+        """What each joint bears at most [N], shape (k, 1); NaN where it is not given."""
+        strength, depth = self.mechanism.strength, self.mechanism.depth
+        if strength is None or depth is None or found.is_whole:
+            return np.full((len(found.joints), 1), np.nan)
+        alike = self.mechanism.alike()
+        counts = [max(alike.get(name, 1) for name in joint.bodies) for joint in found.joints]
+        return strength.force(depth) * np.array(counts, dtype=np.float64)[:, None]
+
+
+class _States(NamedTuple):
+    """Moments of a history in their order, each an ndarray of shape (n,)."""
+
+    time: Reals
+    sign: Reals  # of the direction
+    phi: Reals  # in it [rad]
+    rate: Reals  # [rad/s]
+    ground: NDArray[np.complex128]  # u_g'' + i v_g'' [m/s2]
+    rocks: NDArray[np.bool_]
+
+
+def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:
+    """The samples of a history until it overturns, its first uplift, and both sides of its impacts."""
+    end = history.overturning_time if history.overturned else np.inf
+    kept = np.isfinite(history.phi) & (history.time <= end)
+    time, phi, rate = history.time[kept], history.phi[kept], history.rate[kept]
+    sign = np.where(phi != 0, np.sign(phi), np.sign(rate))
+    impact = history.impacts[history.impacts[:, 0] <= end]
+    after = -impact[:, 1]
+    eta = np.where(impact[:, 1] > 0, mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1]))
+    if not mechanism.rocks_both_ways:
+        sign, after = np.full(sign.size, float(mechanism.directions[0])), impact[:, 1]
+    still = np.zeros(len(impact))
+    rows = [
+        np.stack([time, sign, np.abs(phi), sign * rate, (phi != 0) | (rate != 0)]),
+        # Two rows an impact, one after the other: phi = 0 with the rate before, and with that after.
+        np.stack([impact[:, 0], impact[:, 1], still, -impact[:, 2], still + 1]).repeat(2, axis=1),
+    ]
+    rows[1][1, 1::2], rows[1][3, 1::2] = after, eta * impact[:, 2]
+    if np.isfinite(history.uplift_time):
+        push = _ground(np.array([history.uplift_time]), motion).real[0]
+        side = -np.sign(push) if mechanism.rocks_both_ways else float(mechanism.directions[0])
+        rest, lifts = [history.uplift_time, side, 0.0, 0.0, 0.0], [history.uplift_time, side, 0.0, 0.0, 1.0]
+        rows.insert(0, np.array([rest, lifts]).T)
+    table = np.concatenate(rows, axis=1)
+    table = table[:, np.argsort(table[0], kind="stable")]
+    rocks = (table[4] > 0) & (table[1] != 0)
+    return _States(table[0], table[1], table[2], table[3], _ground(table[0], motion), rocks)
+
+
+def _ground(time: Reals, motion: GroundMotion | None) -> NDArray[np.complex128]:
+    """u_g'' + i v_g'' at any times [m/s2]: straight between samples, zero after the last."""
+    if motion is None:
+        return np.zeros(time.size, np.complex128)
+    u = np.interp(time, motion.time, motion.acceleration, right=0.0)
+    up = motion.vertical
+    v = np.interp(time, up.time, up.acceleration, right=0.0) if up is not None else 0.0
+    return np.asarray(u + 1j * v, dtype=np.complex128)
+
+
+def _stretches(time: Reals, value: Reals, level: float) -> tuple[Reals, Reals]:
+    """When a value, straight between its samples, comes to be above a level, and when it ends to be."""
+    above = value > level
+    starts = np.flatnonzero(above & ~np.concatenate([[False], above[:-1]]))
+    ends = np.flatnonzero(above & ~np.concatenate([above[1:], [False]]))
+
+    def crossing(inside: Places, outside: Places) -> Reals:
+        outside = np.clip(outside, 0, time.size - 1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.where(outside == inside, 0.0, (value[inside] - level) / (value[inside] - value[outside]))
+        return np.asarray(time[inside] + share * (time[outside] - time[inside]))
+
+    return crossing(starts, starts - 1), crossing(ends, ends + 1)
+
+
+def _ended(history: History) -> dict[Direction, float]:
+    """The directions that impacts end, and when the first of each does [s]."""
+    signs = history.impacts[:, 1]
+    return {each: float(history.impacts[signs == each, 0][0]) for each in Direction if (signs == each).any()}
+
+
+def _ratio(found: Reactions) -> float:
+    """The largest |T|/N of joints that an impact presses together."""
+    pressed = found.normal > 0
+    return float((np.abs(found.shear[pressed]) / found.normal[pressed]).max(initial=0.0))

@@ -1,0 +1,83 @@
+"""What a history asks of its contacts, in words and as data."""
+
+from __future__ import annotations
+
+from math import isnan
+from typing import Any
+
+from rocking_cli.core import Mechanism
+from rocking_cli.studies.contact import NEAR_PEAK, Contact
+from rocking_cli.views.view import number
+
+BEYOND = "the answer does not hold beyond"
+
+
+def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
+    """As programs read it; what there is none of is null."""
+    crushing = found.crushing
+    return {
+        "friction_needed": found.friction_needed,
+        "joint": found.joint or None,
+        "time": found.time,
+        "duration": found.duration,
+        "least_normal": found.least_normal,
+        "impact_friction": found.impact_friction,
+        "lost": found.lost,
+        "lost_joint": found.lost_joint or None,
+        "friction": found.friction,
+        "slides": found.slides,
+        "strength": None
+        if crushing is None
+        else {"used": crushing.used, "joint": crushing.joint, "time": crushing.time},
+        "sums": _sums(found, mechanism),
+        "per_unit_mass": not mechanism.has_mass,
+    }
+
+
+def contact_words(found: Contact, mechanism: Mechanism) -> str:
+    """The same in a few sentences; empty of a structure that does not rock."""
+    if isnan(found.friction_needed):
+        return ""
+    said = [_friction(found)]
+    if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
+        said.append(f"Its impacts need {number(found.impact_friction, 3)}, and much more with a lower restitution.")
+    if not isnan(found.lost):
+        said.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s: {BEYOND}.")
+    if found.crushing is not None:
+        at = f"{_where(found.crushing.joint)} at {number(found.crushing.time, 4)} s"
+        if found.crushing.used > 1:
+            said.append(f"It would crush at {at}, with {number(found.crushing.used, 3)} times its strength: {BEYOND}.")
+        else:
+            said.append(f"Its contacts bear {number(100 * found.crushing.used, 3)} % of their strength, at {at}.")
+    sums = _sums(found, mechanism)
+    if sums == "whole":
+        said.append("Where its joints are is not known: these are sums over the whole structure, on level ground.")
+    elif sums is not None:
+        said.append(f"Forces are sums over all {sums}.")
+    return " ".join(said)
+
+
+def _friction(found: Contact) -> str:
+    needed, peak = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
+    where = f"{_where(found.joint)} needs" if found.joint else "it needs"
+    if found.friction is None:
+        lasts = f"and more than {100 * NEAR_PEAK:.0f} % of that for {number(found.duration, 2)} s"
+        return f"Contact: {where} a friction of {needed} {peak}, {lasts}."
+    there = number(found.friction, 3)
+    if isnan(found.slides):
+        return f"Contact: {where} a friction of {needed} {peak}; there is {there}."
+    slides = f"It would slide{f' at {_where(found.joint)}' if found.joint else ''} from {number(found.slides, 4)} s"
+    return f"{slides}, for {number(found.duration, 2)} s: {where} {needed} {peak}, there is {there}; {BEYOND}."
+
+
+def _where(letter: str) -> str:
+    return f"joint {letter}" if letter else "the ground"
+
+
+def _sums(found: Contact, mechanism: Mechanism) -> str | None:
+    """What the forces are sums over: the whole structure, or bodies that one stands for; None: over nothing."""
+    if found.whole:
+        return "whole"
+    joints = mechanism.joints(mechanism.directions[0])
+    of_several = {name for joint in joints if joint.level for name in joint.bodies}
+    return next((name for name in mechanism.alike() if name in of_several), None)

@@ -1,0 +1,277 @@
+"""The check of a history: friction, contact and strength, beside sums over a block that are written out here."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from math import atan2, cos, hypot, sin
+
+import numpy as np
+import pytest
+
+from mechanisms.arch import Arch
+from mechanisms.asymmetric_frame import AsymmetricFrame
+from mechanisms.block import Block
+from mechanisms.symmetric_frame import SymmetricFrame
+from mechanisms.wall import Wall
+from rocking_cli import errors
+from rocking_cli.dynamics.history import respond
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.studies import contact
+from rocking_cli.studies.contact import Contacts, _stretches
+from rocking_cli.views.contact import contact_words
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+G = 9.80665
+BLOCK = Block(width=1.0, height=5.0)
+
+
+def shaking(size=0.35, vertical=0.0, dt=0.005):
+    """Three seconds of two sines, and quiet before and after."""
+    t = np.arange(0, 8, dt)
+    on = (t > 0.5) & (t < 6.5)
+    u = np.where(on, np.sin(9 * (t - 0.5)) + 0.6 * np.sin(23.7 * (t - 0.5)), 0.0)
+    up = GroundMotion("up", dt, vertical * G * np.where(on, np.sin(17 * (t - 0.5)), 0.0)) if vertical else None
+    return GroundMotion("sines", dt, size * G * u, vertical=up)
+
+
+def checked(structure, motion, **options):
+    history = respond(structure, motion, models=("nonlinear",), **options)["nonlinear"]
+    return history, Contacts(structure).check(history, motion)
+
+
+def of_a_block(phi, rate, u, v, *, width=1.0, height=5.0):
+    """|H|/N and N over the mass in one state of a block: signed rotation and rate, all written out."""
+    s = np.sign(phi) if phi else np.sign(rate)
+    half, alpha = hypot(width, height) / 2, atan2(width, height)
+    phi, rate = abs(phi), s * rate
+    turning = -(3 / (4 * half)) * ((G + v) * sin(alpha - phi) + s * u * cos(alpha - phi))
+    x = s * half * (cos(alpha - phi) * turning + sin(alpha - phi) * rate**2)
+    y = half * (sin(alpha - phi) * turning - cos(alpha - phi) * rate**2)
+    return abs(x + u) / (y + G + v), y + G + v
+
+
+@pytest.mark.parametrize("vertical", [0.0, 0.4])
+def test_a_block_state_by_state(vertical):
+    motion = shaking(vertical=vertical)
+    history, found = checked(BLOCK, motion)
+    assert history.impact_count > 3 and not history.overturned
+    u = np.interp(history.time, motion.time, motion.acceleration, right=0)
+    v = np.interp(history.time, motion.time, motion.vertical.acceleration, right=0) if vertical else 0 * u
+    states = [
+        (t, *of_a_block(*each))
+        for t, *each in zip(history.time, history.phi, history.rate, u, v, strict=True)
+        if each[0] or each[1]
+    ]
+    at_foot = 1e-15  # says of which direction a state is
+    for t, s, rate in history.impacts:
+        here = np.interp(t, history.time, u), np.interp(t, history.time, v)
+        eta = 1 - 1.5 * sin(atan2(1, 5)) ** 2
+        states += [(t, *of_a_block(s * at_foot, -s * rate, *here))]
+        states += [(t, *of_a_block(-s * at_foot, -s * eta * rate, *here))]
+    start = history.uplift_time
+    here = np.interp(start, history.time, u), np.interp(start, history.time, v)
+    states.append((start, *of_a_block(-np.sign(here[0]) * at_foot, 0.0, *here)))
+    time, needed, _ = max(states, key=lambda each: each[1])
+    assert found.friction_needed == pytest.approx(needed, rel=1e-9)
+    assert found.time == pytest.approx(time)
+    assert found.least_normal == pytest.approx(min(each[2] for each in states), rel=1e-9)
+    assert found.joint in ("O", "O'") and not found.whole and found.holds
+
+
+def test_how_long_a_demand_lasts():
+    """Along a polygon: above 1 from 1 to 1.5 and from 3.25 to 5, at one moment from 4 down to 2."""
+    time = np.array([0.0, 2.0, 2.0, 3.0, 4.0, 4.0, 6.0])
+    value = np.array([0.0, 2.0, 0.0, 0.5, 4.0, 2.0, 0.0])
+    starts, ends = _stretches(time, value, 1.0)
+    assert starts == pytest.approx([1.0, 3 + 0.5 / 3.5]) and ends == pytest.approx([2.0, 5.0])
+    assert all(each.size == 0 for each in _stretches(time, value, 4.0))
+    assert [each.tolist() for each in _stretches(time[1:2], value[1:2], 1.0)] == [[2.0], [2.0]]
+
+
+def test_the_time_near_the_peak_is_that_of_the_demand():
+    _, found = checked(BLOCK, shaking())
+    peak = found.friction_needed
+    assert found.demand.max() == peak and found.times[found.demand.argmax()] == found.time
+    k = int(found.demand.argmax())
+    first, last = k, k
+    while found.demand[first - 1] > 0.9 * peak:
+        first -= 1
+    while found.demand[last + 1] > 0.9 * peak:
+        last += 1
+    inside, outside = found.times[last] - found.times[first], found.times[last + 1] - found.times[first - 1]
+    assert inside <= found.duration <= outside and found.duration > 0
+
+
+def test_less_friction_than_lambda_slides_before_it_rocks():
+    weak = BLOCK.model_copy(update={"friction": 0.15})
+    history, found = checked(weak, shaking())
+    assert found.slides == pytest.approx(history.uplift_time) and not found.holds
+    above = _stretches(found.times, found.demand, 0.15)
+    assert found.duration == pytest.approx((above[1] - above[0]).max())
+    said = contact_words(found, weak)
+    assert said.startswith("It would slide at joint O' from 0.") and "the answer does not hold beyond" in said
+    _, enough = checked(BLOCK.model_copy(update={"friction": 0.9}), shaking())
+    assert np.isnan(enough.slides) and enough.duration == 0 and enough.holds
+    assert "there is 0.9" in contact_words(enough, BLOCK)
+
+
+def test_of_a_structure_that_stays_at_rest_there_is_nothing_to_say():
+    history, found = checked(BLOCK.model_copy(update={"friction": 0.1}), shaking(0.1))
+    assert not history.lifted and np.isnan(found.friction_needed) and np.isnan(found.slides)
+    assert contact_words(found, BLOCK) == "" and (found.demand == 0).all()
+
+
+def test_without_weight_contact_is_lost():
+    motion = shaking(vertical=1.3)
+    history, found = checked(BLOCK, motion)
+    u, v = (np.interp(history.time, motion.time, each, right=0) for each in
+            (motion.acceleration, motion.vertical.acceleration))  # fmt: skip
+    states = [
+        (t, *of_a_block(*each))
+        for t, *each in zip(history.time, history.phi, history.rate, u, v, strict=True)
+        if (each[0] or each[1]) and t <= (history.overturning_time if history.overturned else np.inf)
+    ]
+    pulls = [t for t, _, normal in states if normal <= 0]
+    bears = max(needed for _, needed, normal in states if normal > 0.01 * G)
+    assert np.isclose(found.demand, bears, rtol=1e-9).any() and bears <= found.friction_needed * (1 + 1e-9)
+    assert found.friction_needed < max(needed for _, needed, normal in states if normal > 0)  # for N tends to zero
+    assert pulls and found.lost <= pulls[0] and pulls[0] - found.lost <= motion.dt
+    assert found.least_normal <= 0 and not found.holds and "Contact is lost at joint O" in contact_words(found, BLOCK)
+
+
+def test_until_it_overturns_and_no_longer():
+    history, found = checked(BLOCK, shaking(1.5))
+    assert history.overturned
+    assert found.times.max() <= history.overturning_time < history.time[np.isfinite(history.phi)][-1]
+
+
+def test_a_release_is_checked_from_its_first_moment():
+    history, found = checked(BLOCK, None, release=0.6)
+    phi = history.phi[0]
+    needed, normal = of_a_block(phi, 0.0, 0.0, 0.0)
+    assert found.demand[0] == pytest.approx(needed) and found.times[0] == 0
+    eta, alpha = 1 - 1.5 * sin(atan2(1, 5)) ** 2, atan2(1, 5)
+    assert found.impact_friction == pytest.approx((1 - eta) / ((1 + eta) * np.tan(alpha)))
+    assert found.least_normal <= normal
+
+
+def test_masses_scale_forces_and_nothing_else():
+    motion = shaking()
+    _, bare = checked(BLOCK, motion)
+    _, heavy = checked(BLOCK.model_copy(update={"mass": 7000.0}), motion)
+    assert heavy.friction_needed == pytest.approx(bare.friction_needed)
+    assert heavy.least_normal == pytest.approx(7000 * bare.least_normal)
+    assert heavy.impact_friction == pytest.approx(bare.impact_friction)
+
+
+def test_strength_is_that_of_each_contact():
+    motion = shaking(vertical=0.3)
+    strength = {"stress": 2e6, "width": 0.04}
+    block = Block(width=1.0, height=5.0, density=2000.0, depth=0.8, strength=strength)
+    _, found = checked(block, motion)
+    twice = block.model_copy(update={"strength": {"stress": 4e6, "width": 0.04}})
+    assert found.crushing.used == pytest.approx(2 * checked(twice, motion)[1].crushing.used)
+    history = checked(block, motion)[0]
+    u, v = (np.interp(history.time, motion.time, each, right=0) for each in
+            (motion.acceleration, motion.vertical.acceleration))  # fmt: skip
+    most = max(of_a_block(*each)[1] for each in zip(history.phi, history.rate, u, v, strict=True) if each[0] or each[1])
+    assert found.crushing.used >= most * 2000 * 5 * 0.8 / (2e6 * 0.04 * 0.8) * (1 - 1e-9)
+    assert found.crushing.used == pytest.approx(most * 2000 * 5 / (2e6 * 0.04), rel=0.02)
+    assert found.crushing.used > 1 and "would crush" in contact_words(found, block)
+    assert block.enlarged(2.0).strength.width == 0.08
+    frame = {"column_width": 1.0, "column_height": 6.0, "mass_ratio": 1.0, "density": 2000.0, "depth": 1.0}
+    few, many = (
+        checked(SymmetricFrame(**frame, columns=n, strength=strength), motion)[1].crushing.used for n in (2, 5)
+    )
+    assert few == pytest.approx(many)  # a column each of all that bear the sum
+
+
+@pytest.mark.parametrize(("given", "field"), [({}, "strength"), ({"mass": 500.0}, "depth")])
+def test_strength_needs_masses_and_a_depth(given, field):
+    with pytest.raises(errors.FieldError, match=field):
+        Block(width=1.0, height=5.0, strength={"stress": 1e6, "width": 0.1}, **given)
+
+
+class NoJoints(Wall):
+    """A plugin that does not say where its joints are."""
+
+    def joints(self, direction):
+        return ()
+
+
+STRUCTURES = [
+    Wall(thickness=0.3, height=3.0),
+    NoJoints(thickness=0.3, height=3.0, restitution=0.7),
+    Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7),
+    Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7, restitution=0.6),
+    AsymmetricFrame(
+        column_width=1, left_height=6, right_height=7.5, spacing=8, beam_depth=1, density=2000.0, depth=1.0
+    ),
+    SymmetricFrame(column_width=1.0, column_height=6.0, mass_ratio=1.0),
+    Block(width=0.6, height=8.0, one_sided="positive"),
+]
+
+
+@pytest.mark.parametrize("structure", STRUCTURES, ids=lambda each: type(each).__name__)
+def test_every_mechanism_is_checked(structure, monkeypatch):
+    motion = shaking(0.5 if isinstance(structure, Wall | Arch) else 0.3)
+    history, found = checked(structure, motion)
+    assert 0.05 < found.friction_needed < 5 and found.least_normal > 0 and history.impact_count
+    assert found.whole is isinstance(structure, NoJoints)
+    assert found.joint in {joint.letter for d in structure.directions for joint in structure.joints(d)} | {""}
+    given = structure.restitution is not None
+    assert np.isnan(found.impact_friction) == (structure.one_sided is not None or (given and not found.whole))
+    said = contact_words(found, structure)
+    assert ("sums over the whole" in said) is found.whole
+    assert ("sums over all columns" in said) is isinstance(structure, SymmetricFrame)
+    monkeypatch.setattr(contact, "BLOCK", 100)  # piece by piece it is the same
+    again = Contacts(structure).check(history, motion)
+    assert replace(again, times=found.times, demand=found.demand).friction_needed == found.friction_needed
+    assert (again.demand == found.demand).all()
+
+
+def test_respond_says_it(tmp_path):
+    file = tmp_path / "frame.yaml"
+    file.write_text((EXAMPLES / "frame.yaml").read_text(encoding="utf-8") + "friction: 0.25\n", encoding="utf-8")
+    asked = (file, "--record", EXAMPLES / "accel.csv", "--neighbours", 0)
+    responses = run_json("respond", *asked)["responses"]
+    assert responses["linear1"]["contact"] is None and responses["linear2"]["contact"] is None
+    found = responses["nonlinear"]["contact"]
+    assert set(found) >= {"friction_needed", "joint", "time", "duration", "least_normal", "impact_friction", "lost"}
+    assert found["friction"] == 0.25 < found["friction_needed"] and found["joint"] == "B" and found["lost"] is None
+    assert found["slides"] < found["time"] and found["duration"] > 0 and found["per_unit_mass"] is False
+    said = " ".join(run("respond", *asked).stdout.split())
+    assert f"It would slide at joint B from {found['slides']:.4g} s" in said
+    both = run_json("respond", *asked, "--polarity", "both")["polarities"]
+    assert both["1"]["responses"]["nonlinear"]["contact"] == found != both["-1"]["responses"]["nonlinear"]["contact"]
+    pulse = run_json("respond", *asked, "--with-pulse", "sine")["pulse_responses"]["nonlinear"]["contact"]
+    assert pulse["friction_needed"] > 0 and pulse != found
+
+
+def test_an_answer_in_python_has_it_too():
+    import rocking_cli as rk
+
+    answer = rk.respond(rk.Block(width=0.7, height=2.8, friction=0.2), "sine:0.4g:0.8s", models="nonlinear")
+    found = answer.to_dict()["responses"]["nonlinear"]["contact"]
+    assert found["slides"] == pytest.approx(answer["nonlinear"].uplift_time) and found["per_unit_mass"] is True
+    assert any("would slide" in each for each in answer.sentences)
+    assert json.dumps(found)
+
+
+def test_thrown_back_it_is_checked_on_both_sides_of_an_impact():
+    history, found = checked(Block(width=0.6, height=8.0, one_sided="positive"), None, release=0.5)
+    first, *_ = history.impacts[:, 0]
+    at_impact = found.demand[found.times == first]
+    assert at_impact.size == 2 and (at_impact > 0).all() and at_impact[0] != at_impact[1]
+
+
+def test_impulses_of_one_direction_alone_do_not_say_what_impacts_need():
+    arch = Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7)
+    eta = arch.eta(arch.directions[0])
+    for given, known in ((eta, True), (0.5, False)):
+        one = arch.model_copy(update={"restitution": {"positive_to_negative": eta, "negative_to_positive": given}})
+        history, found = checked(one, shaking(0.5))
+        assert len(set(history.impacts[:, 1])) == 2
+        assert np.isfinite(found.impact_friction) == known
