@@ -243,7 +243,8 @@ def test_respond_says_it(tmp_path):
     assert found["friction"] == 0.25 < found["friction_needed"] and found["joint"] == "B" and found["lost"] is None
     assert found["slides"] < found["time"] and found["duration"] > 0 and found["per_unit_mass"] is False
     said = " ".join(run("respond", *asked).stdout.split())
-    assert f"It would slide at joint B from {found['slides']:.4g} s" in said
+    assert f"It would slide at joint {found['slides_joint']} from {found['slides']:.4g} s" in said
+    assert f"Joint B needs a friction of {found['friction_needed']:.3g} at" in said
     both = run_json("respond", *asked, "--polarity", "both")["polarities"]
     assert both["1"]["responses"]["nonlinear"]["contact"] == found != both["-1"]["responses"]["nonlinear"]["contact"]
     pulse = run_json("respond", *asked, "--with-pulse", "sine")["pulse_responses"]["nonlinear"]["contact"]
@@ -275,3 +276,13 @@ def test_impulses_of_one_direction_alone_do_not_say_what_impacts_need():
         history, found = checked(one, shaking(0.5))
         assert len(set(history.impacts[:, 1])) == 2
         assert np.isfinite(found.impact_friction) == known
+
+
+def test_the_picture_shows_it_where_it_is_asked_for(tmp_path):
+    asked = ("respond", EXAMPLES / "block.yaml", "--record", EXAMPLES / "accel.csv", "--neighbours", 0)
+    sizes = []
+    for k, more in enumerate(((), ("--contact",))):
+        run(*asked, "--plot", tmp_path / f"{k}.svg", *more)
+        sizes.append((tmp_path / f"{k}.svg").read_text(encoding="utf-8").count("friction needed"))
+    assert sizes == [0, 1]
+    assert "give --plot FILE" in " ".join(run(*asked, "--contact", code=2).stderr.split())

@@ -14,6 +14,7 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.history import FELT, draw_history
 from rocking_cli.plotting.record import draw_record
 from rocking_cli.plotting.thinning import BINS, visible
+from rocking_cli.studies.contact import Contacts
 
 BLOCK = Block(width=0.7, height=2.8)
 PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)))
@@ -171,3 +172,22 @@ def test_where_nothing_lifts_the_picture_says_so_and_what_would():
     assert "does not uplift" in [text.get_text() for text in rotation.texts]
     rocks = draw_history(respond(BLOCK, PULSE.scaled(3.0)), PULSE, "a block", uplift=(0.25, 0.25))
     assert "does not uplift" not in [text.get_text() for each in rocks.axes for text in each.texts]
+
+
+def test_the_friction_needed_is_a_panel_below():
+    block = BLOCK.model_copy(update={"friction": 0.3})
+    motion = PULSE.scaled(2.0)
+    both = [respond(block, each, models=("nonlinear",)) for each in (motion, motion.scaled(-1))]
+    contacts = [
+        Contacts(block).check(run["nonlinear"], each)
+        for run, each in zip(both, (motion, motion.scaled(-1)), strict=True)
+    ]
+    plain, rubbed = (
+        draw_history(both[0], motion, "a block"),
+        draw_history(both[0], motion, "a block", contacts=contacts),
+    )
+    assert len(rubbed.axes) == len(plain.axes) + 1
+    below = rubbed.axes[-1]
+    curves = below.get_lines()
+    assert [line.get_label() for line in curves] == ["polarity 1", "polarity -1", "there is 0.3"]
+    assert max(curves[0].get_ydata()) == contacts[0].friction_needed < below.get_ylim()[1]

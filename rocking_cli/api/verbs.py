@@ -289,7 +289,8 @@ def respond(
     def figure() -> Figure:
         from rocking_cli.plotting.history import draw_history
 
-        return draw_history(found, shaking, title, uplift=ready.uplift)
+        checked = list(contacts.values()) if ready.mechanism.friction is not None else []
+        return draw_history(found, shaking, title, uplift=ready.uplift, contacts=checked)
 
     return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism, contacts), columns, figure)
 

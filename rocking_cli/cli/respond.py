@@ -104,6 +104,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 @click.option("--impacts", is_flag=True, help="List the impacts: times, and rates before and after.")
 @options.out(".csv", ".parquet", what="Write the histories (.csv or .parquet).")
 @options.plot("Draw them")
+@click.option("--contact", is_flag=True, help="Draw the friction needed too; a file with friction needs no asking.")
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, vertical=Vertical, history=History, near=Near, output=Output)
@@ -116,6 +117,7 @@ def command(
     near: Near,
     output: Output,
     impacts: bool,
+    contact: bool,
 ) -> None:
     """Rocking response of a structure to a ground motion, a release from a tilt, or both.
 
@@ -139,6 +141,8 @@ def command(
       rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
     """
     _hold_together(asked, vertical, history)
+    if contact and (output.plot is None or "nonlinear" not in history.names):
+        raise click.UsageError("--contact is a panel of the picture of the nonlinear history: give --plot FILE.")
     paths, missing = motion_files.find(asked.records)
     several = len(paths) + missing + len(asked.pulses) > 1
     if several and vertical.vertical is not None:
@@ -169,7 +173,7 @@ def command(
     structure.models(names)
     release = history.release.ratio(structure) if history.release is not None else None
     question = Question(asked.signs, release, history.tail, history.rtol, history.with_pulse, near.around)
-    job = _Job(structure, names, question, asked.polarity, several, impacts, output.as_json)
+    job = _Job(structure, names, question, asked.polarity, several, impacts, contact, output.as_json)
     with terminal.progress(len(outs), "motions") as advance:
         for each, out, plot in zip(chosen, outs, plots, strict=True):
             refused += not job.follow(each, out, plot)
@@ -220,7 +224,7 @@ class _Job:
         What is asked of every motion.
     polarity : str
         As it was given.
-    several, impacts, as_json : bool
+    several, impacts, contact, as_json : bool
         Whether there are several motions, and how each is shown.
     """
 
@@ -232,12 +236,14 @@ class _Job:
         polarity: str,
         several: bool,
         impacts: bool,
+        contact: bool,
         as_json: bool,
     ) -> None:
         from rocking_cli.views.several import Several
 
         self._structure, self._names, self._asked, self._polarity = structure, names, asked, polarity
         self._several, self._impacts, self._as_json = several, impacts, as_json
+        self._contact = contact or structure.mechanism.friction is not None
         self._table = Several(structure, names)
         self._details: list[Table | str] = []
 
@@ -259,7 +265,7 @@ class _Job:
             title = f"{title}, under {given.motion.name}"
             self._table.add(found)
         _say_which_pulse(found.fit)
-        _write(found, out, plot, title, self._structure.uplift)
+        _write(found, out, plot, title, self._structure.uplift, contact=self._contact)
         doubts = structures.doubts(mechanism)
         one = view(found, self._structure, self._asked, self._polarity, title, doubts, impacts=self._impacts)
         if self._as_json or not self._several:
@@ -286,7 +292,7 @@ def _say_which_pulse(fit: PulseFit | None) -> None:
 
 
 def _write(
-    found: Answer, out: Path | None, plot: Path | None, title: str, uplift: tuple[float, float]
+    found: Answer, out: Path | None, plot: Path | None, title: str, uplift: tuple[float, float], *, contact: bool
 ) -> None:  # fmt: skip
     """Write the histories and their picture to the files asked for.
 
@@ -306,6 +312,7 @@ def _write(
         from rocking_cli.plotting.history import draw_history
 
         pulse = (found.fit, found.to_pulse) if found.fit is not None and found.to_pulse is not None else None
-        return draw_history(first, found.first, title, others[0] if others else None, pulse, uplift)
+        contacts = list(found.contacts.values()) if contact else []
+        return draw_history(first, found.first, title, others[0] if others else None, pulse, uplift, contacts)
 
     Output(out, plot, as_json=False).write(table, draw)

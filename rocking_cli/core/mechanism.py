@@ -234,9 +234,11 @@ class Mechanism(Described, ABC):
             raise Refused((), "rebound", reason)
 
     def _check_strength(self) -> None:
-        if self.strength is not None and not self.has_mass:
+        if not isinstance(self.strength, Strength):  # None, or a field of a plugin of that name
+            return
+        if not self.has_mass:
             raise Refused((), "strength", "the structure has no masses: give density and depth, or its mass")
-        if self.strength is not None and self.depth is None:
+        if self.depth is None:
             raise Refused((), "depth", "is missing: the contacts are as long as the structure is deep")
 
     def _check_restitution(self) -> None:
@@ -303,7 +305,7 @@ class Mechanism(Described, ABC):
             if things := getattr(self, key):
                 changed[key] = [thing.enlarged(factor) for thing in things]
         for key in ("interlock", "strength"):
-            if (part := getattr(self, key)) is not None:
+            if isinstance(part := getattr(self, key), Interlock | Strength):
                 changed[key] = part.enlarged(factor)
         return self.model_copy(update=changed)
 

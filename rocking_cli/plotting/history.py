@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,12 +16,14 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.plotting.thinning import visible
+from rocking_cli.studies.contact import Contact
 
 TALLEST = 1.6  # phi/phi_cr shown at most
 FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
 FELT = 0.02  # of the strongest impact: weaker ones, of a chatter to rest, are not marked
 SHORTEST = 0.1  # s of the time axis
 POINTS = 1000  # of a pulse
+MOST_NEEDED = 2.0  # friction shown at most: what bears next to nothing needs any
 IMPACTS = f"impacts of {100 * FELT:g} % of the strongest and more, in the order of the legend"
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
 
@@ -33,6 +35,7 @@ def draw_history(
     reversed_histories: Mapping[ModelName, History] | None = None,
     pulse: tuple[PulseFit, Mapping[ModelName, History]] | None = None,
     uplift: tuple[float, float] | None = None,
+    contacts: Sequence[Contact] = (),
 ) -> Figure:
     """Draw histories over time.
 
@@ -52,6 +55,8 @@ def draw_history(
     uplift : (float, float), optional
         The ground acceleration that lifts the structure to the positive and to the negative direction [standard
         gravity], drawn over the motion where nothing lifts it.
+    contacts : sequence of Contact
+        Of the nonlinear history under the motion, and under the reversed one: the friction needed, in a panel below.
 
     Returns
     -------
@@ -62,13 +67,10 @@ def draw_history(
         responses = {"polarity 1": histories, "polarity -1": reversed_histories}
     if pulse is not None:
         responses = {"record": histories, "its pulse alone": pulse[1]}
-    shaken = motion is not None
-    figure = style.new_figure(1.4 * shaken + 3.4 * len(responses))
-    panels = list(
-        figure.subplots(
-            shaken + len(responses), 1, sharex=True, squeeze=False, height_ratios=[1] * shaken + [1.8] * len(responses)
-        )[:, 0]
-    )
+    shaken, rubs = motion is not None, bool(contacts)
+    figure = style.new_figure(1.4 * shaken + 3.4 * len(responses) + 1.7 * rubs)
+    ratios = [1] * shaken + [1.8] * len(responses) + [0.9] * rubs
+    panels = list(figure.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
     style.heading(panels[0], title)
     runs = [run for each in responses.values() for run in each.values()]
     end = max(SHORTEST, *(1.1 * run.end_time if run.overturned else float(run.time[-1]) for run in runs))
@@ -78,8 +80,10 @@ def draw_history(
             _draw_uplift(panels[0], uplift)
     reach = max(float(np.nanmax(np.abs(run.ratio))) for run in runs)
     tall = min(max(1.1 * reach, 1e-3), TALLEST)
-    for axes, (what, each) in zip(panels[shaken:], responses.items(), strict=True):
+    for axes, (what, each) in zip(panels[shaken:], responses.items(), strict=False):
         _draw_responses(axes, each, what, tall)
+    if rubs:
+        _draw_contacts(panels[-1], contacts)
     panels[-1].set_xlim(0.0, end)
     panels[-1].set_xlabel("time [s]", fontsize=style.LABEL)
     figure.align_ylabels()
@@ -140,6 +144,23 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
         alignment="left",
         **style.LEGEND,
     )
+    style.tidy(axes)
+
+
+def _draw_contacts(axes: Axes, contacts: Sequence[Contact]) -> None:
+    """Draw the friction that joints need, and what there is."""
+    for k, found in enumerate(contacts):
+        shown = visible(found.demand)
+        polarity = f"polarity {1 - 2 * k}" if len(contacts) > 1 else "needed"
+        look = style.family(k) | {"linewidth": style.MEDIUM}
+        axes.plot(found.times[shown], found.demand[shown], label=polarity, **look)
+    there = contacts[0].friction
+    if there is not None:
+        axes.axhline(there, color=style.CURSOR, linewidth=style.MEDIUM, linestyle=":", label=f"there is {there:.3g}")
+    most = max(float(found.demand.max(initial=0.0)) for found in contacts)
+    axes.set_ylim(0.0, 1.15 * min(max(most, there or 0.0, 1e-3), MOST_NEEDED))
+    axes.set_ylabel("friction needed", fontsize=style.LABEL)
+    axes.legend(loc="upper right", ncols=3, **style.LEGEND)
     style.tidy(axes)
 
 

@@ -29,6 +29,8 @@ from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
 from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
+from rocking_cli.views.contact import COLUMNS as CONTACT_COLUMNS
+from rocking_cli.views.contact import contact_row
 from rocking_cli.views.parameters import PARAMETERS, values
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
@@ -73,6 +75,15 @@ def render(content: Assessment) -> str:
         trust=_greek(content.trust),
         geometry=_geometry(content),
         responses=[_response(content, each, k, bins) for k, each in enumerate(content.results)],
+        contacts=[
+            [
+                each.given.motion.name + (", reversed" if sign < 0 else ""),
+                *contact_row(contact, content.mechanism),
+            ]
+            for each in content.results
+            for sign, contact in each.contacts.items()
+        ],
+        contact_columns=["ground motion", *CONTACT_COLUMNS],
         margins=_still(draw_margins({each.given.motion.name: each.margin for each in content.results}, ""), "margins")
         if content.results
         else None,

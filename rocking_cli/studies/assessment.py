@@ -25,6 +25,7 @@ from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.records.opening import name_of, original
 from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.studies.contact import Contact, Contacts
 from rocking_cli.studies.linearisation import Linearisation, compare
 from rocking_cli.studies.margin import LEVELS, Margin, margin
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
@@ -114,6 +115,8 @@ class MotionResult:
         The pulses in it, the best first; of a pulse itself.
     alone : float or None
         What the best pulse alone does: the peak ratio, NaN if it overturns; None if there is no pulse.
+    contacts : mapping of int to Contact
+        What the nonlinear history asks of the contacts, under each polarity.
     """
 
     given: Scaled
@@ -127,6 +130,7 @@ class MotionResult:
     margin: Margin
     fits: tuple[PulseFit, ...]
     alone: float | None
+    contacts: Mapping[int, Contact]
 
     @property
     def motion(self) -> GroundMotion:
@@ -304,6 +308,7 @@ def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], aroun
     under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
     models, model = structure.models(), structure.model("nonlinear")
     runs = {sign: {each.name: follow(each, motion) for each in models} for sign, motion in under.items()}
+    contacts = Contacts(structure.mechanism)
     worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
@@ -319,6 +324,7 @@ def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], aroun
         margin=margin(model, scaled, polarities, around=around),
         fits=fits,
         alone=_alone(structure, fits[0], polarities) if fits else None,
+        contacts={sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items()},
     )
 
 

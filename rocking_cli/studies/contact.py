@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.reactions import Reactions, at_uplift, impulses, reactions
+from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 
@@ -76,6 +77,8 @@ class Contact:
         What there is.
     slides : float
         When first more is needed than there is [s]; NaN: never.
+    slides_joint : str
+        Where.
     crushing : Crushing or None
         Of a structure whose strength is given.
     times, demand : ndarray, shape (n,)
@@ -93,6 +96,7 @@ class Contact:
     whole: bool
     friction: float | None
     slides: float
+    slides_joint: str
     crushing: Crushing | None
     times: Reals
     demand: Reals
@@ -156,7 +160,7 @@ class Contacts:
         lost, lost_joint = self._lost(history, states, most[PULL], joint[PULL])
         if not states.rocks.any():
             return Contact(
-                NONE, "", NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, None, time, most[DEMAND]
+                NONE, "", NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, "", None, time, most[DEMAND]
             )  # fmt: skip
         peak = int(most[DEMAND].argmax())
         needed = float(most[DEMAND, peak])
@@ -164,6 +168,7 @@ class Contacts:
         if friction is None:
             around = (starts <= time[peak]) & (time[peak] <= ends)
             starts, ends = starts[around], ends[around]
+        slides = int((most[DEMAND] > friction).argmax()) if friction is not None and starts.size else None
         loaded = int(most[USED].argmax())
         return Contact(
             friction_needed=needed,
@@ -176,7 +181,8 @@ class Contacts:
             lost_joint=lost_joint,
             whole=any(found.is_whole for found in self._at_uplift.values()),
             friction=friction,
-            slides=float(starts[0]) if friction is not None and starts.size else NONE,
+            slides=float(starts[0]) if slides is not None else NONE,
+            slides_joint=self._letter(states, joint[DEMAND], slides) if slides is not None else "",
             crushing=Crushing(float(most[USED, loaded]), self._letter(states, joint[USED], loaded), float(time[loaded]))
             if np.isfinite(most[USED, loaded])
             else None,
@@ -212,7 +218,7 @@ class Contacts:
     def _capacity(self, found: Reactions) -> Reals:
         """What each joint bears at most [N], shape (k, 1); NaN where it is not given."""
         strength, depth = self.mechanism.strength, self.mechanism.depth
-        if strength is None or depth is None or found.is_whole:
+        if not isinstance(strength, Strength) or depth is None or found.is_whole:
             return np.full((len(found.joints), 1), np.nan)
         alike = self.mechanism.alike()
         counts = [max(alike.get(name, 1) for name in joint.bodies) for joint in found.joints]

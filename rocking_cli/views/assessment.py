@@ -7,7 +7,7 @@ from rocking_cli.studies.assessment import Assessment
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.margin import margin_data
 from rocking_cli.views.parameters import values
-from rocking_cli.views.response import fit_data, runs_data
+from rocking_cli.views.response import Shown, fit_data, runs_data
 from rocking_cli.views.view import View
 
 
@@ -34,7 +34,7 @@ def view(content: Assessment) -> View:
                 "headline": said.headline,
                 "answers": {item.question: item.answer for item in said.answers},
                 "doubts": list(said.doubts),
-                **runs_data(each.runs, each.neighbours),
+                **runs_data(each.runs, each.neighbours, Shown(mechanism=content.mechanism, contacts=each.contacts)),
                 "polarity": each.polarity,
                 "margin": margin_data(each.margin),
                 "pulses": [fit_data(fit) for fit in each.fits],

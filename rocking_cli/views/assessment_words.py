@@ -18,6 +18,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.assessment import Assessment, MotionResult
 from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.neighbours import governing, severity
+from rocking_cli.views.contact import contact_words
 
 MODELS: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear model",
@@ -139,8 +140,8 @@ def doubts(content: Assessment) -> list[str]:
         )
     said.append(
         "The bodies are taken as rigid, on rigid ground, in one plane, without sliding and without crushing at their "
-        "edges. The vertical motion of the ground is left out. Worn edges and soft ground lower the "
-        "resistance."
+        "edges; the section on joints says what that asks of them. The vertical motion of the ground is left out. Worn "
+        "edges and soft ground lower the resistance."
     )
     return said
 
@@ -156,9 +157,16 @@ def _verdict(content: Assessment, result: MotionResult) -> Verdict:
             Answer("Will it overturn?", _overturning(result)),
             Answer("How close is that?", _closeness(content, result)),
             Answer("Which model to trust?", _trusted(result)),
+            *_joints(content, result),
         ),
         tuple(_doubts(result)),
     )
+
+
+def _joints(content: Assessment, result: MotionResult) -> tuple[Answer, ...]:
+    """Whether they hold, in the polarity that governs; nothing of a structure that does not rock."""
+    said = contact_words(result.contacts[result.polarity], content.mechanism)
+    return (Answer("Do its joints hold?", said),) if said else ()
 
 
 def _uplift(content: Assessment, result: MotionResult) -> str:

@@ -6,7 +6,7 @@ from math import isnan
 from typing import Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.studies.contact import NEAR_PEAK, Contact
+from rocking_cli.studies.contact import NEAR_PEAK, NONE, Contact
 from rocking_cli.views.view import number
 
 BEYOND = "the answer does not hold beyond"
@@ -26,12 +26,26 @@ def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
         "lost_joint": found.lost_joint or None,
         "friction": found.friction,
         "slides": found.slides,
+        "slides_joint": found.slides_joint or None,
         "strength": None
         if crushing is None
         else {"used": crushing.used, "joint": crushing.joint, "time": crushing.time},
         "sums": _sums(found, mechanism),
         "per_unit_mass": not mechanism.has_mass,
     }
+
+
+COLUMNS = ("friction needed", "at joint", "at [s]", "for [s]", "at impacts", "least normal force", "contact lost")
+"""Headings of the rows of `contact_row`."""
+
+
+def contact_row(found: Contact, mechanism: Mechanism) -> list[str]:
+    """The same as cells of a table."""
+    unit = "N" if mechanism.has_mass else "N/kg"
+    numbers = [number(each, 3) for each in (found.time, found.duration, found.impact_friction)]
+    least = f"{number(found.least_normal, 4)} {unit}" if not isnan(found.least_normal) else number(NONE)
+    lost = f"at {number(found.lost, 4)} s" if not isnan(found.lost) else "never"
+    return [number(found.friction_needed, 3), found.joint or "-", *numbers, least, lost]
 
 
 def contact_words(found: Contact, mechanism: Mechanism) -> str:
@@ -58,16 +72,19 @@ def contact_words(found: Contact, mechanism: Mechanism) -> str:
 
 
 def _friction(found: Contact) -> str:
-    needed, peak = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
-    where = f"{_where(found.joint)} needs" if found.joint else "it needs"
+    needed, at = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
+    where = _where(found.joint) if found.joint else "it"
     if found.friction is None:
-        lasts = f"and more than {100 * NEAR_PEAK:.0f} % of that for {number(found.duration, 2)} s"
-        return f"Contact: {where} a friction of {needed} {peak}, {lasts}."
+        lasts = f"more than {100 * NEAR_PEAK:.0f} % of that for {number(found.duration, 2)} s"
+        return f"Contact: {where} needs a friction of {needed} {at}, and {lasts}."
     there = number(found.friction, 3)
     if isnan(found.slides):
-        return f"Contact: {where} a friction of {needed} {peak}; there is {there}."
-    slides = f"It would slide{f' at {_where(found.joint)}' if found.joint else ''} from {number(found.slides, 4)} s"
-    return f"{slides}, for {number(found.duration, 2)} s: {where} {needed} {peak}, there is {there}; {BEYOND}."
+        return f"Contact: {where} needs a friction of {needed} {at}; there is {there}."
+    there_first = f" at {_where(found.slides_joint)}" if found.slides_joint else ""
+    return (
+        f"It would slide{there_first} from {number(found.slides, 4)} s, for {number(found.duration, 2)} s at a time at "
+        f"most: {BEYOND}. {where[0].upper()}{where[1:]} needs a friction of {needed} {at}; there is {there}."
+    )
 
 
 def _where(letter: str) -> str:

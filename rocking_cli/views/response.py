@@ -38,6 +38,8 @@ class Shown(NamedTuple):
         Points and ties, whose movement is shown.
     contacts : mapping of int to Contact
         What the nonlinear history asks of its contacts, by polarity.
+    mechanism : Mechanism or None
+        The structure that they are of.
     etas : tuple of float, or None
         Restitution of impacts that end positive and negative motion; with it the impacts are listed.
     """
@@ -45,18 +47,19 @@ class Shown(NamedTuple):
     watched: Watched | None = None
     etas: tuple[float, float] | None = None
     contacts: Mapping[int, Contact] = MappingProxyType({})
+    mechanism: Mechanism | None = None
 
     def contact(self, polarity: int, name: ModelName) -> dict[str, Any] | None:
         """What the history of a model asks of its contacts; None of a linear one, which knows of no joints."""
-        if name != "nonlinear" or polarity not in self.contacts or self.watched is None:
+        if name != "nonlinear" or polarity not in self.contacts or self.mechanism is None:
             return None
-        return contact_data(self.contacts[polarity], self.watched.mechanism)
+        return contact_data(self.contacts[polarity], self.mechanism)
 
     def contact_words(self, polarity: int) -> list[str]:
         """A sentence on that, if there is anything to say."""
-        if polarity not in self.contacts or self.watched is None:
+        if polarity not in self.contacts or self.mechanism is None:
             return []
-        said = contact_words(self.contacts[polarity], self.watched.mechanism)
+        said = contact_words(self.contacts[polarity], self.mechanism)
         return [said] if said else []
 
 
@@ -245,7 +248,7 @@ def view(
         Whether to list the impacts: the first in a table, all in the data.
     """
     mechanism, given = structure.mechanism, found.given
-    shown = Shown(Watched(mechanism), structure.etas if impacts else None, found.contacts)
+    shown = Shown(Watched(mechanism), structure.etas if impacts else None, found.contacts, mechanism)
     notes = vertical_notes(found.first, mechanism.gravity) if found.first is not None else []
     data: dict[str, Any] = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
@@ -274,7 +277,7 @@ def view(
 
 def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, Contact]) -> View:
     """Responses alone, under one polarity or both."""
-    shown = Shown(Watched(mechanism), contacts=contacts)
+    shown = Shown(Watched(mechanism), contacts=contacts, mechanism=mechanism)
     return View(lambda: runs_data(runs, {}, shown), _tables(title, runs, {}, shown))
 
 
