@@ -31,6 +31,7 @@ from rocking_cli.core import (
     Body,
     Coefficients,
     Direction,
+    Hinge,
     Mechanism,
     Outline,
     RigidMotion,
@@ -39,6 +40,7 @@ from rocking_cli.core import (
     polygon,
 )
 from rocking_cli.core.coefficients import coefficients, jump
+from rocking_cli.core.reactions import reactions
 from rocking_cli.core.registry import conformance
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.verdict import Verdict as Verdict
@@ -359,22 +361,45 @@ def hinges_hold_together(structure: Mechanism) -> None:
     sketch = structure.sketch()
     bodies = {body.name: body for body in structure.bodies()}
     for direction, hinges in sketch.hinges.items():
-        phi = np.linspace(0.0, 1.0, 33) * _top(structure, direction)
-        moved = dict(zip(bodies, structure.motion(phi, direction), strict=True))
         for hinge in hinges:
             which = f"hinge {hinge.letter or hinge.point} of the {direction.label} direction"
-            known = len(hinge.bodies) in (1, 2) and set(hinge.bodies) <= set(bodies)
-            _demand(known, f"{which} must join one or two bodies, and joins {', '.join(hinge.bodies) or 'none'}")
-            first, *others = (moved[name].carry(hinge.point)[0] for name in hinge.bodies)
-            gap = first - (others[0] if others else hinge.point)
-            across = np.abs((gap / hinge.slide).imag if hinge.slide else gap)
-            held = bool(across.max() <= ALIKE * (_size(structure) + abs(hinge.point)))
-            _demand(held, f"{which} parts by {across.max():.3g} m at phi = {phi[across.argmax()]:.4g} rad")
+            _holds_together(structure, direction, hinge, which)
             for name in hinge.bodies if sketch.uniform else ():
                 outlines = sketch.outlines.get(name) or [bodies[name].outline]
                 size = max(abs(corner - bodies[name].centroid) for each in outlines for corner in each)
                 off = min(_off_the_edge(hinge.point, each) for each in outlines)
                 _demand(off <= DRAWN * size, f"{which} is {off:.3g} m off the edge of {name}")
+
+
+def joints_hold_what_moves(structure: Mechanism) -> None:
+    """The joints, where there are any, join what never parts there, and leave the bodies one motion."""
+    for direction in Direction:
+        joints = structure.joints(direction)
+        names = [body.name for body in structure.bodies()]
+        for joint in joints:
+            which = f"joint {joint.letter or joint.point} of the {direction.label} direction"
+            _holds_together(structure, direction, joint, which)
+            _demand(joint.face is None or joint.face in names, f"the face of {which} turns with no body: {joint.face}")
+            size = abs(joint.normal)
+            _demand(joint.is_guide or abs(size - 1) <= ALIKE, f"the normal of {which} has the length {size:.6g}, not 1")
+        if joints:
+            known = not reactions(structure, direction, np.zeros(1), np.zeros(1)).is_whole
+            way = f"the joints of the {direction.label} direction"
+            _demand(known, f"{way} do not leave one motion: n parts need 3n - 1 forces, two at a joint, one at a guide")
+
+
+def _holds_together(structure: Mechanism, direction: Direction, hinge: Hinge, which: str) -> None:
+    """What a hinge joins never parts there."""
+    bodies = [body.name for body in structure.bodies()]
+    phi = np.linspace(0.0, 1.0, 33) * _top(structure, direction)
+    moved = dict(zip(bodies, structure.motion(phi, direction), strict=True))
+    known = len(hinge.bodies) in (1, 2) and set(hinge.bodies) <= set(bodies)
+    _demand(known, f"{which} must join one or two bodies, and joins {', '.join(hinge.bodies) or 'none'}")
+    first, *others = (moved[name].carry(hinge.point)[0] for name in hinge.bodies)
+    gap = first - (others[0] if others else hinge.point)
+    across = np.abs((gap / hinge.slide).imag if hinge.slide else gap)
+    held = bool(across.max() <= ALIKE * (_size(structure) + abs(hinge.point)))
+    _demand(held, f"{which} parts by {across.max():.3g} m at phi = {phi[across.argmax()]:.4g} rad")
 
 
 def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
@@ -434,6 +459,7 @@ CHECKS: tuple[Callable[[Mechanism], None], ...] = (
     an_impact_gains_no_energy,
     outlines_are_those_of_the_bodies,
     hinges_hold_together,
+    joints_hold_what_moves,
     stands_on_the_edge_of_its_base,
 )
 """The contract. Each takes a structure and raises an AssertionError that says what is wrong."""

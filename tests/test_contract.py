@@ -16,6 +16,7 @@ from rocking_cli.core import (
     Body,
     Direction,
     Hinge,
+    Joint,
     Mechanism,
     Sketch,
     annular_sector,
@@ -256,6 +257,22 @@ class HingeElsewhere(Uniform):
         return replace(super().sketch(), hinges=hinges)
 
 
+class JointElsewhere(Uniform):
+    def joints(self, direction):
+        return (Joint("O", complex(0.4 * direction * self.width), ("block",)),)
+
+
+class LongNormal(Uniform):
+    def joints(self, direction):
+        return (Joint("O", complex(0.5 * direction * self.width), ("block",), normal=2j),)
+
+
+class TwoJoints(Uniform):
+    def joints(self, direction):
+        foot = complex(0.5 * direction * self.width)
+        return Joint("O", foot, ("block",)), Joint("P", foot, ("block",))
+
+
 class WrongSlope(Plain):
     def motion(self, phi, direction):
         (motion,) = super().motion(phi, direction)
@@ -363,6 +380,9 @@ WRONG = [
     (OuterPivot, "stands_on_the_edge_of_its_base", "all of the base of block leaves the ground"),
     (OneOfTwoFloats, "stands_on_the_edge_of_its_base", "all of the base of second leaves the ground"),
     (HingeElsewhere, "hinges_hold_together", "hinge O of the positive direction parts by"),
+    (JointElsewhere, "joints_hold_what_moves", "joint O of the positive direction parts by"),
+    (LongNormal, "joints_hold_what_moves", "the normal of joint O of the positive direction has the length 2, not 1"),
+    (TwoJoints, "joints_hold_what_moves", "do not leave one motion"),
     (WrongSlope, "derivatives_are_those_of_the_motion", "dq of block|dpsi of block"),
     (OneForAll, "gives_a_motion_for_each_body", "if asked for alone and"),
     (Scalars, "gives_a_motion_for_each_body", r"dpsi of block has the shape \(\) for 7 rotations"),
