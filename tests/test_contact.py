@@ -15,6 +15,7 @@ from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli import errors
+from rocking_cli.core.reactions import impulses
 from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies import contact
@@ -230,6 +231,36 @@ def test_every_mechanism_is_checked(structure, monkeypatch):
     again = Contacts(structure).check(history, motion)
     assert replace(again, times=found.times, demand=found.demand).friction_needed == found.friction_needed
     assert (again.demand == found.demand).all()
+
+
+def test_a_beam_without_mass_asks_nothing_of_its_joint():
+    frame = SymmetricFrame(column_width=1.0, column_height=6.0, mass_ratio=0.0)
+    _, bare = checked(frame, shaking(0.3))
+    _, column = checked(Block(width=1.0, height=6.0), shaking(0.3))
+    assert bare.friction_needed == pytest.approx(column.friction_needed) and bare.joint[0] == "A" and bare.holds
+    assert bare.least_normal == pytest.approx(column.least_normal)
+    assert bare.impact_friction == pytest.approx(column.impact_friction)
+
+
+def test_of_several_motions_those_are_named_under_which_joints_do_not_hold(tmp_path):
+    file = tmp_path / "block.yaml"
+    asked = (file, "--pulse", "sine:0.4g:0.8s", "--pulse", "sine:0.1g:0.8s", "--neighbours", 0)
+    text = (EXAMPLES / "block.yaml").read_text(encoding="utf-8")
+    file.write_text(text + "friction: 0.2\n", encoding="utf-8")
+    said = " ".join(run("respond", *asked).stdout.split())
+    assert said.count("It would slide") == 1 and "sine:0.4g:0.8s: It would slide at joint" in said
+    assert "sine:0.1g:0.8s:" not in said
+    file.write_text(text, encoding="utf-8")
+    assert " ".join(run("respond", *asked).stdout.split()).count("needs a friction of") == 1
+
+
+def test_an_impact_that_throws_a_joint_apart_loses_contact():
+    """The joints that open next would have to pull at the impact of a thin half circle."""
+    arch = Arch(radius=10.0, thickness=1.1, inclusion_angle_deg=180)
+    history, found = checked(arch, None, release=0.3)
+    assert impulses(arch, arch.directions[0]).normal.min() < 0
+    assert found.lost == history.impacts[0, 0] and found.lost_joint == "A'" and not found.holds
+    assert f"Contact is lost at joint A' at {found.lost:.4g} s" in contact_words(found, arch)
 
 
 def test_respond_says_it(tmp_path):

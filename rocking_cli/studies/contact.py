@@ -23,6 +23,7 @@ from rocking_cli.excitation.base import GroundMotion
 Reals = NDArray[np.float64]
 Places = NDArray[np.intp]
 BEARS = 0.01  # of N as rocking starts: with less a joint bears nothing that friction could be asked of
+IDLE = 1e-9  # of the largest force as rocking starts: a joint with less, such as of a beam without mass, bears nothing
 NEAR_PEAK = 0.9  # of the largest demand: how long it lasts is how long there is more than that
 BLOCK = 25_000  # states at a time: their matrices never stand in memory all at once
 NONE = float("nan")
@@ -145,7 +146,9 @@ class Contacts:
     def _worst(self, direction: Direction, states: _States, part: Places) -> tuple[Reals, Places]:
         """The three quantities of some states, each of the joint where it is largest, and the places of these."""
         found = reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
-        normal, bears = found.normal, np.maximum(BEARS * self._at_uplift[direction].normal, 0.0)
+        rest = self._at_uplift[direction]
+        bears = np.maximum(BEARS * rest.normal, 0.0)
+        normal = np.where(np.abs(found.force) > IDLE * np.abs(rest.force).max(), found.normal, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
             needed = np.where(normal > bears, np.abs(found.shear) / normal, 0.0)
             each = np.stack([needed, -normal, normal / self._capacity(found)])
@@ -198,7 +201,7 @@ class Contacts:
             moments.append((float(states.time[pulls[0]]), self._letter(states, joint, int(pulls[0]))))
         for direction, first in _ended(history).items():
             found = self._impulses[direction]
-            if found is not None and (thrown := found.normal[:, 0] <= 0).any():
+            if found is not None and (thrown := found.normal[:, 0] < -IDLE * np.abs(found.force).max()).any():
                 moments.append((first, found.joints[int(thrown.argmax())].letter))
         return min(moments, default=(NONE, ""))
 
@@ -298,5 +301,5 @@ def _ended(history: History) -> dict[Direction, float]:
 
 def _ratio(found: Reactions) -> float:
     """The largest |T|/N of joints that an impact presses together."""
-    pressed = found.normal > 0
+    pressed = found.normal > IDLE * np.abs(found.force).max()
     return float((np.abs(found.shear[pressed]) / found.normal[pressed]).max(initial=0.0))

@@ -11,8 +11,10 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import percent
+from rocking_cli.studies.contact import Contact
 from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
 from rocking_cli.studies.response import Answer, Histories
+from rocking_cli.views.contact import contact_words
 from rocking_cli.views.response import models_used
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.view import ABSENT, Table, heading
@@ -39,6 +41,8 @@ class Several:
         self._worst: dict[str, Severity] = {}
         self._fallen = 0
         self._around: Around | None = None
+        self._mechanism = structure.mechanism
+        self._contacts: dict[str, Contact] = {}
 
     def add(self, found: Answer) -> None:
         """Take up what became of it under one motion."""
@@ -51,6 +55,8 @@ class Several:
             self._row(f"{found.given.motion.name}{reversed_}", pga, histories, near)
             severities.append(severity(histories[self._best], near))
             self._around = near.around if near is not None else None
+            if sign in found.contacts:
+                self._contacts[f"{found.given.motion.name}{reversed_}"] = found.contacts[sign]
         if found.fit is not None and found.to_pulse is not None:
             own = found.fit.pulse
             self._row(f"  its {own.name} pulse alone", f"{own.amplitude / STANDARD_GRAVITY:.4g}", found.to_pulse, None)
@@ -75,8 +81,19 @@ class Several:
         if self._around is not None:
             yield f"Neighbours: {self._around.count} motions next to each, {self._around.words}."
         yield governing(self._worst)
+        yield from self._joints()
         yield from models_used(self._models)
         yield self._restitution
+
+    def _joints(self) -> Iterator[str]:
+        """What the motions ask of the joints: of those under which they do not hold, else of the one that asks most."""
+        fail = {name: found for name, found in self._contacts.items() if not found.holds}
+        asks = {name: found for name, found in self._contacts.items() if found.friction_needed >= 0}
+        if not fail and asks:
+            most = max(asks, key=lambda name: asks[name].friction_needed)
+            fail = {most: asks[most]}
+        for name, found in fail.items():
+            yield f"{name}: {contact_words(found, self._mechanism).removeprefix('Contact: ')}"
 
 
 def _peak(ratio: float) -> str:
