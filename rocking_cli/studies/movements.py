@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,17 +82,26 @@ class Watched:
         """In the order of the file."""
         return [thing for thing in self.mechanism.attached if isinstance(thing, Spring | SpringBed)]
 
+    @cached_property
+    def _limits(self) -> Mapping[Direction, float]:
+        return {direction: self.mechanism.limit(direction) for direction in self.mechanism.directions}
+
     def peaks(self, history: History) -> Movements:
         """The largest values of a history, also between its samples: a place depends on the rotation alone.
 
-        NaN of one that overturns, as its peak is; the impacts before are none the less.
+        NaN of one that overturns, as its peak is, and of a linear one that goes further than the mechanism can; the
+        impacts before are none the less.
         """
         reached = {
             direction: history.peak_positive if direction > 0 else history.peak_negative
             for direction in self.mechanism.directions
         }
-        if history.overturned:
-            reached = dict.fromkeys(reached, float("nan"))
+        if history.overturned or any(not phi < self._limits[side] for side, phi in reached.items()):
+            return Movements(
+                [PointPeak(name, spot.at, nan, nan) for name, spot in self.points.items()],
+                [TiePeak(tie.name, nan, nan) for tie in self.ties],
+                self._impact_velocity(history),
+            )
         return Movements(
             [self._point(name, spot, reached) for name, spot in self.points.items()],
             [self._tie(tie, reached) for tie in self.ties],
@@ -124,7 +134,10 @@ class Watched:
     def _signed(self, phi: Reals, of: Callable[[Reals, Direction], NDArray[np.complex128]]) -> NDArray[np.complex128]:
         found = np.full(phi.shape, complex(np.nan, np.nan))
         for direction in Direction:
+            if direction not in self._limits:
+                continue
             mine = (phi * direction > 0) | ((phi == 0) & (direction is self.mechanism.directions[0]))
+            mine &= np.abs(phi) < self._limits[direction]
             if mine.any():
                 found[mine] = of(np.abs(phi[mine]), direction)
         return found
