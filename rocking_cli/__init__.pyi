@@ -6,6 +6,7 @@ from mechanisms.block import Block as Block
 from mechanisms.cone import Cone as Cone
 from mechanisms.point_mass import PointMass as PointMass
 from mechanisms.rigid_body import RigidBody as RigidBody
+from mechanisms.spanning_wall import SpanningWall as SpanningWall
 from mechanisms.symmetric_frame import SymmetricFrame as SymmetricFrame
 from mechanisms.wall import Wall as Wall
 from rocking_cli.api.answer import Answer as Answer

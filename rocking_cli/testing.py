@@ -34,11 +34,13 @@ from rocking_cli.core import (
     Hinge,
     Mechanism,
     Outline,
+    PointMass,
     RigidMotion,
     equilibrium,
     equivalent_block,
     polygon,
 )
+from rocking_cli.core.attachments import followed
 from rocking_cli.core.coefficients import coefficients, jump
 from rocking_cli.core.reactions import reactions
 from rocking_cli.core.registry import conformance
@@ -235,14 +237,16 @@ def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
         says, makes = structure.coefficients(phi, direction), _of_bodies(structure, phi, direction)
         moment = (np.abs(makes.G) + np.abs(makes.B)).max()
         sizes = {"phi": 1.0, "I": makes.I.max(), "J": makes.I.max(), "dG": moment, "dB": moment}
+        sizes |= dict.fromkeys(("Q", "dQ", "U"), structure.gravity * moment)
         for field in fields(Coefficients):
             value = getattr(makes, field.name)
             size = sizes.get(field.name, moment) + np.abs(value).max()
             what = f"{field.name} of coefficients, {direction.label} direction,"
             _near(what, phi, getattr(says, field.name), value, ALIKE * size, "of its bodies")
+        energy = structure.gravity * makes.V + makes.U
         for what, said, value in (
             ("kinetic_inertia", structure.kinetic_inertia(phi, direction), makes.I),
-            ("potential_energy", structure.potential_energy(phi, direction), structure.gravity * makes.V),
+            ("potential_energy", structure.potential_energy(phi, direction), energy),
         ):
             size = np.abs(value).max()
             _near(f"{what}, {direction.label} direction,", phi, said, value, ALIKE * size, "of its bodies")
@@ -263,9 +267,10 @@ def stands_and_can_overturn(structure: Mechanism) -> None:
             f"phi_cr = {phi_cr:.4g} rad is not between rest and the kinematic limit of {limit:.4g} rad {here}",
         )
         around = _of_bodies(structure, np.array([0.999, 1.0, 1.001]) * phi_cr, direction)
+        moment, slope = around.restoring(structure.gravity), around.stiffness(structure.gravity)
         _demand(
-            around.G[0] > 0 > around.G[2] and abs(around.G[1]) <= 1e-12 * abs(around.dG[1]),
-            f"phi_cr = {phi_cr:.6g} rad {here} is not where its bodies balance: G there is {around.G[1]:.3g} kg m",
+            moment[0] > 0 > moment[2] and abs(moment[1]) <= 1e-12 * abs(slope[1]),
+            f"phi_cr = {phi_cr:.6g} rad {here} is not where its bodies balance: G there is {moment[1]:.3g} kg m",
         )
 
 
@@ -281,14 +286,15 @@ def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
 
 def restitution_is_that_of_the_bodies(structure: Mechanism) -> None:
     """Restitution is that of the kinematics of its bodies, or what the user gives."""
-    bodies, rest = structure.bodies(), np.zeros(1)
+    bodies, rest = structure.weighed(), np.zeros(1)
+    masses = [thing for thing in structure.attached if isinstance(thing, PointMass)]
     bare = structure.model_copy(update={"restitution": None})
     given = structure.model_copy(update={"restitution": GIVEN})
     both = {"positive_to_negative": GIVEN, "negative_to_positive": GIVEN**2}
     each = structure.model_copy(update={"restitution": both})
     for direction in Direction:
         motions = structure.motion(rest, direction), structure.motion(rest, direction.opposite)
-        own = kinematic_restitution(bodies, *motions)
+        own = kinematic_restitution(bodies, *motions, masses)
         of = f"of an impact that ends motion in the {direction.label} direction"
         _agree(f"restitution_from_kinematics {of}", structure.restitution_from_kinematics(direction), own)
         _agree(f"eta {of}", bare.eta(direction), own)
@@ -303,7 +309,7 @@ def a_copy_is_the_same_structure(structure: Mechanism) -> None:
     changed = [key for key in type(structure).model_fields if getattr(copy, key) != getattr(structure, key)]
     _demand(type(copy) is type(structure), f"a copy is a {type(copy).__name__}")
     _demand(changed == ["gravity"] and copy.gravity == gravity, f"a copy with another gravity changes {changed}")
-    for direction in Direction:
+    for direction in Direction if not structure.attached else ():  # a force in N weighs less then
         _agree(
             f"uplift of a copy in the {direction.label} direction", copy.uplift(direction), structure.uplift(direction)
         )
@@ -508,8 +514,12 @@ def _quotient(values: Sequence[ArrayLike], step: float) -> NDArray[np.complex128
 
 
 def _of_bodies(structure: Mechanism, phi: Reals, direction: Direction) -> Coefficients:
-    """The coefficients that follow from bodies and motions alone, whatever the mechanism overrides."""
-    return coefficients(phi, direction, structure.bodies(), structure.motion(phi, direction))
+    """The coefficients that follow from bodies, motions and what hangs on them, whatever the mechanism overrides."""
+    bodies, motions = structure.weighed(), structure.motion(phi, direction)
+    total = coefficients(phi, direction, bodies, motions)
+    for thing in structure.attached:
+        thing.act(total, direction, followed(bodies, motions, phi.shape))
+    return total
 
 
 def _phi_cr(structure: Mechanism, direction: Direction) -> float:

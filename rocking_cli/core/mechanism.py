@@ -18,6 +18,7 @@ from rocking_cli.core.attached import Attached, Follow, PointMass, Spring, sprin
 from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
+from rocking_cli.core.extras import Extra
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.joints import Joint
@@ -31,8 +32,9 @@ from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
-    "bodies", "motion", "limit", "sketch", "joints", "alike", "volume", "total_mass", "coefficients", "kinetic_inertia",
-    "potential_energy", "uplift", "rebound_from_impacts",    "critical_rotation", "restitution_from_kinematics", "eta",
+    "bodies", "motion", "limit", "sketch", "joints", "alike", "volume", "total_mass", "carries", "extras",
+    "coefficients", "kinetic_inertia", "potential_energy", "uplift", "rebound_from_impacts", "critical_rotation",
+    "restitution_from_kinematics", "eta",
 )  # fmt: skip
 """The methods of `Mechanism` in which a plugin says or overrides what its mechanics is."""
 OF_THE_BARE = (
@@ -333,6 +335,14 @@ class Mechanism(Described, ABC):
         """Of bodies that stand for several which move alike: how many, by their names; by default none does."""
         return {}
 
+    def carries(self) -> Sequence[Attached]:
+        """What hangs on it by its own fields, such as the floor on a wall, beside loads and ties; by default none."""
+        return ()
+
+    def extras(self, direction: Direction) -> Sequence[Extra]:
+        """What it found on the way and users want to know, such as where it hinges; shown by `equiv`."""
+        return ()
+
     def volume(self) -> float:
         """The volume that `density` makes the mass of [m3]: by default that of the outlines, `depth` deep."""
         sketch = self.sketch()
@@ -366,10 +376,11 @@ class Mechanism(Described, ABC):
     @cached_property
     def _hung(self) -> Sequence[tuple[Loc, Attached]]:
         """What hangs on it, each with its place among the fields."""
+        own: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if not self._is_laden:
-            return ()
+            return own
         carrier = Carrier.of(self.bodies(), self.sketch(), self.alike())
-        found = list(attach(carrier, self.loads or [], self.ties or []))
+        found = [*own, *attach(carrier, self.loads or [], self.ties or [])]
         if self.interlock is not None:
             density = self.interlock.density or self.density
             if density is None:
