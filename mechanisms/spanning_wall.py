@@ -171,11 +171,11 @@ class SpanningWall(Mechanism):
             a, b, c = self.hinges(direction)
             at = self._cuts.index(b.imag)
             hinges[direction] = [
-                Hinge("A", a, (bodies[0].name,)),
-                Hinge("B", b, (bodies[at - 1].name, bodies[at].name)),
+                Hinge("A" + direction.prime, a, (bodies[0].name,)),
+                Hinge("B" + direction.prime, b, (bodies[at - 1].name, bodies[at].name)),
             ]
             if abs(c.real) <= t / 2:
-                hinges[direction].append(Hinge("C", c, (bodies[-1].name,), slide=1j))
+                hinges[direction].append(Hinge("C" + direction.prime, c, (bodies[-1].name,), slide=1j))
         load = f"{self.overburden:g} N on top at x = {self.overburden_eccentricity:g} m"
         return Sketch(
             uniform=True,

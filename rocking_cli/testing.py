@@ -401,8 +401,9 @@ def _holds_together(structure: Mechanism, direction: Direction, hinge: Hinge, wh
     moved = dict(zip(bodies, structure.motion(phi, direction), strict=True))
     known = len(hinge.bodies) in (1, 2) and set(hinge.bodies) <= set(bodies)
     _demand(known, f"{which} must join one or two bodies, and joins {', '.join(hinge.bodies) or 'none'}")
-    first, *others = (moved[name].carry(hinge.point)[0] for name in hinge.bodies)
-    gap = first - (others[0] if others else hinge.point)
+    about = hinge.point + 1j * hinge.roll
+    first, *others = (moved[name].carry(about)[0] for name in hinge.bodies)
+    gap = first - (others[0] if others else about + direction * hinge.roll * phi)
     across = np.abs((gap / hinge.slide).imag if hinge.slide else gap)
     held = bool(across.max() <= ALIKE * (_size(structure) + abs(hinge.point)))
     _demand(held, f"{which} parts by {across.max():.3g} m at phi = {phi[across.argmax()]:.4g} rad")
@@ -413,13 +414,13 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
 
     Bodies that move as one stand as one. Bodies whose outlines are not known are passed over.
     """
-    drawn = picture(structure)
+    drawn, sketch = picture(structure), structure.sketch()
     known = [part for part in drawn.parts if not part.assumed]
     if not known:
         return
     size = abs(drawn.extent[1] - drawn.extent[0])
     flush = FLUSH * size
-    bodies, level = structure.bodies(), not structure.sketch().ground
+    bodies, level = structure.bodies(), not sketch.ground
     for direction in Direction:
         phi = np.linspace(0.0, A_LITTLE, 9) * _phi_cr(structure, direction)
         motions = structure.motion(phi, direction)
@@ -442,6 +443,9 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
                 feet.setdefault((as_one[part.body], part.shift), []).extend(above[above[:, 0] <= flush])
         # A base of unknown shape may be wider than what is known; a point is none.
         wider = {as_one[part.body] for part in drawn.parts if part.assumed and bodies[part.body].inertia > 0}
+        # What rolls is on the ground with ever other points, and the hinge is held to that.
+        rolling = {name for hinge in sketch.hinges.get(direction, ()) if hinge.roll for name in hinge.bodies}
+        wider |= {as_one[k] for k, body in enumerate(bodies) if body.name in rolling}
         for (one, _), heights in feet.items():
             lift = np.min(heights, axis=0).max() if heights and one not in wider else 0.0
             _demand(lift <= flush, f"all of the base of {bodies[one].name} leaves the ground, by {lift:.4g} m {within}")

@@ -44,7 +44,7 @@ OF_THE_BARE = (
 LATER = {"dampers": "a damper", "inerters": "an inerter"}
 """What structures will have one day, and is refused by name until then."""
 ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
-POWERS = {"m": 1, "m2": 2, "m3": 3}  # of a length, by the unit of a field
+POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # of a length, by the unit of a field
 
 
 def _is_mass(unit: object) -> bool:
@@ -279,7 +279,7 @@ class Mechanism(Described, ABC):
                 setattr(cls, name, _of_the_bare(own))
 
     def enlarged(self, factor: float) -> Self:
-        """A structure of another size: every field in m, m2 or m3 is multiplied, all else stays.
+        """A structure of another size: every field in m, m2, m3 or kg m2 is multiplied, all else stays.
 
         Parameters
         ----------
@@ -300,15 +300,13 @@ class Mechanism(Described, ABC):
         changed: dict[str, Any] = {}
         for key, field in type(self).model_fields.items():
             unit = field.json_schema_extra.get("unit") if isinstance(field.json_schema_extra, dict) else None
-            power = POWERS.get(str(unit))
+            power, value = POWERS.get(str(unit)), getattr(self, key)
             if power is not None:
-                changed[key] = _multiplied(getattr(self, key), factor**power)
-        for key in ("loads", "ties"):
-            if things := getattr(self, key):
-                changed[key] = [thing.enlarged(factor) for thing in things]
-        for key in ("interlock", "strength"):
-            if isinstance(part := getattr(self, key), Interlock | Strength):
-                changed[key] = part.enlarged(factor)
+                changed[key] = _multiplied(value, factor**power)
+            elif isinstance(value, list) and value and hasattr(value[0], "enlarged"):
+                changed[key] = [thing.enlarged(factor) for thing in value]
+            elif hasattr(value, "enlarged"):
+                changed[key] = value.enlarged(factor)
         return self.model_copy(update=changed)
 
     @abstractmethod

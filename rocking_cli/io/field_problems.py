@@ -39,7 +39,7 @@ def problems(
             continue
         place = place_of(document.data, error)
         if error["type"] == "geometry":
-            place = (*place, error["ctx"]["field"])
+            place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place, error, owner, lister)
         key = error["type"] == "extra_forbidden"
         found.setdefault(place, document.at(place, message, hint, key=key))
@@ -54,7 +54,7 @@ def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: 
         place: Place = tuple(part for part in error["loc"] if part in known or isinstance(part, int))
         place = place or tuple(error["loc"][:1])
         if error["type"] == "geometry":
-            place = (*place, error["ctx"]["field"])
+            place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place or (owner,), error, owner, f"`rocking mechanisms {owner}` lists the fields")
         found.setdefault(place, Problem(message, field=spell(place) if place else None, hint=hint))
     return list(found.values())
