@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import atan2, isclose
 
@@ -32,9 +32,12 @@ class SingleBody(Mechanism):
         return 0.0
 
     def pivot(self, direction: Direction) -> complex:
-        """Where it meets the ground as it begins to rock [m]: its foot."""
+        """Where it meets the ground as it begins to rock [m]: its foot, or inwards of it where that crushes."""
         left, right = self.feet()
-        return right if direction > 0 else left
+        return (right if direction > 0 else left) - direction * self.inwards(direction, "foot")
+
+    def bearing(self, direction: Direction) -> Mapping[str, float]:
+        return {"foot": self.borne(direction)}
 
     def centre(self, direction: Direction) -> complex:
         """What it turns about [m]: its pivot, or the centre of the circle on which it rolls."""

@@ -168,6 +168,8 @@ class RigidBody(SingleBody):
     def _check_radius(self, way: str) -> None:
         if self.corner_radius is None:
             return
+        if self.crushing is not None:
+            raise geometry_error("corner_radius", "goes not with crushing: a foot is rounded, or crushes on its edge")
         for direction in Direction:
             arm = self.arm(direction)
             if not (direction * arm.real < 0 < arm.imag):

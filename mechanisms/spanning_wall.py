@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from math import sqrt
 from typing import ClassVar, Literal, Self
@@ -15,7 +15,7 @@ from rocking_cli.core import (
     Body,
     Direction,
     Extra,
-    Hinge,
+    Joint,
     Length,
     Mechanism,
     PointMass,
@@ -79,6 +79,8 @@ class SpanningWall(Mechanism):
             )
         if self.overburden > 0 and not self.has_mass:
             raise geometry_error("density", "is missing: with an overburden the wall needs density and depth, or mass")
+        if self.hinge == "weakest" and self.crushing is not None:
+            raise geometry_error("hinge", "weakest is that of pivots on the faces: with crushing give its height")
         if self.hinge == "weakest" and self._is_laden:
             raise geometry_error("hinge", "weakest knows of the overburden only: with loads or ties give its height")
         for direction in self.directions:
@@ -131,7 +133,13 @@ class SpanningWall(Mechanism):
         face = direction * self.thickness / 2
         held = {"load": self.overburden_eccentricity, "pivot": face}
         x = self.support if isinstance(self.support, float) else held[self.support]
-        return face + 0j, complex(-face, self._hinges[direction] * self.height), complex(x, self.height)
+        a, b = (face - direction * self.inwards(direction, joint) for joint in ("foot", "hinge"))
+        return a + 0j, complex(-b, self._hinges[direction] * self.height), complex(x, self.height)
+
+    def bearing(self, direction: Direction) -> Mapping[str, float]:
+        at = self._cuts.index(self.hinges(direction)[1].imag)
+        above = [body.name for body in self.bodies()[at:]]
+        return {"foot": self.borne(direction), "hinge": self.borne(direction, *above)}
 
     def volume(self) -> float:
         """Of the wall; its cuts may depend on its weight."""
@@ -164,18 +172,22 @@ class SpanningWall(Mechanism):
     def extras(self, direction: Direction) -> Sequence[Extra]:
         return (Extra("hinge", self._hinges[direction], "", "height of the hinge over that of the wall"),)
 
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        a, b, c = self.hinges(direction)
+        names, at = [body.name for body in self.bodies()], self._cuts.index(b.imag)
+        return (
+            Joint("A" + direction.prime, a, (names[0],)),
+            Joint("B" + direction.prime, b, (names[at - 1], names[at]), face=names[at - 1]),
+            Joint("C" + direction.prime, c, (names[-1],), slide=1j),
+        )
+
     def sketch(self) -> Sketch:
-        bodies, t, top = self.bodies(), self.thickness, 1j * self.height
-        hinges = {}
-        for direction in Direction:
-            a, b, c = self.hinges(direction)
-            at = self._cuts.index(b.imag)
-            hinges[direction] = [
-                Hinge("A" + direction.prime, a, (bodies[0].name,)),
-                Hinge("B" + direction.prime, b, (bodies[at - 1].name, bodies[at].name)),
-            ]
-            if abs(c.real) <= t / 2:
-                hinges[direction].append(Hinge("C" + direction.prime, c, (bodies[-1].name,), slide=1j))
+        t, top = self.thickness, 1j * self.height
+        # Of a load off the wall the support is off its top too, and not drawn.
+        hinges = {
+            direction: [joint for joint in self.joints(direction) if abs(joint.point.real) <= t / 2]
+            for direction in Direction
+        }
         load = f"{self.overburden:g} N on top at x = {self.overburden_eccentricity:g} m"
         return Sketch(
             uniform=True,

@@ -312,7 +312,8 @@ def a_copy_is_the_same_structure(structure: Mechanism) -> None:
     changed = [key for key in type(structure).model_fields if getattr(copy, key) != getattr(structure, key)]
     _demand(type(copy) is type(structure), f"a copy is a {type(copy).__name__}")
     _demand(changed == ["gravity"] and copy.gravity == gravity, f"a copy with another gravity changes {changed}")
-    for direction in Direction if not structure.attached else ():  # a force in N weighs less then
+    # A force in N, and the strength of a pivot, are not what they were over the weight.
+    for direction in Direction if not structure.attached and structure.crushing is None else ():
         _agree(
             f"uplift of a copy in the {direction.label} direction", copy.uplift(direction), structure.uplift(direction)
         )
@@ -441,7 +442,10 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
                     "turn about the edge of its base, or the sketch say where the ground is",
                 )
                 above = above[above[:, 0] >= -flush]
-                deep = above.min(initial=0.0)
+                sinks = max(
+                    (each.value for each in structure.found(direction) if each.key == "inwards_foot"), default=0.0
+                )
+                deep = (above + sinks * phi).min(initial=0.0)
                 _demand(deep >= -flush, f"{part.name} goes {-deep:.4g} m through the ground {within}")
                 feet.setdefault((as_one[part.body], part.shift), []).extend(above[above[:, 0] <= flush])
         # A base of unknown shape may be wider than what is known; a point is none.

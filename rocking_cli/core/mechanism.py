@@ -19,6 +19,7 @@ from rocking_cli.core.attached import Attached, Follow, PointMass, Spring, sprin
 from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
+from rocking_cli.core.crushing import Crushing, pressing
 from rocking_cli.core.extras import Extra
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.interlock import Interlock
@@ -33,7 +34,7 @@ from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
-    "bodies", "motion", "limit", "sketch", "joints", "alike", "volume", "total_mass", "carries", "extras",
+    "bodies", "motion", "limit", "sketch", "joints", "alike", "volume", "total_mass", "carries", "extras", "bearing",
     "coefficients", "kinetic_inertia", "potential_energy", "uplift", "rebound_from_impacts", "critical_rotation",
     "restitution_from_kinematics", "eta",
 )  # fmt: skip
@@ -123,6 +124,11 @@ class Mechanism(Described, ABC):
         max_length=1000,
         examples=[[{"name": "bar", "from": {"ground": [-3.0, 2.0]}, "to": {"at": [0.0, 2.0]}, "stiffness": 1e6}]],
         description="ties, tendons and springs; `rocking mechanisms ties` lists their fields",
+    )
+    crushing: Crushing | None = Field(
+        None,
+        examples=[{"strength": 1e6}],
+        description="strength at its pivots, which then move inwards; `rocking mechanisms crushing` lists its fields",
     )
     interlock: Interlock | None = Field(
         None,
@@ -217,6 +223,7 @@ class Mechanism(Described, ABC):
         try:
             if self.mass is not None and self.density is not None:
                 raise Refused((), "mass", "give mass, or density and depth: one of them")
+            self._check_crushing()
             self._check_one_sided()
             self._check_restitution()
             self._mass_factor  # noqa: B018 - a density without a volume is refused here
@@ -233,6 +240,28 @@ class Mechanism(Described, ABC):
             self._check_stands()
         except Refused as error:
             raise as_validation_error([error], self.mechanism) from error
+
+    @model_validator(mode="after")
+    def _crushes_under_a_weight(self) -> Self:
+        if self.crushing is not None and not self.has_mass:
+            raise geometry_error("crushing", "needs the weight of the structure: give density and depth, or its mass")
+        if self.crushing is not None and self.crushing.depth is None and self.depth is None:
+            raise geometry_error(("crushing", "depth"), "is missing: give the length of the pivot out of plane")
+        return self
+
+    def _check_crushing(self) -> None:
+        if self.crushing is None:
+            return
+        if not self._inwards:
+            reason = (
+                "its pivots cannot be moved in this version, only those of single bodies and of walls: leave it out"
+            )
+            raise Refused((), "crushing", reason)
+        for direction in self.directions:
+            if not self.coefficients(np.zeros(1), direction).restoring(self.gravity)[0] > 0:
+                far = max(self._inwards[direction].values())
+                reason = f"the structure cannot stand on what is left: a pivot moves inwards by {far:.4g} m"
+                raise Refused((), "crushing", reason)
 
     def _check_one_sided(self) -> None:
         if self.one_sided is None and self.rebound is not None:
@@ -348,6 +377,50 @@ class Mechanism(Described, ABC):
     def extras(self, direction: Direction) -> Sequence[Extra]:
         """What it found on the way and users want to know, such as where it hinges; shown by `equiv`."""
         return ()
+
+    def bearing(self, direction: Direction) -> Mapping[str, float]:
+        """The normal force at rest of each joint that `crushing` moves, by its name [N]; none if it can move none.
+
+        Asked of the structure without crushing; a mechanism that gives some moves them by `inwards`.
+        """
+        return {}
+
+    def borne(self, direction: Direction, *bodies: str) -> float:
+        """The weight at rest of some bodies, or of all, with what hangs on them [N]."""
+        on = bodies or tuple(body.name for body in self.bodies())
+        weight = self.gravity * sum(body.mass for body in self.weighed() if body.name in on)
+        return weight + pressing(self.attached, on, direction, self.followed(np.zeros(1), direction), self.gravity)
+
+    def inwards(self, direction: Direction, joint: str) -> float:
+        """How far crushing moves a joint inwards [m], over the whole motion."""
+        return self._inwards[direction][joint] if self.crushing is not None else 0.0
+
+    @cached_property
+    def _inwards(self) -> Mapping[Direction, Mapping[str, float]]:
+        """u = N/(2 strength depth) of the joints of each direction [m]; empty if there is none to move."""
+        if self.crushing is None:
+            return {}
+        sound = self.model_copy(update={"crushing": None})
+        per_metre = 2 * self.crushing.strength * (self.crushing.depth or self.depth or 1.0)
+        moved = {direction: sound.bearing(direction) for direction in Direction}
+        found = {s: {joint: max(force, 0.0) / per_metre for joint, force in moved[s].items()} for s in Direction}
+        return found if all(found.values()) else {}
+
+    def found(self, direction: Direction) -> Sequence[Extra]:
+        """All that it found: `extras`, and how far its pivots are moved."""
+        what = "how far crushing moves the {} inwards"
+        moved = self._inwards.get(direction, {}).items()
+        return [*self.extras(direction), *(Extra(f"inwards_{key}", u, "m", what.format(key)) for key, u in moved)]
+
+    @property
+    def crushed(self) -> str | None:
+        """That its pivots are moved, as a sentence without a full stop; None if they are not."""
+        if self.crushing is None:
+            return None
+        return (
+            f"pivots moved inwards by crushing at {self.crushing.strength / 1e6:g} MPa under the forces at rest, and "
+            "kept there over the whole motion"
+        )
 
     def volume(self) -> float:
         """The volume that `density` makes the mass of [m3]: by default that of the outlines, `depth` deep."""

@@ -46,7 +46,7 @@ def view(structure: Prepared) -> View:
         ]
         for each in PARAMETERS
     ]
-    for extras in zip(*(mechanism.extras(side.direction) for side in shown), strict=True):
+    for extras in zip(*(mechanism.found(side.direction) for side in shown), strict=True):
         rows.append([extras[0].key, *(number(each.value) for each in extras), extras[0].unit, extras[0].meaning])
     heads = ["", *(("value",) if len(shown) == 1 else (side.direction.label for side in shown)), "unit", "meaning"]
     table = Table(heading(mechanism), heads, rows, numbers=range(1, len(shown) + 1))
@@ -60,6 +60,7 @@ def view(structure: Prepared) -> View:
         )
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += [*hung_in_words(mechanism), *_supported(mechanism)]
+    said += [f"P{mechanism.crushed[1:]}."] if mechanism.crushed else []
     said += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(data, [table, *said])
 
@@ -116,7 +117,7 @@ def _data(side: Side) -> dict[str, Any]:
 
 def _extras(mechanism: Mechanism, side: Side) -> dict[str, float]:
     """What the mechanism found beside the parameters."""
-    return {each.key: each.value for each in mechanism.extras(side.direction)}
+    return {each.key: each.value for each in mechanism.found(side.direction)}
 
 
 def _sentence(side: Side) -> str:
