@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import atan2, isclose
 
 from rocking_cli.core import (
@@ -26,10 +27,25 @@ class SingleBody(Mechanism):
         """Left and right foot corner [m], by default symmetric about the centroid at x = 0."""
         raise NotImplementedError
 
-    def arm(self, direction: Direction) -> complex:
-        """From the pivot of a direction to the centroid [m]; its length is R."""
+    def rolls(self, direction: Direction) -> float:
+        """The radius of the edge it rolls on, if it is rounded [m]."""
+        return 0.0
+
+    def pivot(self, direction: Direction) -> complex:
+        """Where it meets the ground as it begins to rock [m]: its foot, or inwards of it where that crushes."""
         left, right = self.feet()
-        return self.bodies()[0].centroid - (right if direction > 0 else left)
+        return (right if direction > 0 else left) - direction * self.inwards(direction, "foot")
+
+    def bearing(self, direction: Direction) -> Mapping[str, float]:
+        return {"foot": self.borne(direction)}
+
+    def centre(self, direction: Direction) -> complex:
+        """What it turns about [m]: its pivot, or the centre of the circle on which it rolls."""
+        return self.pivot(direction) + 1j * self.rolls(direction)
+
+    def arm(self, direction: Direction) -> complex:
+        """From what it turns about to the centroid [m]; its length is R."""
+        return self.bodies()[0].centroid - self.centre(direction)
 
     def alpha(self, direction: Direction) -> float:
         """Angle of R from the vertical at rest [rad]."""
@@ -37,13 +53,13 @@ class SingleBody(Mechanism):
         return atan2(-direction * arm.real, arm.imag)
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
-        left, right = self.feet()
-        return (rotation(phi, right if direction > 0 else left, -direction),)
+        turning, way = rotation(phi, self.centre(direction), -direction), direction * self.rolls(direction)
+        return (replace(turning, q=turning.q + way * phi, dq=turning.dq + way),)  # it rolls without slip
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
-        left, right = self.feet()
-        foot = right if direction > 0 else left
-        return (Joint("O" + direction.prime, foot, (self.bodies()[0].name,)),)
+        if self.rolls(direction):
+            return ()  # where it bears moves with it: its sums are those over the whole
+        return (Joint("O" + direction.prime, self.pivot(direction), (self.bodies()[0].name,)),)
 
     def critical_rotation(self, direction: Direction) -> float:
         return self.alpha(direction)  # the centroid stands over the pivot
@@ -58,13 +74,16 @@ class SingleBody(Mechanism):
 
     def sketch(self) -> Sketch:
         (body,) = self.bodies()
-        pivots = dict(zip(Direction, reversed(self.feet()), strict=True))
+        centres = {side: self.centre(side) for side in Direction}
         alike = isclose(self.alpha(Direction.POSITIVE), self.alpha(Direction.NEGATIVE), rel_tol=1e-9)
         shown = [Direction.POSITIVE] if alike else list(Direction)
         subscript = {Direction.POSITIVE: "" if alike else "₊", Direction.NEGATIVE: "₋"}
         return Sketch(
             outlines={body.name: self.outlines()} if self.outlines() else {},
-            hinges={direction: self.joints(direction) for direction in Direction},
-            lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", pivots[s], body.centroid, s) for s in shown)],
-            angles=[Angle(f"α{subscript[s]}", pivots[s], pivots[s] + 1j, body.centroid, s) for s in shown],
+            hinges={
+                side: [Hinge("O" + side.prime, self.pivot(side), (body.name,), roll=self.rolls(side))]
+                for side in Direction
+            },
+            lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", centres[s], body.centroid, s) for s in shown)],
+            angles=[Angle(f"α{subscript[s]}", centres[s], centres[s] + 1j, body.centroid, s) for s in shown],
         )

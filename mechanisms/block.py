@@ -33,7 +33,7 @@ class Block(SingleBody):
 
     def rebound_from_impacts(self) -> float | None:
         """Housner's impacts in sequence [Sorrentino, Al Shawa and Decanini 2011]; none with masses on it."""
-        if any(load.mass is not None for load in self.loads or ()):
+        if self.crushing is not None or any(load.mass is not None for load in self.loads or ()):
             return None
         sine, cosine = sin(self.alpha(Direction.POSITIVE)), cos(self.alpha(Direction.POSITIVE))
         return (1 - 1.5 * sine**2) ** 2 * abs(1 - 1.5 * cosine**2)

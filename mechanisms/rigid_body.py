@@ -1,24 +1,24 @@
-"""Any rigid body: by its R, alpha and inertia, or as a uniform polygon [paper, Section 2.2]."""
+"""Any rigid body: by its numbers, as a uniform polygon, or as the sum of its parts [paper, Section 2.2]."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from math import pi, radians
+from math import asin, pi, radians
 from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import model_validator
 
+from mechanisms._parts import EXACT, Fillet, Part, Plate, fillet, foot_is_cut, plates, united
+from mechanisms._polygons import SAME, Bools, Points, fault_of, size_of
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import (
     Body,
     Direction,
     Length,
     Outline,
-    Reals,
     Sketch,
     Vertex,
     geometry_error,
@@ -27,21 +27,26 @@ from rocking_cli.core import (
     quantity,
 )
 
-SAME = 1e-9  # of the polygon's size: points that are nearer are one
 LEVEL = 1e-6  # of its width or height, the smaller: nobody measures finer how level two corners are
 MOST = 10_000  # corners
-Points = NDArray[np.complex128]
-Indices = NDArray[np.intp]
-Bools = NDArray[np.bool_]
+WAYS = (
+    ("R", "alpha_deg", "inertia_ratio"),
+    ("polygon",),
+    ("parts",),
+    ("mass", "centroid", "inertia", "left_foot", "right_foot"),
+)
+"""The ways to describe it, each with what it needs."""
 
 
 class RigidBody(SingleBody):
-    """A rigid body; as a polygon it may lean, and then its two directions differ."""
+    """A rigid body; where its centroid is not above the middle of its feet, its two directions differ."""
 
     mechanism: ClassVar[str] = "rigid_body"
-    title: ClassVar[str] = "any rigid body, by its inertia or as a uniform polygon"
+    title: ClassVar[str] = "any rigid body: by its inertia, as a polygon, or of parts"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 2.2"
-    verified: ClassVar[str] = "p^2 = m g R/I_O, eta = 1 - 2 m R^2 sin^2(alpha)/I_O; polygons against the block"
+    verified: ClassVar[str] = (
+        "p^2 = m g R/I_O, eta = 1 - 2 m R^2 sin^2(alpha)/I_O; polygons against the block; rounded feet by Lagrange"
+    )
 
     starter: ClassVar[tuple[str, ...]] = ("R", "alpha_deg", "inertia_ratio")
 
@@ -65,57 +70,180 @@ class RigidBody(SingleBody):
         min_length=3,
         max_length=MOST,
     )
+    parts: list[Part] | None = quantity(
+        "plates that make it, each {polygon, density, depth}, or an opening in one: {polygon, opening: true}",
+        example=[
+            {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]]},
+            {"polygon": [[0.0, 3.0], [1.0, 3.0], [0.5, 4.0]]},
+        ],
+        default=None,
+        min_length=1,
+        max_length=100,
+    )
+    centroid: Vertex | None = quantity(
+        "where its centroid is, [x, y]; with mass, inertia and both feet",
+        unit="m",
+        example=[0.0, 1.4],
+        default=None,
+    )
+    inertia: float | None = quantity(
+        "moment of inertia about the centroid", unit="kg m2", symbol="I_G", example=700.0, default=None, ge=0, le=1e21
+    )
+    left_foot: Vertex | None = quantity(
+        "where it turns to the left, [x, y]", unit="m", example=[-0.35, 0.0], default=None
+    )
+    right_foot: Vertex | None = quantity(
+        "where it turns to the right, [x, y]; on a step at another height", unit="m", example=[0.35, 0.0], default=None
+    )
+    corner_radius: float | None = length(
+        "radius of its rounded feet, on which it rolls", symbol="r", example=0.02, default=None
+    )
 
     @model_validator(mode="after")
     def _one_description(self) -> Self:
-        numbers = {"R": self.R, "alpha_deg": self.alpha_deg, "inertia_ratio": self.inertia_ratio}
-        missing = [key for key, value in numbers.items() if value is None]
-        if self.polygon is None:
-            if missing:
-                raise geometry_error(
-                    missing[0], f"give R, alpha_deg and inertia_ratio, or a polygon; {missing[0]} is missing"
-                )
-            return self
-        if len(missing) < len(numbers):
-            raise geometry_error("polygon", "a polygon needs no R, alpha_deg or inertia_ratio: give one or the other")
-        self._check_polygon()
+        way = self._way
+        if way in ("polygon", "parts"):
+            self._check_shape(way)
+        elif way == "centroid":
+            self._check_feet()
+        self._check_radius(way)
         return self
 
-    def _check_polygon(self) -> None:
-        z, size = self._corners, self._size
-        if _any_alike(z, SAME * size):
-            raise geometry_error("polygon", "two corners are the same point; the last need not repeat the first")
-        if abs((z.conj() * np.roll(z, -1)).imag.sum()) / 2 <= SAME * size**2 or _any_meet(z):
+    @cached_property
+    def _way(self) -> str:
+        """The field that says how it is described."""
+        begun = [way for way in WAYS if any(getattr(self, key) is not None for key in way if key != "mass")]
+        if not begun:
             raise geometry_error(
-                "polygon", "its sides cross or enclose nothing: list the corners in order around the outline"
+                "inertia_ratio",
+                "is missing: give R, alpha_deg and inertia_ratio, or a polygon, or parts, or mass, centroid, inertia, "
+                "left_foot and right_foot",
             )
+        if len(begun) > 1:
+            second = next(key for key in begun[1] if getattr(self, key) is not None and key != "mass")
+            raise geometry_error(second, f"goes not with {begun[0][0]}: describe the body by one or the other")
+        missing = [key for key in begun[0] if getattr(self, key) is None]
+        if missing:
+            raise geometry_error(missing[0], f"give all of {', '.join(begun[0])}; {missing[0]} is missing")
+        return begun[0][0] if begun[0][0] != "mass" else "centroid"
+
+    def _check_shape(self, way: str) -> None:
+        if way == "polygon" and (fault := fault_of(self._corners)):
+            raise geometry_error("polygon", fault)
+        holes = [hole for plate in self._plates for hole in plate.holes]
         if not self._feet[1].real > self._feet[0].real:
-            second = np.sort(z.imag)[1] - z.imag.min()
+            second = np.sort(self._corners.imag)[1] - self._corners.imag.min()
             raise geometry_error(
-                "polygon",
+                way,
                 f"it stands on one corner, the next is {second:.4g} m higher: its two lowest corners must be level "
                 f"with each other, to {self._level:.2g} m",
             )
-        if not self._feet[0].real < self._body.centroid.real < self._feet[1].real:
-            raise geometry_error(
-                "polygon",
-                f"it cannot stand: its centroid (x = {self._body.centroid.real:.4g} m) is not above its foot "
-                f"(x = {self._feet[0].real:.4g} to {self._feet[1].real:.4g} m)",
-            )
+        for foot in self._feet:
+            if foot_is_cut(foot, holes, EXACT * size_of(self._corners)):
+                raise geometry_error(way, f"an opening takes away its foot at x = {foot.real:.4g} m")
+        self._check_centroid(way)
         for direction in Direction:
             if self.limit(direction) <= self.alpha(direction):
                 raise geometry_error(
-                    "polygon",
-                    f"in the {direction.label} direction another corner meets the ground before it can overturn",
+                    way, f"in the {direction.label} direction another corner meets the ground before it can overturn"
                 )
+
+    def _check_feet(self) -> None:
+        left, right = self._feet
+        if not right.real > left.real:
+            raise geometry_error("right_foot", "is not to the right of left_foot")
+        self._check_centroid("centroid")
+        if not self._body.centroid.imag > max(left.imag, right.imag):
+            raise geometry_error("centroid", "is not above both feet")
+
+    def _check_centroid(self, field: str) -> None:
+        (left, right), centroid = self._feet, self._body.centroid
+        if not left.real < centroid.real < right.real:
+            raise geometry_error(
+                field,
+                f"it cannot stand: its centroid (x = {centroid.real:.4g} m) is not above its foot "
+                f"(x = {left.real:.4g} to {right.real:.4g} m)",
+            )
+
+    def _check_radius(self, way: str) -> None:
+        if self.corner_radius is None:
+            return
+        if self.crushing is not None:
+            raise geometry_error("corner_radius", "goes not with crushing: a foot is rounded, or crushes on its edge")
+        for direction in Direction:
+            arm = self.arm(direction)
+            if not (direction * arm.real < 0 < arm.imag):
+                raise geometry_error(
+                    "corner_radius",
+                    f"is too large: in the {direction.label} direction the centroid is not between the centres of both "
+                    "rounded feet, above them",
+                )
+            if way in ("polygon", "parts") and self.limit(direction) <= self.alpha(direction):
+                raise geometry_error("corner_radius", "another corner meets the ground before it can overturn")
+
+    @property
+    def has_mass(self) -> bool:
+        return self.total_mass() is not None
+
+    def total_mass(self) -> float | None:
+        """Parts have the mass of their densities and depths, or of those of the body."""
+        weighed = self.parts is not None and all(
+            each is not None for each in (*self._of_parts("density"), *self._of_parts("depth"))
+        )
+        if self.mass is None and weighed:
+            return sum(sign * piece.mass for sign, piece in self._pieces)
+        return super().total_mass()
+
+    def _of_parts(self, key: str) -> list[float | None]:
+        """Density or depth of every plate among the parts: its own, or that of the body."""
+        own = [getattr(part, key) for part in self.parts or () if not part.opening]
+        return [each if each is not None else getattr(self, key) for each in own]
+
+    @cached_property
+    def _plates(self) -> list[Plate]:
+        if self.parts is None:
+            return [Plate(self._corners, (), 1.0)]
+        per_area = np.ones(sum(not part.opening for part in self.parts))
+        for key in ("density", "depth"):
+            values = self._of_parts(key)
+            given = [each for each in values if each is not None]
+            if given and len(given) < len(values):
+                solids = [k for k, part in enumerate(self.parts) if not part.opening]
+                k = solids[values.index(None)]
+                raise geometry_error(("parts", k, key), f"is missing: give {key} to all parts, or to the body")
+            if given:
+                per_area = per_area * np.array(given)
+        return plates(self.parts, per_area.tolist())
+
+    @cached_property
+    def _fillets(self) -> dict[Direction, tuple[Plate, Fillet]]:
+        """The rounded feet of its plates."""
+        found: dict[Direction, tuple[Plate, Fillet]] = {}
+        for direction, foot in zip(Direction, reversed(self._feet), strict=True):
+            if self.corner_radius is None:
+                continue
+            (plate, *others) = [each for each in self._plates if np.abs(each.corners - foot).min() == 0]
+            if others:
+                raise geometry_error("corner_radius", f"two parts share the foot at x = {foot.real:.4g} m")
+            try:
+                found[direction] = plate, fillet(plate.corners, foot, -direction, self.corner_radius)
+            except ValueError as error:
+                raise geometry_error("corner_radius", str(error)) from None
+        return found
+
+    @cached_property
+    def _pieces(self) -> list[tuple[int, Body]]:
+        """What it is the sum of."""
+        pieces = [piece for plate in self._plates for piece in plate.pieces]
+        return pieces + [piece for plate, cut in self._fillets.values() for piece in cut.pieces(plate.per_area)]
 
     @cached_property
     def _corners(self) -> Points:
+        if self.parts is not None:
+            return np.concatenate(
+                [part.corners for part in self.parts if not part.opening] or [np.zeros(1, np.complex128)]
+            )
         return np.array([complex(*vertex) for vertex in self.polygon or []])
-
-    @property
-    def _size(self) -> float:
-        return float(np.ptp(self._corners.real) + np.ptp(self._corners.imag))
 
     @property
     def _stands(self) -> Bools:
@@ -127,20 +255,28 @@ class RigidBody(SingleBody):
     def _level(self) -> float:
         """Height up to which a corner is on the ground [m]."""
         narrow = min(np.ptp(self._corners.real), np.ptp(self._corners.imag))
-        return float(max(LEVEL * narrow, SAME * self._size))
+        return float(max(LEVEL * narrow, SAME * size_of(self._corners)))
 
     @cached_property
     def _body(self) -> Body:
-        if self.polygon is not None:
+        if self._way == "polygon" and self.corner_radius is None:
             return polygon("body", 1.0, self._corners.tolist())
+        if self._way in ("polygon", "parts"):
+            whole = united("body", self._pieces)
+            return replace(whole, mass=1.0, inertia=whole.inertia / whole.mass)
+        if self._way == "centroid":
+            assert self.mass is not None and self.inertia is not None and self.centroid is not None
+            return Body("body", self.mass, self.inertia, complex(*self.centroid))
         assert self.R is not None and self.alpha_deg is not None and self.inertia_ratio is not None
         return Body("body", 1.0, (self.inertia_ratio - 1) * self.R**2, 1j * self.R * np.cos(radians(self.alpha_deg)))
 
     @cached_property
     def _feet(self) -> tuple[complex, complex]:
-        if self.polygon is not None:
+        if self._way in ("polygon", "parts"):
             low = self._corners[self._stands]
             return complex(low[low.real.argmin()]), complex(low[low.real.argmax()])
+        if self.left_foot is not None and self.right_foot is not None:
+            return complex(*self.left_foot), complex(*self.right_foot)
         assert self.R is not None and self.alpha_deg is not None
         b = self.R * np.sin(radians(self.alpha_deg))
         return complex(-b), complex(b)
@@ -151,80 +287,52 @@ class RigidBody(SingleBody):
     def feet(self) -> tuple[complex, complex]:
         return self._feet
 
+    def rolls(self, direction: Direction) -> float:
+        return self.corner_radius or 0.0
+
+    def pivot(self, direction: Direction) -> complex:
+        """Where its flat base ends: of a foot without known sides, one radius inside of it."""
+        if self.corner_radius is not None and self._way in ("polygon", "parts"):
+            return self._fillets[direction][1].start
+        return super().pivot(direction) - direction * self.rolls(direction)
+
     def limit(self, direction: Direction) -> float:
-        if self.polygon is None:
-            return pi / 2 + self.alpha(direction)  # no outline: until the centroid is on the ground
-        left, right = self._feet
-        above = self._corners[~self._stands] - (right if direction > 0 else left)
-        turns = np.angle(above) if direction > 0 else pi - np.angle(above)
-        return float(turns.min())  # the next corner meets the ground
+        if self._way not in ("polygon", "parts"):
+            return self._meets_the_ground(np.array([self.arm(direction)]), direction)  # no outline: the centroid does
+        return self._meets_the_ground(self._corners[~self._stands] - self.centre(direction), direction)
+
+    def _meets_the_ground(self, away: Points, direction: Direction) -> float:
+        """The rotation at which the first of points, given from what it turns about, is on the ground [rad]."""
+        turns = np.angle(away) if direction > 0 else pi - np.angle(away)
+        if r := self.rolls(direction):
+            turns = turns + np.array([asin(min(r / abs(each), 1.0)) for each in away])
+        return float(turns.min())
 
     def outlines(self) -> Sequence[Outline]:
-        return (self._corners.tolist(),) if self.polygon is not None else ()
+        if self._way not in ("polygon", "parts"):
+            return ()
+        found = []
+        for plate in self._plates:
+            outline = plate.outline
+            for cut in (cut for home, cut in self._fillets.values() if home is plate):
+                outline = cut.rounded(outline)
+            found.append(outline)
+        return found
 
     def lengths(self) -> Sequence[Length]:
-        if self.polygon is None:
+        if self._way not in ("polygon", "parts"):
             return ()
         # Its size, and its foot: the corners themselves are too many to be written on it.
-        x, y = zip(*self.polygon, strict=True)
-        left, right = self._feet
+        z = self._corners
+        (left, right), low, high = self._feet, z.imag.min(), z.imag.max()
         return (
             Length("foot", left, right),
-            Length("height", complex(min(x), min(y)), complex(min(x), max(y))),
-            Length("width", complex(min(x), max(y)), complex(max(x), max(y))),
+            Length("height", complex(z.real.min(), low), complex(z.real.min(), high)),
+            Length("width", complex(z.real.min(), high), complex(z.real.max(), high)),
         )
 
     def sketch(self) -> Sketch:
-        if self.polygon is not None:
-            return replace(super().sketch(), uniform=True)
-        return replace(super().sketch(), notes=["its shape is not given: a disc of the same mass and inertia"])
-
-
-def _nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
-    """Pairs of boxes that overlap or touch, given their lower left and upper right corners, many at a time."""
-    order = np.argsort(low.real, kind="stable")
-    low, high = low[order], high[order]
-    for step in range(1, len(order)):
-        first = np.flatnonzero(low.real[step:] <= high.real[:-step])
-        if first.size == 0:
-            return  # boxes that are further apart in this order begin even further to the right
-        second = first + step
-        meet = (low.imag[second] <= high.imag[first]) & (low.imag[first] <= high.imag[second])
-        if meet.any():
-            yield order[first[meet]], order[second[meet]]
-
-
-def _any_alike(z: Points, tolerance: float) -> bool:
-    """Whether two points are within a tolerance of each other."""
-    around = tolerance * (1 + 1j)
-    return any((np.abs(z[i] - z[j]) <= tolerance).any() for i, j in _nearby(z, z + around))
-
-
-def _any_meet(z: Points) -> bool:
-    """Whether two sides of a polygon cross or touch; neighbours share a corner, and only neighbours do."""
-    w = np.roll(z, -1)
-    low = np.minimum(z.real, w.real) + 1j * np.minimum(z.imag, w.imag)
-    high = np.maximum(z.real, w.real) + 1j * np.maximum(z.imag, w.imag)
-    for i, j in _nearby(low, high):
-        apart = (z[i] != z[j]) & (z[i] != w[j]) & (w[i] != z[j]) & (w[i] != w[j])
-        if _meet(z[i][apart], w[i][apart], z[j][apart], w[j][apart]).any():
-            return True
-    return False
-
-
-def _meet(a: Points, b: Points, c: Points, d: Points) -> Bools:
-    """Whether sides ab and cd, which share no corner, cross or touch."""
-
-    def side(p: Points, q: Points, r: Points) -> Reals:
-        u, v = q - p, r - p
-        turns: Reals = np.sign(u.real * v.imag - u.imag * v.real)
-        return turns
-
-    def within(p: Points, q: Points, r: Points, where: Reals) -> Bools:
-        u, v = r - p, r - q
-        return np.asarray((where == 0) & (u.real * v.real + u.imag * v.imag <= 0))
-
-    of_c, of_d, of_a, of_b = side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)
-    touch = within(a, b, c, of_c) | within(a, b, d, of_d) | within(c, d, a, of_a) | within(c, d, b, of_b)
-    crosses: Bools = (of_c != of_d) & (of_a != of_b)
-    return crosses | touch
+        if self._way not in ("polygon", "parts"):
+            return replace(super().sketch(), notes=["its shape is not given: a disc of the same mass and inertia"])
+        per_area = [plate.per_area for plate in self._plates]
+        return replace(super().sketch(), uniform=max(per_area) == min(per_area))

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import atan2, hypot, pi
+from collections.abc import Mapping, Sequence
+from math import atan2
 from typing import ClassVar
 
-import numpy as np
-
+from mechanisms._slider_crank import slider_crank, slider_crank_limit
 from rocking_cli.core import (
     Angle,
     Body,
@@ -21,7 +20,6 @@ from rocking_cli.core import (
     box,
     length,
     rectangle,
-    rotation,
 )
 
 
@@ -41,10 +39,6 @@ class Wall(Mechanism):
     thickness: float = length("thickness", symbol="2b", example=0.3)
     height: float = length("height between foot and top support", symbol="4h", example=3.0)
 
-    @property
-    def _alpha(self) -> float:
-        return atan2(2 * self.thickness, self.height)
-
     def bodies(self) -> Sequence[Body]:
         h = self.height / 4
         return (
@@ -53,40 +47,36 @@ class Wall(Mechanism):
         )
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
-        foot = complex(direction * self.thickness / 2)
-        R = hypot(self.thickness, self.height / 2) / 2
-        tilt = self._alpha - phi
-        top = foot + 4j * R * np.cos(tilt)  # it stays above the foot pivot
-        upper = RigidMotion(
-            foot + 1j * self.height,
-            top,
-            4j * R * np.sin(tilt),
-            -4j * R * np.cos(tilt),
-            direction * phi,
-            np.full_like(phi, direction),
-            np.zeros_like(phi),
-        )
-        return rotation(phi, foot, -direction), upper
+        return slider_crank(phi, direction, *self.hinges(direction))
+
+    def hinges(self, direction: Direction) -> tuple[complex, complex, complex]:
+        """Rest positions of the foot pivot A, the mid hinge B and the top support C [m]."""
+        face, h = direction * self.thickness / 2, self.height / 4
+        a, b = (face - direction * self.inwards(direction, joint) for joint in ("foot", "hinge"))
+        return a + 0j, complex(-b, 2 * h), complex(face, 4 * h)
+
+    def bearing(self, direction: Direction) -> Mapping[str, float]:
+        return {"foot": self.borne(direction), "hinge": self.borne(direction, "upper block")}
 
     def limit(self, direction: Direction) -> float:
-        return pi / 2  # the two blocks lie folded
+        return slider_crank_limit(direction, *self.hinges(direction))  # the two blocks lie folded
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
         lower, upper = (body.name for body in self.bodies())
-        foot, h = complex(direction * self.thickness / 2), self.height / 4
+        a, b, c = self.hinges(direction)
         return (
-            Joint("A" + direction.prime, foot, (lower,)),
-            Joint("B" + direction.prime, -foot + 2j * h, (lower, upper), face=lower),
-            Joint("C" + direction.prime, foot + 4j * h, (upper,), slide=1j),
+            Joint("A" + direction.prime, a, (lower,)),
+            Joint("B" + direction.prime, b, (lower, upper), face=lower),
+            Joint("C" + direction.prime, c, (upper,), slide=1j),
         )
 
     def critical_rotation(self, direction: Direction) -> float:
-        return self._alpha  # both pivots and the mid hinge are in line
+        return atan2(2 * self.thickness, self.height)  # alpha: both pivots and the mid hinge are in line
 
     def sketch(self) -> Sketch:
         lower, upper = self.bodies()
-        h, right = self.height / 4, complex(self.thickness / 2)
-        left = -right
+        right, pivot = complex(self.thickness / 2), self.hinges(Direction.POSITIVE)[0]
+        left, h = -right, self.height / 4
         return Sketch(
             outlines={body.name: [rectangle(body.centroid, self.thickness, 2 * h)] for body in (lower, upper)},
             uniform=True,
@@ -94,7 +84,7 @@ class Wall(Mechanism):
             lengths=[
                 Length("2b", left, right),
                 Length("4h", left, left + 4j * h),
-                Length("R", right, lower.centroid, Direction.POSITIVE),
+                Length("R", pivot, lower.centroid, Direction.POSITIVE),
             ],
-            angles=[Angle("α", right, right + 1j, lower.centroid, Direction.POSITIVE)],
+            angles=[Angle("α", pivot, pivot + 1j, lower.centroid, Direction.POSITIVE)],
         )

@@ -4,8 +4,10 @@ from mechanisms.arch import Arch as Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame as AsymmetricFrame
 from mechanisms.block import Block as Block
 from mechanisms.cone import Cone as Cone
+from mechanisms.curve import Curve as Curve
 from mechanisms.point_mass import PointMass as PointMass
 from mechanisms.rigid_body import RigidBody as RigidBody
+from mechanisms.spanning_wall import SpanningWall as SpanningWall
 from mechanisms.symmetric_frame import SymmetricFrame as SymmetricFrame
 from mechanisms.wall import Wall as Wall
 from rocking_cli.api.answer import Answer as Answer

@@ -47,7 +47,7 @@ def parse_structure(text: str, file: str, default_name: str, registry: Registry 
     fields = {key: value for key, value in document.data.items() if key != "mechanism"}
     if cls is not None:
         try:
-            mechanism = cls.from_fields({"name": default_name, **fields})
+            mechanism = cls.from_fields({"name": default_name, **fields}, Path(file).parent)
         except ValidationError as error:
             lister = f"`rocking mechanisms {cls.mechanism}` lists the fields"
             found = error.errors(include_url=False)

@@ -35,7 +35,10 @@ from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.testing import CHECKS, MechanismContract, contract
 from tests.conftest import EXAMPLES
 
-BUILT_IN = {"arch", "asymmetric_frame", "block", "cone", "point_mass", "rigid_body", "symmetric_frame", "wall"}
+BUILT_IN = {
+    "arch", "asymmetric_frame", "block", "cone", "curve", "point_mass", "rigid_body", "spanning_wall",
+    "symmetric_frame", "wall",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", list(Registry()))

@@ -45,6 +45,11 @@ def arch_of(thickness, angle):
     return Arch(radius=10.0, thickness=thickness, inclusion_angle_deg=angle)
 
 
+def precision_of(mechanism):
+    """The derivatives of a moment through measured points have corners."""
+    return 2e-9 if mechanism.smooth else 1e-5
+
+
 # --- the integrals
 
 
@@ -56,7 +61,7 @@ def test_periods_are_those_of_the_integrated_motion(file, direction):
     found = linearisation(mechanism, direction, amplitudes)
     for r, period in zip(amplitudes, found.period, strict=True):
         motion = respond(mechanism, release=direction * r, models=("nonlinear",), rtol=1e-12)["nonlinear"]
-        assert period == pytest.approx(4 * motion.impacts[0, 0], rel=2e-9)
+        assert period == pytest.approx(4 * motion.impacts[0, 0], rel=precision_of(mechanism))
 
 
 @every_direction
@@ -70,7 +75,7 @@ def test_overturning_times_are_those_of_the_integrated_motion(file, direction):
         push = np.full(3000, -direction * a * block.lambda_ * mechanism.gravity)
         motion = GroundMotion("constant", 0.005 / block.p, push)
         history = respond(mechanism, motion, models=("nonlinear",), rtol=1e-12)["nonlinear"]
-        assert history.overturning_time == pytest.approx(time, rel=2e-9)
+        assert history.overturning_time == pytest.approx(time, rel=precision_of(mechanism))
 
 
 @pytest.mark.parametrize("r", [1e-6, 0.3, 0.9, 0.9999])

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mechanisms._polygons import any_alike, any_meet
 from mechanisms.block import Block
-from mechanisms.rigid_body import MOST, RigidBody, _any_alike, _any_meet
+from mechanisms.rigid_body import MOST, RigidBody
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import MechanismError
 from rocking_cli.studies.linearisation import compare
@@ -50,7 +51,7 @@ CORNERS = st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=3
 
 @given(CORNERS)
 def test_sides_meet_as_they_do_side_by_side(corners):
-    assert _any_meet(plane(corners)) == any_touch(corners)
+    assert any_meet(plane(corners)) == any_touch(corners)
 
 
 @given(st.integers(3, 40), st.randoms(use_true_random=False))
@@ -60,16 +61,16 @@ def test_stars_do_not_meet_themselves_until_two_corners_change_places(count, ran
         (round(1000 * radius * np.cos(angle)), round(1000 * radius * np.sin(angle)))
         for angle, radius in zip(angles, (random.uniform(0.5, 1) for _ in angles), strict=True)
     ]
-    assert _any_meet(plane(corners)) == any_touch(corners)
+    assert any_meet(plane(corners)) == any_touch(corners)
     k = random.randrange(count - 2)
     corners[k], corners[k + 2] = corners[k + 2], corners[k]
-    assert _any_meet(plane(corners)) == any_touch(corners)
+    assert any_meet(plane(corners)) == any_touch(corners)
 
 
 @given(CORNERS, st.sampled_from([0.0, 0.5, 1.0, 1.5]))
 def test_corners_that_are_alike_are_found(corners, tolerance):
     near = any(np.hypot(p[0] - q[0], p[1] - q[1]) <= tolerance for p, q in combinations(corners, 2))
-    assert _any_alike(plane(corners), tolerance) == near
+    assert any_alike(plane(corners), tolerance) == near
 
 
 def tower(count):
@@ -87,12 +88,12 @@ def test_ten_thousand_corners_are_a_structure_and_more_are_refused():
 
 
 def test_the_sides_of_many_corners_are_not_compared_one_by_one(monkeypatch):
-    from mechanisms import rigid_body
+    from mechanisms import _polygons
 
     calls = []
-    meet = rigid_body._meet
-    monkeypatch.setattr(rigid_body, "_meet", lambda *sides: calls.append(len(sides[0])) or meet(*sides))
-    assert not _any_meet(plane(tower(3000)))
+    meet = _polygons._meet
+    monkeypatch.setattr(_polygons, "_meet", lambda *sides: calls.append(len(sides[0])) or meet(*sides))
+    assert not any_meet(plane(tower(3000)))
     assert sum(calls) < 10 * 3000
 
 

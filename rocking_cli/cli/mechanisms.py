@@ -8,7 +8,7 @@ import click
 
 from rocking_cli.cli import complete, options, terminal
 
-PARTS = ("loads", "ties", "interlock", "strength")  # what hangs on any mechanism, and has fields of its own
+PARTS = ("loads", "ties", "interlock", "strength", "crushing")  # what hangs on any mechanism, and has fields of its own
 
 if TYPE_CHECKING:
     from rocking_cli.core.registry import Registry
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def command(name: str | None, file: str | None, checked: bool, as_json: bool) -> None:
     """List the mechanisms that are installed and the package each comes from; with NAME, its fields.
 
-    `loads`, `ties`, `interlock` and `strength` are no mechanisms, and go with any: with one as NAME, its fields.
+    `loads`, `ties`, `interlock`, `strength` and `crushing` are no mechanisms, and go with any: with one as NAME, its fields.
 
     `--check` holds what a mechanism says to its bodies and their motion, prints what passes and what fails with the
     traceback of an error of its own, and ends with 3 if anything fails. FILE is a structure to check it on.

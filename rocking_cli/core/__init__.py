@@ -1,5 +1,8 @@
 """Pure mechanics: where the bodies of a mechanism are, and what follows from it."""
 
+from rocking_cli.core.attached import Attached as Attached
+from rocking_cli.core.attached import PointMass as PointMass
+from rocking_cli.core.attached import Spot as Spot
 from rocking_cli.core.bodies import Body as Body
 from rocking_cli.core.bodies import annular_sector as annular_sector
 from rocking_cli.core.bodies import box as box
@@ -12,6 +15,7 @@ from rocking_cli.core.equivalence import both_statics as both_statics
 from rocking_cli.core.equivalence import equivalent_block as equivalent_block
 from rocking_cli.core.equivalence import greatest_restitution as greatest_restitution
 from rocking_cli.core.equivalence import one_block as one_block
+from rocking_cli.core.extras import Extra as Extra
 from rocking_cli.core.fields import Vertex as Vertex
 from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length

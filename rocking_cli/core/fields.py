@@ -55,18 +55,20 @@ def length(description: str, *, symbol: str = "", example: Any = None, **bounds:
     return quantity(description, unit="m", symbol=symbol, example=example, gt=0, le=1e6, **bounds)
 
 
-def geometry_error(field: str, message: str) -> PydanticCustomError:
+def geometry_error(field: str | tuple[str | int, ...], message: str) -> PydanticCustomError:
     """An error for a validator to raise when fields that are fine one by one do not fit together.
 
     Parameters
     ----------
-    field : str
-        The field to point at.
+    field : str or tuple
+        The field to point at, or the way to one within it: `("parts", 2, "polygon")`.
     message : str
         What is wrong and what would be right.
     """
     # Pydantic formats the message: braces are its own.
-    return PydanticCustomError("geometry", "{reason}", {"reason": message, "field": field})
+    return PydanticCustomError(
+        "geometry", "{reason}", {"reason": message, "field": (field,) if isinstance(field, str) else field}
+    )
 
 
 def in_unit(value: Any, unit: str) -> Any:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from inspect import isfunction
 from math import sqrt
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -18,6 +19,8 @@ from rocking_cli.core.attached import Attached, Follow, PointMass, Spring, sprin
 from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
+from rocking_cli.core.crushing import Crushing, pressing
+from rocking_cli.core.extras import Extra
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.joints import Joint
@@ -31,8 +34,9 @@ from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
-    "bodies", "motion", "limit", "sketch", "joints", "alike", "volume", "total_mass", "coefficients", "kinetic_inertia",
-    "potential_energy", "uplift", "rebound_from_impacts",    "critical_rotation", "restitution_from_kinematics", "eta",
+    "bodies", "motion", "limit", "sketch", "joints", "alike", "volume", "total_mass", "carries", "extras", "bearing",
+    "coefficients", "kinetic_inertia", "potential_energy", "uplift", "rebound_from_impacts", "critical_rotation",
+    "restitution_from_kinematics", "eta",
 )  # fmt: skip
 """The methods of `Mechanism` in which a plugin says or overrides what its mechanics is."""
 OF_THE_BARE = (
@@ -42,7 +46,7 @@ OF_THE_BARE = (
 LATER = {"dampers": "a damper", "inerters": "an inerter"}
 """What structures will have one day, and is refused by name until then."""
 ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
-POWERS = {"m": 1, "m2": 2, "m3": 3}  # of a length, by the unit of a field
+POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # of a length, by the unit of a field
 
 
 def _is_mass(unit: object) -> bool:
@@ -121,6 +125,11 @@ class Mechanism(Described, ABC):
         examples=[[{"name": "bar", "from": {"ground": [-3.0, 2.0]}, "to": {"at": [0.0, 2.0]}, "stiffness": 1e6}]],
         description="ties, tendons and springs; `rocking mechanisms ties` lists their fields",
     )
+    crushing: Crushing | None = Field(
+        None,
+        examples=[{"strength": 1e6}],
+        description="strength at its pivots, which then move inwards; `rocking mechanisms crushing` lists its fields",
+    )
     interlock: Interlock | None = Field(
         None,
         examples=[{"courses": 10, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 2.0}],
@@ -187,8 +196,15 @@ class Mechanism(Described, ABC):
         return type(self).from_fields({**kept, **(update or {})})
 
     @classmethod
-    def from_fields(cls, fields: Mapping[str, Any]) -> Self:
+    def from_fields(cls, fields: Mapping[str, Any], folder: Path | None = None) -> Self:
         """The mechanism with these fields.
+
+        Parameters
+        ----------
+        fields : mapping
+            Names and values.
+        folder : Path, optional
+            Where files that fields name are, by default here: `folder` in the context of the validation.
 
         Raises
         ------
@@ -198,7 +214,7 @@ class Mechanism(Described, ABC):
             If a validator of the plugin fails in any other way.
         """
         with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
-            made = cls.model_validate(dict(fields))
+            made = cls.model_validate(dict(fields), context={"folder": folder})
             made._hold_together()
             return made
 
@@ -207,6 +223,7 @@ class Mechanism(Described, ABC):
         try:
             if self.mass is not None and self.density is not None:
                 raise Refused((), "mass", "give mass, or density and depth: one of them")
+            self._check_crushing()
             self._check_one_sided()
             self._check_restitution()
             self._mass_factor  # noqa: B018 - a density without a volume is refused here
@@ -223,6 +240,28 @@ class Mechanism(Described, ABC):
             self._check_stands()
         except Refused as error:
             raise as_validation_error([error], self.mechanism) from error
+
+    @model_validator(mode="after")
+    def _crushes_under_a_weight(self) -> Self:
+        if self.crushing is not None and not self.has_mass:
+            raise geometry_error("crushing", "needs the weight of the structure: give density and depth, or its mass")
+        if self.crushing is not None and self.crushing.depth is None and self.depth is None:
+            raise geometry_error(("crushing", "depth"), "is missing: give the length of the pivot out of plane")
+        return self
+
+    def _check_crushing(self) -> None:
+        if self.crushing is None:
+            return
+        if not self._inwards:
+            reason = (
+                "its pivots cannot be moved in this version, only those of single bodies and of walls: leave it out"
+            )
+            raise Refused((), "crushing", reason)
+        for direction in self.directions:
+            if not self.coefficients(np.zeros(1), direction).restoring(self.gravity)[0] > 0:
+                far = max(self._inwards[direction].values())
+                reason = f"the structure cannot stand on what is left: a pivot moves inwards by {far:.4g} m"
+                raise Refused((), "crushing", reason)
 
     def _check_one_sided(self) -> None:
         if self.one_sided is None and self.rebound is not None:
@@ -277,7 +316,7 @@ class Mechanism(Described, ABC):
                 setattr(cls, name, _of_the_bare(own))
 
     def enlarged(self, factor: float) -> Self:
-        """A structure of another size: every field in m, m2 or m3 is multiplied, all else stays.
+        """A structure of another size: every field in m, m2, m3 or kg m2 is multiplied, all else stays.
 
         Parameters
         ----------
@@ -298,15 +337,13 @@ class Mechanism(Described, ABC):
         changed: dict[str, Any] = {}
         for key, field in type(self).model_fields.items():
             unit = field.json_schema_extra.get("unit") if isinstance(field.json_schema_extra, dict) else None
-            power = POWERS.get(str(unit))
+            power, value = POWERS.get(str(unit)), getattr(self, key)
             if power is not None:
-                changed[key] = _multiplied(getattr(self, key), factor**power)
-        for key in ("loads", "ties"):
-            if things := getattr(self, key):
-                changed[key] = [thing.enlarged(factor) for thing in things]
-        for key in ("interlock", "strength"):
-            if isinstance(part := getattr(self, key), Interlock | Strength):
-                changed[key] = part.enlarged(factor)
+                changed[key] = _multiplied(value, factor**power)
+            elif isinstance(value, list) and value and hasattr(value[0], "enlarged"):
+                changed[key] = [thing.enlarged(factor) for thing in value]
+            elif hasattr(value, "enlarged"):
+                changed[key] = value.enlarged(factor)
         return self.model_copy(update=changed)
 
     @abstractmethod
@@ -332,6 +369,58 @@ class Mechanism(Described, ABC):
     def alike(self) -> Mapping[str, int]:
         """Of bodies that stand for several which move alike: how many, by their names; by default none does."""
         return {}
+
+    def carries(self) -> Sequence[Attached]:
+        """What hangs on it by its own fields, such as the floor on a wall, beside loads and ties; by default none."""
+        return ()
+
+    def extras(self, direction: Direction) -> Sequence[Extra]:
+        """What it found on the way and users want to know, such as where it hinges; shown by `equiv`."""
+        return ()
+
+    def bearing(self, direction: Direction) -> Mapping[str, float]:
+        """The normal force at rest of each joint that `crushing` moves, by its name [N]; none if it can move none.
+
+        Asked of the structure without crushing; a mechanism that gives some moves them by `inwards`.
+        """
+        return {}
+
+    def borne(self, direction: Direction, *bodies: str) -> float:
+        """The weight at rest of some bodies, or of all, with what hangs on them [N]."""
+        on = bodies or tuple(body.name for body in self.bodies())
+        weight = self.gravity * sum(body.mass for body in self.weighed() if body.name in on)
+        return weight + pressing(self.attached, on, direction, self.followed(np.zeros(1), direction), self.gravity)
+
+    def inwards(self, direction: Direction, joint: str) -> float:
+        """How far crushing moves a joint inwards [m], over the whole motion."""
+        return self._inwards[direction][joint] if self.crushing is not None else 0.0
+
+    @cached_property
+    def _inwards(self) -> Mapping[Direction, Mapping[str, float]]:
+        """u = N/(2 strength depth) of the joints of each direction [m]; empty if there is none to move."""
+        if self.crushing is None:
+            return {}
+        sound = self.model_copy(update={"crushing": None})
+        per_metre = 2 * self.crushing.strength * (self.crushing.depth or self.depth or 1.0)
+        moved = {direction: sound.bearing(direction) for direction in Direction}
+        found = {s: {joint: max(force, 0.0) / per_metre for joint, force in moved[s].items()} for s in Direction}
+        return found if all(found.values()) else {}
+
+    def found(self, direction: Direction) -> Sequence[Extra]:
+        """All that it found: `extras`, and how far its pivots are moved."""
+        what = "how far crushing moves the {} inwards"
+        moved = self._inwards.get(direction, {}).items()
+        return [*self.extras(direction), *(Extra(f"inwards_{key}", u, "m", what.format(key)) for key, u in moved)]
+
+    @property
+    def crushed(self) -> str | None:
+        """That its pivots are moved, as a sentence without a full stop; None if they are not."""
+        if self.crushing is None:
+            return None
+        return (
+            f"pivots moved inwards by crushing at {self.crushing.strength / 1e6:g} MPa under the forces at rest, and "
+            "kept there over the whole motion"
+        )
 
     def volume(self) -> float:
         """The volume that `density` makes the mass of [m3]: by default that of the outlines, `depth` deep."""
@@ -366,10 +455,11 @@ class Mechanism(Described, ABC):
     @cached_property
     def _hung(self) -> Sequence[tuple[Loc, Attached]]:
         """What hangs on it, each with its place among the fields."""
+        own: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if not self._is_laden:
-            return ()
+            return own
         carrier = Carrier.of(self.bodies(), self.sketch(), self.alike())
-        found = list(attach(carrier, self.loads or [], self.ties or []))
+        found = [*own, *attach(carrier, self.loads or [], self.ties or [])]
         if self.interlock is not None:
             density = self.interlock.density or self.density
             if density is None:
@@ -399,6 +489,16 @@ class Mechanism(Described, ABC):
         follow = self.followed(np.asarray(phi, dtype=np.float64), direction)
         rows = [each.slack_at(each.elongation(follow)[0]) for each in self.springs if each.only is not None]
         return np.array(rows).reshape(len(rows), np.size(phi))
+
+    @property
+    def bends(self) -> bool:
+        """Whether its restoring moment may have any shape: it is then seen whether linear models mislead."""
+        return bool(self.attached)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether no derivative of its restoring moment has corners, as where a tie goes slack."""
+        return all(spring.only is None for spring in self.springs)
 
     @property
     def is_bare(self) -> bool:

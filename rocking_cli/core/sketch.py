@@ -31,12 +31,15 @@ class Hinge:
         Names of the two bodies it joins, or of the one that it joins to the ground.
     slide : complex
         Where the ground holds it on a guide only: the direction in which it may move.
+    roll : float
+        Where the body rolls on a rounded edge instead of turning about a point: the radius of the edge [m].
     """
 
     letter: str
     point: complex
     bodies: tuple[str, ...]
     slide: complex = 0j
+    roll: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -89,6 +89,7 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
     departure = float("nan")
     if phi_cr is not None:
         departure = float(np.abs(moment / moment[0] - (1 - way / phi_cr)).max())
-        rises = mechanism.attached and (slope >= 0).any()
-        why = "its restoring moment does not fall all the way from rest: what ties it stiffens it" if rises else ""
+        rises = mechanism.bends and (slope >= 0).any()
+        cause = ": what ties it stiffens it" if mechanism.attached else ""
+        why = f"its restoring moment does not fall all the way from rest{cause}" if rises else ""
     return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None)

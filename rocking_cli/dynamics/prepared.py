@@ -63,7 +63,7 @@ class Prepared:
 
         Only of structures that something hangs on: how far a bare one is from its block is said of each kappa.
         """
-        if self.why_no_block is not None or not self.mechanism.attached:
+        if self.why_no_block is not None or not self.mechanism.bends:
             return None
         far = max(each.departure for each in self.statics)
         off = uplift_error(self.equivalence)

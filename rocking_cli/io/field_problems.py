@@ -33,13 +33,13 @@ def problems(
         What lists them.
     """
     found: dict[Place, Problem] = {}
-    errors = list(errors)
+    errors = _of_words(errors)
     for error in errors:
         if not _concerns(document.data, error, errors):
             continue
         place = place_of(document.data, error)
         if error["type"] == "geometry":
-            place = (*place, error["ctx"]["field"])
+            place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place, error, owner, lister)
         key = error["type"] == "extra_forbidden"
         found.setdefault(place, document.at(place, message, hint, key=key))
@@ -50,11 +50,11 @@ def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: 
     """The errors of a validation of arguments in Python, each with the name of its argument."""
     found: dict[Place, Problem] = {}
     known = _names(model)
-    for error in errors:
+    for error in _of_words(errors):
         place: Place = tuple(part for part in error["loc"] if part in known or isinstance(part, int))
         place = place or tuple(error["loc"][:1])
         if error["type"] == "geometry":
-            place = (*place, error["ctx"]["field"])
+            place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place or (owner,), error, owner, f"`rocking mechanisms {owner}` lists the fields")
         found.setdefault(place, Problem(message, field=spell(place) if place else None, hint=hint))
     return list(found.values())
@@ -84,6 +84,17 @@ def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) ->
         given = given.get(part) if isinstance(given, dict) else given[part]
     others = (place_of(data, each) for each in errors if each["type"] not in ("float_type", "int_type"))
     return not (isinstance(given, dict) and any(each[: len(place)] == place for each in others))
+
+
+def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
+    """The errors without those that say of a wrong word that it is no number, where a number or a word may stand."""
+    errors = list(errors)
+    words = {error["loc"][:-1] for error in errors if error["type"] == "literal_error"}
+    return [
+        error
+        for error in errors
+        if not (error["type"] == "float_type" and isinstance(error["input"], str) and error["loc"][:-1] in words)
+    ]
 
 
 BOUNDS = {
@@ -141,7 +152,8 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     if kind == "string_type":
         return f"must be text, {got}", "put it in quotes"
     if kind == "literal_error":
-        return f"must be {ctx['expected']}, {got}".replace("'", ""), None
+        number = f"a number{f' in{unit}' if unit else ''}, or " if info and float in get_args(info.annotation) else ""
+        return f"must be {number}{ctx['expected']}, {got}".replace("'", ""), None
     if kind in ("too_short", "too_long"):
         least, most = ctx.get("min_length"), ctx.get("max_length")
         wanted, count = ("at least", least) if least is not None else ("at most", most)

@@ -21,6 +21,7 @@ Reals = NDArray[np.float64]
 PRECISION = 1e-10  # relative change at which doubling the nodes stops
 FEWEST, MOST = 16, 512  # nodes along the motion
 INNER = 20  # nodes of the energy between two rotations
+ROUGH = (1e-5, 128, 100)  # precision, most nodes and inner nodes where derivatives of the restoring moment have corners
 CURVE = 60  # points of a curve
 STRONGEST = 10.0  # acceleration over uplift to which the curves go
 CLOSEST = 1e-6  # to no motion, and to the critical rotation, that an energy still tells apart
@@ -185,7 +186,7 @@ def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) ->
         slow: Reals = np.sqrt(inertia / (2 * mechanism.gravity * fall)) * short * np.sinh(u)
         return slow
 
-    return 4 * _integral(slowness, np.arccosh(1 / (1 - amplitude)))
+    return 4 * _integral(slowness, np.arccosh(1 / (1 - amplitude)), smooth=mechanism.smooth)
 
 
 def overturning_time(
@@ -230,12 +231,12 @@ def overturning_time(
         slow: Reals = np.sqrt(inertia / (2 * mechanism.gravity * gain)) * critical * excess * np.sinh(u)
         return slow
 
-    return _integral(slowness, np.arccosh(1 + 1 / (acceleration - 1)))
+    return _integral(slowness, np.arccosh(1 + 1 / (acceleration - 1)), smooth=mechanism.smooth)
 
 
 def _mean(mechanism: Mechanism, direction: Direction, low: Reals, high: Reals, push: Reals | float) -> Reals:
     """Mean of V'/g - push B between two rotations, without the cancellation of a difference of potentials."""
-    x, weight = np.polynomial.legendre.leggauss(INNER)
+    x, weight = np.polynomial.legendre.leggauss(INNER if mechanism.smooth else ROUGH[2])
     phi = low[..., None] + (high - low)[..., None] * (1 + x) / 2
     at = mechanism.coefficients(phi.ravel(), direction)
     restoring, B = (values.reshape(phi.shape) for values in (at.restoring(mechanism.gravity), at.B))
@@ -248,15 +249,16 @@ def _inertia(mechanism: Mechanism, direction: Direction, phi: Reals) -> Reals:
     return mechanism.coefficients(phi.ravel(), direction).I.reshape(phi.shape)
 
 
-def _integral(integrand: Callable[[Reals], Reals], until: Reals) -> Reals:
+def _integral(integrand: Callable[[Reals], Reals], until: Reals, *, smooth: bool) -> Reals:
     """Integrals of f(u) from 0 to each `until`, by Gauss's rule with more and more nodes."""
     before = np.full_like(until, np.nan)
+    precision, most, _ = (PRECISION, MOST, INNER) if smooth else ROUGH
     nodes = FEWEST
-    while nodes <= MOST:
+    while nodes <= most:
         x, weight = np.polynomial.legendre.leggauss(nodes)
         with np.errstate(over="ignore", invalid="ignore"):  # what is beyond the range of numbers does not converge
             found: Reals = until / 2 * (integrand(until[:, None] * (1 + x) / 2) @ weight)
-        if (np.abs(found - before) <= PRECISION * np.abs(found)).all():
+        if (np.abs(found - before) <= precision * np.abs(found)).all():
             return found
         before, nodes = found, 2 * nodes
     raise SolverError(

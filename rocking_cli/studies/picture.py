@@ -277,6 +277,8 @@ def _picture(mechanism: Mechanism) -> Picture:
     ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
     if any(part.assumed for part in parts):
         sketch = replace(sketch, notes=[*sketch.notes, ASSUMED])
+    if mechanism.crushed:
+        sketch = replace(sketch, notes=[*sketch.notes, mechanism.crushed])
     return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch)
 
 

@@ -32,7 +32,7 @@ def view(structure: Prepared) -> View:
         "restitution": restitution_source(mechanism),
         "caution": mechanism.caution or None,
         "misleading": structure.misleading,
-        "directions": {side.direction.label: _data(side) for side in sides},
+        "directions": {side.direction.label: _data(side) | _extras(mechanism, side) for side in sides},
     }
     shown = sides[:1] if _symmetric(structure) else sides
     per_mass = "" if mechanism.has_mass else ", per unit mass"
@@ -46,6 +46,8 @@ def view(structure: Prepared) -> View:
         ]
         for each in PARAMETERS
     ]
+    for extras in zip(*(mechanism.found(side.direction) for side in shown), strict=True):
+        rows.append([extras[0].key, *(number(each.value) for each in extras), extras[0].unit, extras[0].meaning])
     heads = ["", *(("value",) if len(shown) == 1 else (side.direction.label for side in shown)), "unit", "meaning"]
     table = Table(heading(mechanism), heads, rows, numbers=range(1, len(shown) + 1))
     where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
@@ -58,6 +60,7 @@ def view(structure: Prepared) -> View:
         )
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += [*hung_in_words(mechanism), *_supported(mechanism)]
+    said += [f"P{mechanism.crushed[1:]}."] if mechanism.crushed else []
     said += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(data, [table, *said])
 
@@ -110,6 +113,11 @@ def _data(side: Side) -> dict[str, Any]:
         "limit": side.statics.limit,
         "no_block": side.statics.why_no_block,
     }
+
+
+def _extras(mechanism: Mechanism, side: Side) -> dict[str, float]:
+    """What the mechanism found beside the parameters."""
+    return {each.key: each.value for each in mechanism.found(side.direction)}
 
 
 def _sentence(side: Side) -> str:

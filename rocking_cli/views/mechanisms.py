@@ -9,6 +9,7 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from rocking_cli.core import Mechanism
+from rocking_cli.core.crushing import Crushing
 from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.loads import Load
 from rocking_cli.core.strength import Strength
@@ -44,7 +45,7 @@ def installed(found: Sequence[Installed]) -> View:
         [
             Table("Mechanisms", ["mechanism", "what it is", "package"], cells),
             "`rocking mechanisms NAME` lists the fields of one, `rocking new NAME` prints a file to start from. Loads, "
-            "ties and supports hang on any of them: `rocking mechanisms loads`, `ties`, `interlock`.",
+            "ties and supports hang on any of them: `rocking mechanisms loads`, `ties`, `interlock`, `crushing`.",
         ],
     )
 
@@ -75,6 +76,7 @@ def view(cls: type[Mechanism], package: str) -> View:
 PARTS: dict[str, tuple[str, dict[str, type[BaseModel]]]] = {
     "loads": ("a load, one of the list `loads` of any mechanism", {"": Load}),
     "ties": ("a tie, one of the list `ties` of any mechanism", {"": Tie, "from, to, path": Place, "bed": Face}),
+    "crushing": ("the strength of pivots, `crushing` of single bodies and walls", {"": Crushing}),
     "interlock": ("the friction of crossing walls, `interlock` of any mechanism", {"": Interlock}),
     "strength": ("what contacts bear, `strength` of any mechanism", {"": Strength}),
 }

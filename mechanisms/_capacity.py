@@ -1,0 +1,103 @@
+"""Capacity curves: points of a curve, checked, read from a file, and joined by a cubic that keeps their sense."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from rocking_cli.core import Reals
+from rocking_cli.io.files import read_bytes
+
+LARGEST = 10_000_000  # bytes of a file
+Point = list[float]
+
+
+def read_curve(path: Path) -> tuple[list[Point], list[int]]:
+    """The two columns of a file, and the line of each row. Raises `InputError`, or `ValueError` with the line."""
+    text = read_bytes(path, "capacity curve", LARGEST).decode("utf-8-sig", "replace")
+    points: list[Point] = []
+    lines: list[int] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        cells = [cell for cell in re.split(r"[,;\s]+", line.partition("#")[0].strip()) if cell]
+        if not cells:
+            continue
+        try:
+            row = [float(cell) for cell in cells]
+        except ValueError:
+            if not points and not any(re.match(r"[-+.\d]", cell) for cell in cells):
+                continue  # names of the columns
+            raise ValueError(f"line {number} is not two numbers, displacement and ratio: write 0.05, 0.21") from None
+        if len(row) != 2:
+            hint = "; a decimal comma is no decimal point" if "," in line else ""
+            raise ValueError(f"line {number} has {len(row)} numbers, not two: displacement and ratio{hint}")
+        points.append(row)
+        lines.append(number)
+    if len(points) < 2:
+        raise ValueError("has fewer than two rows of displacement and ratio")
+    return points, lines
+
+
+def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:
+    """What keeps points [displacement, ratio] from being the curve of a rocking structure, and at which of them."""
+    if not np.isfinite(points).all():
+        return int(np.argmin(np.isfinite(points).all(axis=1))), "must be finite numbers"
+    if points[0][0] != 0:
+        return 0, f"begins at {points[0][0]:g} m: the first point is at rest, with the ratio at uplift"
+    for k, ((d, _), (after, _)) in enumerate(pairwise(points), 1):
+        if after == d:
+            return k, f"is no function: it has two ratios at {d:g} m"
+        if after < d:
+            return k, f"goes back from {d:g} to {after:g} m: displacements must increase"
+    if points[0][1] <= 0:
+        return 0, (
+            f"has the ratio {points[0][1]:g} at rest: a rocking structure resists before it moves. Leave out what is "
+            "elastic: the curve begins with the ratio at uplift"
+        )
+    last = len(points) - 1
+    if points[last][1] > 0:
+        return last, (
+            f"ends at the ratio {points[last][1]:g}: go on to zero, where the critical rotation is, or beyond"
+        )
+    if points[last][1] >= points[last - 1][1]:
+        return last, "does not fall at its end: beyond the critical rotation the structure must fall"
+    return None
+
+
+class MonotoneCubic:
+    """A curve through points which rises and falls only where they do, and goes on straight after the last.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,)
+        The points; x increases.
+
+    Notes
+    -----
+    Fritsch and Butland (1984): slopes are weighted harmonic means of those of both sides, zero at a turn.
+    """
+
+    def __init__(self, x: Reals, y: Reals) -> None:
+        self.x, self.y = x, y
+        h, s = np.diff(x), np.diff(y) / np.diff(x)
+        one, other = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mean = (one + other) / (one / s[:-1] + other / s[1:])
+        self.slope = np.concatenate([[s[0]], np.where(s[:-1] * s[1:] > 0, mean, 0.0), [s[-1]]])
+        if len(s) > 1:
+            for end, near, next_ in ((0, 0, 1), (-1, -1, -2)):
+                three = ((2 * h[near] + h[next_]) * s[near] - h[near] * s[next_]) / (h[near] + h[next_])
+                self.slope[end] = s[near] * np.clip(three / s[near], 0.1, 3.0) if s[near] else 0.0
+
+    def __call__(self, x: Reals) -> tuple[Reals, Reals]:
+        """Value and slope at places of any shape."""
+        k = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, len(self.x) - 2)
+        h = self.x[k + 1] - self.x[k]
+        u = np.minimum((x - self.x[k]) / h, 1.0)
+        a, b, da, db = self.y[k], self.y[k + 1], h * self.slope[k], h * self.slope[k + 1]
+        value = a + u * (da + u * (3 * (b - a) - 2 * da - db + u * (2 * (a - b) + da + db)))
+        slope = (da + u * (2 * (3 * (b - a) - 2 * da - db) + 3 * u * (2 * (a - b) + da + db))) / h
+        return value + self.slope[-1] * np.maximum(x - self.x[-1], 0.0), slope

@@ -1,0 +1,204 @@
+"""Polygons of the plane: whether they are simple, touch, overlap or lie within each other; with holes in them.
+
+Corners are complex numbers x + iy [m], in order around the polygon, the last joined to the first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Reals
+
+SAME = 1e-9  # of the polygon's size: points that are nearer are one
+Points = NDArray[np.complex128]
+Indices = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+
+def size_of(z: Points) -> float:
+    """Width and height of a polygon together [m]."""
+    return float(np.ptp(z.real) + np.ptp(z.imag))
+
+
+def area_of(z: Points) -> float:
+    """Its area [m2], negative if its corners go clockwise."""
+    z = z - z[0]
+    return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
+
+
+def fault_of(z: Points) -> str | None:
+    """Why its corners are no simple polygon, a sentence without a full stop; None if they are one."""
+    size = size_of(z)
+    if any_alike(z, SAME * size):
+        return "two corners are the same point; the last need not repeat the first"
+    if abs(area_of(z)) <= SAME * size**2 or any_meet(z):
+        return "its sides cross or enclose nothing: list the corners in order around the outline"
+    return None
+
+
+def distance(points: Points, z: Points) -> Reals:
+    """How far points are from the sides of a polygon [m]."""
+    side = np.roll(z, -1) - z
+    away = points[:, None] - z
+    along = np.clip((away * side.conj()).real / _squared(side), 0.0, 1.0)
+    found: Reals = np.abs(away - along * side).min(axis=1)
+    return found
+
+
+def inside(points: Points, z: Points) -> Bools:
+    """Whether points are inside a polygon; of those on a side either may be said."""
+    w = np.roll(z, -1)
+    y = points.imag[:, None]
+    spans = (z.imag > y) != (w.imag > y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = z.real + (y - z.imag) / (w - z).imag * (w - z).real
+    odd: Bools = np.count_nonzero(spans & (points.real[:, None] < crossing), axis=1) % 2 == 1
+    return odd
+
+
+def overlap(one: Points, other: Points, tolerance: float) -> bool:
+    """Whether two polygons have more in common than sides and corners, to a tolerance [m]."""
+    if not _boxes_meet(one, other, -tolerance):
+        return False
+    for first, second in ((one, other), (other, one)):
+        middles = np.append(_middles(first, second), _within(first))
+        if (inside(middles, second) & (distance(middles, second) > tolerance)).any():
+            return True
+    return False
+
+
+def lies_within(inner: Points, outer: Points, tolerance: float) -> bool:
+    """Whether a polygon lies within another, to a tolerance [m]; they may share sides."""
+    points = np.append(_middles(inner, outer), inner)
+    return bool((inside(points, outer) | (distance(points, outer) <= tolerance)).all())
+
+
+def gap(one: Points, other: Points) -> float:
+    """The distance of two polygons that do not overlap [m]."""
+    return float(min(distance(one, other).min(), distance(other, one).min()))
+
+
+def pierced(outline: Points, holes: Sequence[Points]) -> Points:
+    """An outline with holes as one closed line, which goes to each hole and back the same way."""
+    outline = outline if area_of(outline) > 0 else outline[::-1]
+    left = [hole if area_of(hole) < 0 else hole[::-1] for hole in holes]
+    while left:
+        # The nearest first: no way to it crosses another.
+        nearest = min(range(len(left)), key=lambda k: gap(outline, left[k]))
+        outline = _joined(outline, left.pop(nearest))
+    return outline
+
+
+def _joined(outline: Points, hole: Points) -> Points:
+    """Two closed lines as one, joined where they are nearest."""
+    if distance(outline, hole).min() < distance(hole, outline).min():
+        k, other, at = _nearest(outline, hole)
+        return np.concatenate([outline[: k + 1], [at], np.roll(hole, -other - 1), [at], outline[k:]])
+    k, other, at = _nearest(hole, outline)
+    there = np.append(np.roll(hole, -k), hole[k])
+    return np.concatenate([outline[: other + 1], [at], there, [at], outline[other + 1 :]])
+
+
+def _nearest(corners: Points, z: Points) -> tuple[int, int, complex]:
+    """Of the corner that is nearest to a polygon: which it is, the side it is near to, and the point on that side."""
+    k = int(distance(corners, z).argmin())
+    side = np.roll(z, -1) - z
+    along = np.clip(((corners[k] - z) * side.conj()).real / _squared(side), 0.0, 1.0)
+    on = z + along * side
+    near = int(np.abs(corners[k] - on).argmin())
+    return k, near, complex(on[near])
+
+
+def _squared(side: Points) -> Reals:
+    """Squared lengths, of no length one."""
+    found: Reals = np.where(side == 0, 1.0, np.abs(side) ** 2)
+    return found
+
+
+def _boxes_meet(one: Points, other: Points, margin: float) -> bool:
+    return all(
+        getattr(a, part).min() <= getattr(b, part).max() + margin
+        for a, b in ((one, other), (other, one))
+        for part in ("real", "imag")
+    )
+
+
+def _middles(z: Points, other: Points) -> Points:
+    """Middles of the pieces into which another polygon cuts the sides of one."""
+    found = []
+    far = np.roll(other, -1) - other
+    for start, end in zip(z, np.roll(z, -1), strict=True):
+        side, away = end - start, other - start
+        area = (side.conjugate() * far).imag
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cuts = (away.conj() * far).imag / area
+        corners = (away * side.conjugate()).real / abs(side) ** 2
+        places = np.concatenate([cuts[area != 0], corners, [0.0, 1.0]])
+        places = np.unique(places[(places >= 0) & (places <= 1)])
+        found.append(start + side * (places[:-1] + places[1:]) / 2)
+    return np.concatenate(found)
+
+
+def _within(z: Points) -> complex:
+    """A point inside a polygon: on a level line between two of its heights, in the middle of its longest chord."""
+    heights = np.unique(z.imag)
+    k = int(np.diff(heights).argmax())
+    y, w = (heights[k] + heights[k + 1]) / 2, np.roll(z, -1)
+    spans = (z.imag > y) != (w.imag > y)
+    z, w = z[spans], w[spans]
+    x = np.sort(z.real + (y - z.imag) / (w - z).imag * (w - z).real)
+    long = int((x[1::2] - x[::2]).argmax())
+    return complex((x[2 * long] + x[2 * long + 1]) / 2, y)
+
+
+def _nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
+    """Pairs of boxes that overlap or touch, given their lower left and upper right corners, many at a time."""
+    order = np.argsort(low.real, kind="stable")
+    low, high = low[order], high[order]
+    for step in range(1, len(order)):
+        first = np.flatnonzero(low.real[step:] <= high.real[:-step])
+        if first.size == 0:
+            return  # boxes that are further apart in this order begin even further to the right
+        second = first + step
+        meet = (low.imag[second] <= high.imag[first]) & (low.imag[first] <= high.imag[second])
+        if meet.any():
+            yield order[first[meet]], order[second[meet]]
+
+
+def any_alike(z: Points, tolerance: float) -> bool:
+    """Whether two points are within a tolerance of each other."""
+    around = tolerance * (1 + 1j)
+    return any((np.abs(z[i] - z[j]) <= tolerance).any() for i, j in _nearby(z, z + around))
+
+
+def any_meet(z: Points) -> bool:
+    """Whether two sides of a polygon cross or touch; neighbours share a corner, and only neighbours do."""
+    w = np.roll(z, -1)
+    low = np.minimum(z.real, w.real) + 1j * np.minimum(z.imag, w.imag)
+    high = np.maximum(z.real, w.real) + 1j * np.maximum(z.imag, w.imag)
+    for i, j in _nearby(low, high):
+        apart = (z[i] != z[j]) & (z[i] != w[j]) & (w[i] != z[j]) & (w[i] != w[j])
+        if _meet(z[i][apart], w[i][apart], z[j][apart], w[j][apart]).any():
+            return True
+    return False
+
+
+def _meet(a: Points, b: Points, c: Points, d: Points) -> Bools:
+    """Whether sides ab and cd, which share no corner, cross or touch."""
+
+    def side(p: Points, q: Points, r: Points) -> Reals:
+        u, v = q - p, r - p
+        turns: Reals = np.sign(u.real * v.imag - u.imag * v.real)
+        return turns
+
+    def within(p: Points, q: Points, r: Points, where: Reals) -> Bools:
+        u, v = r - p, r - q
+        return np.asarray((where == 0) & (u.real * v.real + u.imag * v.imag <= 0))
+
+    of_c, of_d, of_a, of_b = side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)
+    touch = within(a, b, c, of_c) | within(a, b, d, of_d) | within(c, d, a, of_a) | within(c, d, b, of_b)
+    crosses: Bools = (of_c != of_d) & (of_a != of_b)
+    return crosses | touch

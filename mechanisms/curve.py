@@ -1,0 +1,185 @@
+"""A structure that is known by its capacity curve, as from a discrete or finite element analysis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from math import hypot, pi
+from pathlib import Path
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationInfo, model_validator
+
+from mechanisms._capacity import MonotoneCubic, Point, fault_of, read_curve
+from rocking_cli.core import (
+    Body,
+    Direction,
+    Mechanism,
+    Reals,
+    RigidMotion,
+    Sketch,
+    geometry_error,
+    length,
+    quantity,
+)
+from rocking_cli.errors import InputError
+
+Points = NDArray[np.complex128]
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
+PIECES = 100  # of the way to the limit, beside those between the points, on each of which these nodes are exact
+WHERE = {"points": "file", "negative_points": "negative_file"}
+"""Where points are read from."""
+
+
+class Curve(Mechanism):
+    """One rigid body that stands for the structure: its centroid moves in the direction that the curve says.
+
+    With the ratio r(phi), G = m R sin(beta), B = m R cos(beta), tan(beta) = r, R constant: G/B is the curve, and the
+    inertia stays as it is at rest. For a single rigid body on two feet that is exact.
+    """
+
+    mechanism: ClassVar[str] = "curve"
+    title: ClassVar[str] = "structure given by its capacity curve"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 8-10, with G/B from another analysis"
+    verified: ClassVar[str] = "the block from its own curve"
+    caution: ClassVar[str] = (
+        "The inertia is held constant, and restitution from kinematics is that of one rigid body on two feet: of a "
+        "structure of several bodies give a measured one."
+    )
+
+    starter: ClassVar[tuple[str, ...]] = ("points",)
+
+    points: list[list[float]] | None = quantity(
+        "curve: [displacement of the control point in m, ratio V'/(g B)], from uplift at rest to zero or beyond",
+        example=[[0.0, 0.25], [0.35, 0.123], [0.69, 0.0], [1.0, -0.112]],
+        default=None,
+        min_length=2,
+        max_length=10_000,
+    )
+    file: str | None = quantity(
+        "instead: a CSV file of these two columns, in the folder of this file", example="pushover.csv", default=None
+    )
+    negative_points: list[list[float]] | None = quantity(
+        "the same of the negative direction, away from rest; left out, that of the positive",
+        default=None,
+        min_length=2,
+        max_length=10_000,
+    )
+    negative_file: str | None = quantity("instead: its file", example="pushover_back.csv", default=None)
+    control_height: float = length("height of the control point: phi is its displacement over it", example=2.8)
+    centroid_height: float = length("drive of the ground at rest over the mass, B(0)/m", symbol="h_c", example=1.4)
+    mass: float = quantity("mass of what moves", unit="kg", symbol="m", example=1000.0, gt=0, le=1e15)
+    inertia: float = quantity(
+        "kinetic inertia I(0) at rest; of a rigid body, about its pivot", unit="kg m2", symbol="I", example=2780.0,
+        gt=0, le=1e21,
+    )  # fmt: skip
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_files(cls, data: Any, info: ValidationInfo) -> Any:
+        """Points instead of files: the structure is then whole without them."""
+        if not isinstance(data, dict):
+            return data
+        data = dict(data)
+        for key, from_file in WHERE.items():
+            if not isinstance(name := data.get(from_file), str):
+                continue
+            if data.get(key) is not None:
+                raise geometry_error(from_file, f"goes not with {key}: the curve is in one or the other")
+            folder = (info.context or {}).get("folder") or Path()
+            try:
+                points, lines = read_curve(folder / name)
+                if fault := fault_of(points):
+                    raise ValueError(f"line {lines[fault[0]]}: the curve {fault[1]}")
+            except InputError as error:
+                raise geometry_error(from_file, f"{name}: {error.problems[0].message}") from None
+            except ValueError as error:
+                raise geometry_error(from_file, f"{name}: {error}") from None
+            data = {**data, key: points, from_file: None}
+        return data
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if self.points is None:
+            raise geometry_error("points", "is missing: give the points of the curve, or a file that has them")
+        for key in WHERE:
+            self._check_points(key, getattr(self, key) or [])
+        for key in ("loads", "ties", "interlock", "density"):
+            if getattr(self, key) is not None:
+                raise geometry_error(key, "all that acts on the structure is in its curve: have it in the analysis")
+        arm = self._arm(Direction.POSITIVE)
+        if self.inertia < self.mass * arm**2:
+            raise geometry_error(
+                "inertia",
+                f"is less than a point mass would have: at least m h_c^2 (1 + r(0)^2) = {self.mass * arm**2:.6g} kg m2",
+            )
+        return self
+
+    def _check_points(self, key: str, points: Sequence[Point]) -> None:
+        for k, point in enumerate(points):
+            if len(point) != 2:
+                raise geometry_error((key, k), "must be two numbers: displacement and ratio")
+        if points and (fault := fault_of(points)):
+            raise geometry_error((key, fault[0]), f"the curve {fault[1]}")
+        if points and points[-1][0] >= pi / 2 * self.control_height:
+            raise geometry_error(
+                "control_height", f"the curve goes on to {points[-1][0]:g} m, beyond a quarter turn about the foot"
+            )
+
+    @cached_property
+    def _ratios(self) -> dict[Direction, MonotoneCubic]:
+        """r over phi, of both directions."""
+        curves = [np.array(points) for points in (self.points, self.negative_points or self.points)]
+        return {
+            direction: MonotoneCubic(curve[:, 0] / self.control_height, curve[:, 1])
+            for direction, curve in zip(Direction, curves, strict=True)
+        }
+
+    def _arm(self, direction: Direction) -> float:
+        """R: how far the centroid moves per rad [m]."""
+        return self.centroid_height * hypot(1.0, float(self._ratios[direction].y[0]))
+
+    @property
+    def bends(self) -> bool:
+        return True
+
+    @property
+    def smooth(self) -> bool:
+        return all(len(ratio.x) == 2 for ratio in self._ratios.values())
+
+    def bodies(self) -> Sequence[Body]:
+        central = self.inertia - self.mass * self._arm(Direction.POSITIVE) ** 2
+        return (Body("structure", self.mass, max(central, 0.0), 1j * self.centroid_height),)
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        ratio, arm = self._ratios[direction], self._arm(direction)
+        r, slope = ratio(phi)
+        bend = slope / (1 + r**2)  # beta'
+        path = self._way(phi, direction)
+        speed: Points = arm * (direction + 1j * r) / np.sqrt(1 + r**2)
+        change: Points = 1j * direction * bend * speed
+        rest, none = 1j * self.centroid_height, np.zeros_like(phi)
+        return (RigidMotion(rest, rest + arm * path, speed, change, -direction * phi, none - direction, none),)
+
+    def _way(self, phi: Reals, direction: Direction) -> Points:
+        """The integral of cos(beta) + i sin(beta) from rest, the first times s."""
+        ratio = self._ratios[direction]
+
+        def between(start: Reals, end: Reals) -> Points:
+            half = (end - start)[:, None] / 2
+            r, _ = ratio((start + end)[:, None] / 2 + half * NODES)
+            found: Points = ((half * WEIGHTS) * (direction + 1j * r) / np.sqrt(1 + r**2)).sum(axis=1)
+            return found
+
+        knots = np.union1d(ratio.x, np.linspace(0.0, self.limit(direction), PIECES + 1))
+        sums = np.concatenate([[0.0], np.cumsum(between(knots[:-1], knots[1:]))])
+        k = np.clip(np.searchsorted(knots, phi, side="right") - 1, 0, len(knots) - 1)
+        return sums[k] + between(knots[k], phi)
+
+    def limit(self, direction: Direction) -> float:
+        return pi / 2  # as far as a body turns until it lies
+
+    def sketch(self) -> Sketch:
+        return Sketch(notes=["the body stands for the structure: its centroid moves as the capacity curve says"])

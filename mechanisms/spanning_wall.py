@@ -1,0 +1,197 @@
+"""A wall that spans between floors, with a load on top and its hinge anywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from math import sqrt
+from typing import ClassVar, Literal, Self
+
+from pydantic import model_validator
+
+from mechanisms._slider_crank import slider_crank, slider_crank_limit
+from rocking_cli.core import (
+    Attached,
+    Body,
+    Direction,
+    Extra,
+    Joint,
+    Length,
+    Mechanism,
+    PointMass,
+    Reals,
+    RigidMotion,
+    Sketch,
+    Spot,
+    box,
+    geometry_error,
+    length,
+    quantity,
+)
+
+
+class SpanningWall(Mechanism):
+    """A one-way spanning wall that carries a floor, hinged at its foot and above it, its top held sideways."""
+
+    mechanism: ClassVar[str] = "spanning_wall"
+    title: ClassVar[str] = "wall spanning between floors, with a load on top"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 4, for any hinge and a load on top"
+    verified: ClassVar[str] = "lambda in closed form; Lagrange's equation in symbols; the wall without a load"
+
+    starter: ClassVar[tuple[str, ...]] = ("overburden", "density", "depth")
+
+    thickness: float = length("thickness", symbol="t", example=0.3)
+    height: float = length("height between foot and top support", symbol="h", example=3.0)
+    hinge: float | Literal["weakest"] = quantity(
+        "height of the hinge over that of the wall, in (0, 1), or weakest: where lambda is least",
+        symbol="xi",
+        example="weakest",
+    )
+    overburden: float = quantity(
+        "vertical load on top, such as a floor", unit="N", symbol="P", example=20_000.0, default=0.0, ge=0, le=1e12
+    )
+    overburden_eccentricity: float = quantity(
+        "where it acts: distance from the axis of the wall, to the right", unit="m", symbol="x_P", example=0.0,
+        default=0.0, ge=-1e6, le=1e6,
+    )  # fmt: skip
+    support: float | Literal["load", "pivot"] = quantity(
+        "where the top is held sideways: at the load, above the face it pivots on (pivot), or a distance from the axis",
+        unit="m",
+        symbol="x_C",
+        example="load",
+        default="load",
+    )
+    overburden_inertia: float = quantity(
+        "share of the mass P/g that moves up and down with the top", example=1.0, default=1.0, ge=0, le=1
+    )
+    depth: float | None = length("size out of plane; an overburden needs it", example=1.0, default=None)
+    density: float | None = quantity(
+        "density of the wall; an overburden needs it", unit="kg/m3", example=1800.0, default=None, gt=0, le=1e6
+    )
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if isinstance(self.hinge, float) and not 0 < self.hinge < 1:
+            raise geometry_error("hinge", f"is a share of the height: between 0 and 1, or weakest; got {self.hinge:g}")
+        if isinstance(self.support, float) and abs(self.support) > self.thickness / 2:
+            raise geometry_error(
+                "support", f"is off the top of the wall: at most {self.thickness / 2:g} m from its axis to either side"
+            )
+        if self.overburden > 0 and not self.has_mass:
+            raise geometry_error("density", "is missing: with an overburden the wall needs density and depth, or mass")
+        if self.hinge == "weakest" and self.crushing is not None:
+            raise geometry_error("hinge", "weakest is that of pivots on the faces: with crushing give its height")
+        if self.hinge == "weakest" and self._is_laden:
+            raise geometry_error("hinge", "weakest knows of the overburden only: with loads or ties give its height")
+        for direction in self.directions:
+            self._check_stands_alone(direction)
+        return self
+
+    def _check_stands_alone(self, direction: Direction) -> None:
+        load, lever = self._load_ratio, self._lever(direction)
+        if self.hinge == "weakest" and load * lever <= 0:
+            why = "without a load on top" if load == 0 else "with its load on the hinge's face or beyond"
+            raise geometry_error(
+                "hinge",
+                f"{why} the weakest hinge of the {direction.label} direction runs to the top: the whole wall turns "
+                "about its foot, and spans no more. Give the height at which it hinges",
+            )
+        xi = self._hinges[direction]
+        if 1 + load * (1 + lever * xi / (1 - xi)) <= 0:
+            raise geometry_error(
+                "overburden_eccentricity",
+                f"the wall cannot stand: so far off its face the load opens the hinge of the {direction.label} "
+                "direction by itself",
+            )
+
+    @property
+    def _load_ratio(self) -> float:
+        """rho: the load over the weight of the wall."""
+        return self.overburden / (self.gravity * (self.total_mass() or 1.0)) if self.overburden else 0.0
+
+    def _lever(self, direction: Direction) -> float:
+        """k: from the face of the hinge to the load, over the thickness."""
+        return 0.5 + direction * self.overburden_eccentricity / self.thickness
+
+    @cached_property
+    def _hinges(self) -> dict[Direction, float]:
+        """xi: the heights of the hinges of both directions over that of the wall."""
+        if isinstance(self.hinge, float):
+            return dict.fromkeys(Direction, self.hinge)
+        rho = self._load_ratio
+        levers = [self._lever(direction) for direction in self.sides]
+        xi = [1 / (1 + sqrt(max(rho * lever, 0.0) / (1 + rho))) for lever in levers]  # where lambda is least
+        return dict(zip(Direction, xi, strict=True))
+
+    @cached_property
+    def _cuts(self) -> list[float]:
+        """Where the wall is cut, from the foot to the top [m]."""
+        return [0.0, *sorted({xi * self.height for xi in self._hinges.values()}), self.height]
+
+    def hinges(self, direction: Direction) -> tuple[complex, complex, complex]:
+        """Rest positions of the foot pivot A, the hinge B and the top support C [m]."""
+        face = direction * self.thickness / 2
+        held = {"load": self.overburden_eccentricity, "pivot": face}
+        x = self.support if isinstance(self.support, float) else held[self.support]
+        a, b = (face - direction * self.inwards(direction, joint) for joint in ("foot", "hinge"))
+        return a + 0j, complex(-b, self._hinges[direction] * self.height), complex(x, self.height)
+
+    def bearing(self, direction: Direction) -> Mapping[str, float]:
+        at = self._cuts.index(self.hinges(direction)[1].imag)
+        above = [body.name for body in self.bodies()[at:]]
+        return {"foot": self.borne(direction), "hinge": self.borne(direction, *above)}
+
+    def volume(self) -> float:
+        """Of the wall; its cuts may depend on its weight."""
+        return self.thickness * self.height * self.depth if self.depth is not None else super().volume()
+
+    def bodies(self) -> Sequence[Body]:
+        cuts = self._cuts
+        names = ["lower block", "middle block", "upper block"] if len(cuts) > 3 else ["lower block", "upper block"]
+        return [
+            box(name, (high - low) / self.height, self.thickness, high - low, 0.5j * (low + high))
+            for name, low, high in zip(names, cuts, cuts[1:], strict=False)
+        ]
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        a, b, c = self.hinges(direction)
+        lower, upper = slider_crank(phi, direction, a, b, c)
+        return [lower if high <= b.imag else upper for high in self._cuts[1:]]
+
+    def limit(self, direction: Direction) -> float:
+        return slider_crank_limit(direction, *self.hinges(direction))
+
+    def carries(self) -> Sequence[Attached]:
+        # What holds the top sideways holds the floor too: its mass moves up and down only.
+        if self.overburden == 0:
+            return ()
+        spot = Spot("upper block", complex(self.overburden_eccentricity, self.height))
+        mass = self.overburden / self.gravity
+        return (PointMass("overburden", spot, mass, horizontal=0.0, vertical=self.overburden_inertia),)
+
+    def extras(self, direction: Direction) -> Sequence[Extra]:
+        return (Extra("hinge", self._hinges[direction], "", "height of the hinge over that of the wall"),)
+
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        a, b, c = self.hinges(direction)
+        names, at = [body.name for body in self.bodies()], self._cuts.index(b.imag)
+        return (
+            Joint("A" + direction.prime, a, (names[0],)),
+            Joint("B" + direction.prime, b, (names[at - 1], names[at]), face=names[at - 1]),
+            Joint("C" + direction.prime, c, (names[-1],), slide=1j),
+        )
+
+    def sketch(self) -> Sketch:
+        t, top = self.thickness, 1j * self.height
+        # Of a load off the wall the support is off its top too, and not drawn.
+        hinges = {
+            direction: [joint for joint in self.joints(direction) if abs(joint.point.real) <= t / 2]
+            for direction in Direction
+        }
+        load = f"{self.overburden:g} N on top at x = {self.overburden_eccentricity:g} m"
+        return Sketch(
+            uniform=True,
+            hinges=hinges,
+            lengths=[Length("t", complex(-t / 2), complex(t / 2)), Length("h", complex(-t / 2), -t / 2 + top)],
+            notes=[load] if self.overburden else [],
+        )
