@@ -9,6 +9,7 @@ from math import atan2, isclose
 from rocking_cli.core import (
     Angle,
     Direction,
+    Hinge,
     Joint,
     Length,
     Mechanism,
