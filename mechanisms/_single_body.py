@@ -58,9 +58,12 @@ class SingleBody(Mechanism):
         return (replace(turning, q=turning.q + way * phi, dq=turning.dq + way),)  # it rolls without slip
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
-        if self.rolls(direction):
-            return ()  # where it bears moves with it: its sums are those over the whole
-        return (Joint("O" + direction.prime, self.pivot(direction), (self.bodies()[0].name,)),)
+        # Where it rolls, it bears on ever other points: its sums are those over the whole.
+        return () if self.rolls(direction) else (self._foot_joint(direction),)
+
+    def _foot_joint(self, direction: Direction) -> Joint:
+        name = self.bodies()[0].name
+        return Joint("O" + direction.prime, self.pivot(direction), (name,), roll=self.rolls(direction))
 
     def critical_rotation(self, direction: Direction) -> float:
         return self.alpha(direction)  # the centroid stands over the pivot
@@ -81,10 +84,7 @@ class SingleBody(Mechanism):
         subscript = {Direction.POSITIVE: "" if alike else "₊", Direction.NEGATIVE: "₋"}
         return Sketch(
             outlines={body.name: self.outlines()} if self.outlines() else {},
-            hinges={
-                side: [Hinge("O" + side.prime, self.pivot(side), (body.name,), roll=self.rolls(side))]
-                for side in Direction
-            },
+            hinges={side: [self._foot_joint(side)] for side in Direction},
             lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", centres[s], body.centroid, s) for s in shown)],
             angles=[Angle(f"α{subscript[s]}", centres[s], centres[s] + 1j, body.centroid, s) for s in shown],
         )

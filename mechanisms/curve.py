@@ -158,7 +158,7 @@ class Curve(Mechanism):
         r, slope = ratio(phi)
         bend = slope / (1 + r**2)  # beta'
         path = self._way(phi, direction)
-        speed: Points = arm * (direction + 1j * r) / np.sqrt(1 + r**2)
+        speed: Points = arm * _along(r, direction)
         change: Points = 1j * direction * bend * speed
         rest, none = 1j * self.centroid_height, np.zeros_like(phi)
         return (RigidMotion(rest, rest + arm * path, speed, change, -direction * phi, none - direction, none),)
@@ -170,7 +170,7 @@ class Curve(Mechanism):
         def between(start: Reals, end: Reals) -> Points:
             half = (end - start)[:, None] / 2
             r, _ = ratio((start + end)[:, None] / 2 + half * NODES)
-            found: Points = ((half * WEIGHTS) * (direction + 1j * r) / np.sqrt(1 + r**2)).sum(axis=1)
+            found: Points = (half * WEIGHTS * _along(r, direction)).sum(axis=1)
             return found
 
         knots = np.union1d(ratio.x, np.linspace(0.0, self.limit(direction), PIECES + 1))
@@ -178,8 +178,21 @@ class Curve(Mechanism):
         k = np.clip(np.searchsorted(knots, phi, side="right") - 1, 0, len(knots) - 1)
         return sums[k] + between(knots[k], phi)
 
+    def enlarged(self, factor: float) -> Self:
+        """Of another size: displacements grow with it, ratios stay."""
+        moved = {
+            key: [[factor * d, r] for d, r in points] for key in WHERE if (points := getattr(self, key)) is not None
+        }
+        sizes = {key: factor * getattr(self, key) for key in ("control_height", "centroid_height")}
+        return self.model_copy(update={**moved, **sizes, "inertia": factor**2 * self.inertia})
+
     def limit(self, direction: Direction) -> float:
         return pi / 2  # as far as a body turns until it lies
 
     def sketch(self) -> Sketch:
         return Sketch(notes=["the body stands for the structure: its centroid moves as the capacity curve says"])
+
+
+def _along(r: Reals, direction: Direction) -> Points:
+    """The direction of the ratio r, of length one."""
+    return np.asarray((direction + 1j * r) * (1 / np.sqrt(1 + r**2)), np.complex128)

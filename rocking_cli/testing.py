@@ -33,6 +33,7 @@ from rocking_cli.core import (
     Direction,
     Hinge,
     Mechanism,
+    NoEquivalentBlock,
     Outline,
     PointMass,
     RigidMotion,
@@ -42,6 +43,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.attachments import followed
 from rocking_cli.core.coefficients import coefficients, jump
+from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.reactions import reactions
 from rocking_cli.core.registry import conformance
 from rocking_cli.core.restitution import kinematic_restitution
@@ -256,8 +258,11 @@ def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
 
 
 def stands_and_can_overturn(structure: Mechanism) -> None:
-    """It resists at rest, balances before its kinematic limit, and falls beyond."""
+    """It resists at rest, balances before its kinematic limit, and falls beyond; what is tied may only resist."""
     for direction in Direction:
+        if not _overturns(structure, direction):
+            _demand(structure.uplift(direction) > 0, f"it does not stand in the {direction.label} direction")
+            continue
         lam, phi_cr, limit = (
             structure.uplift(direction),
             structure.critical_rotation(direction),
@@ -282,13 +287,16 @@ def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
     for direction in Direction:
         here = f"in the {direction.label} direction"
         at = partial(_of_bodies, structure, direction=direction)
-        lam, phi_cr = equilibrium.uplift_acceleration(at, structure.gravity), _phi_cr(structure, direction)
-        _agree(f"uplift {here}", structure.uplift(direction), lam)
-        _agree(f"critical_rotation {here}", structure.critical_rotation(direction), phi_cr)
+        _agree(f"uplift {here}", structure.uplift(direction), equilibrium.uplift_acceleration(at, structure.gravity))
+        if _overturns(structure, direction):
+            phi_cr = _phi_cr(structure, direction)
+            _agree(f"critical_rotation {here}", structure.critical_rotation(direction), phi_cr)
 
 
 def restitution_is_that_of_the_bodies(structure: Mechanism) -> None:
     """Restitution is that of the kinematics of its bodies, or what the user gives."""
+    if structure.one_sided is not None:
+        structure = structure.model_copy(update={"one_sided": None, "rebound": None})
     bodies, rest = structure.weighed(), np.zeros(1)
     masses = [thing for thing in structure.attached if isinstance(thing, PointMass)]
     bare = structure.model_copy(update={"restitution": None})
@@ -320,8 +328,12 @@ def a_copy_is_the_same_structure(structure: Mechanism) -> None:
 
 
 def has_an_equivalent_block(structure: Mechanism) -> None:
-    """The parameters of its equivalent block are finite, and all but eta positive."""
-    equivalence = equivalent_block(structure)
+    """The parameters of its equivalent block are finite, and all but eta positive; ties may leave it none."""
+    try:
+        equivalence = equivalent_block(structure)
+    except NoEquivalentBlock as error:
+        _demand(structure.bends, str(error))
+        return
     for direction in Direction:
         for key, value in equivalence[direction].as_dict().items():
             here = f"{key} of the equivalent block in the {direction.label} direction is {value}"
@@ -534,10 +546,20 @@ def _of_bodies(structure: Mechanism, phi: Reals, direction: Direction) -> Coeffi
 
 
 def _phi_cr(structure: Mechanism, direction: Direction) -> float:
-    """The critical rotation by bodies and motions alone [rad]."""
-    return equilibrium.critical_rotation(
-        partial(_of_bodies, structure, direction=direction), structure.limit(direction), structure.gravity
-    )
+    """The critical rotation by bodies and motions alone, or the limit where ties leave none [rad]."""
+    try:
+        return equilibrium.critical_rotation(
+            partial(_of_bodies, structure, direction=direction), structure.limit(direction), structure.gravity
+        )
+    except NoCriticalRotation:
+        if not structure.bends:
+            raise
+        return structure.limit(direction)
+
+
+def _overturns(structure: Mechanism, direction: Direction) -> bool:
+    """Whether it has a critical rotation: what is tied may have none."""
+    return _phi_cr(structure, direction) < structure.limit(direction)
 
 
 def _top(structure: Mechanism, direction: Direction) -> float:

@@ -123,7 +123,10 @@ def test_a_file_is_read_from_the_folder_of_the_structure(sign, tmp_path):
     assert found.points == FALLING and found.file is None
     (tmp_path / "sub" / "c.csv").unlink()
     assert found.model_copy(update={"mass": 900.0}).points == FALLING  # whole without its file
-    assert found.enlarged(2.0).control_height == 4.0
+    for direction in Direction:
+        assert found.enlarged(2.0).critical_rotation(direction) == pytest.approx(found.critical_rotation(direction))
+    p = [equivalent_block(each).positive.p for each in (found, found.enlarged(4.0))]
+    assert p[0] == pytest.approx(2 * p[1])
 
 
 @pytest.mark.parametrize(

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 def command(name: str | None, file: str | None, checked: bool, as_json: bool) -> None:
     """List the mechanisms that are installed and the package each comes from; with NAME, its fields.
 
-    `loads`, `ties`, `interlock`, `strength` and `crushing` are no mechanisms, and go with any: with one of them as
-    NAME, its fields.
+    `loads`, `ties`, `interlock`, `strength` and `crushing` are no mechanisms, and go with any: their fields, by NAME.
 
     `--check` holds what a mechanism says to its bodies and their motion, prints what passes and what fails with the
     traceback of an error of its own, and ends with 3 if anything fails. FILE is a structure to check it on.
