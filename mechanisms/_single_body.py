@@ -9,7 +9,6 @@ from math import atan2, isclose
 from rocking_cli.core import (
     Angle,
     Direction,
-    Hinge,
     Joint,
     Length,
     Mechanism,

@@ -37,5 +37,5 @@ def test_every_starter_is_a_file_of_the_package_and_none_is_forgotten():
 
 @pytest.mark.parametrize("name", WORKED)
 def test_a_worked_example_is_a_structure_that_rocks(name):
-    structure = load_structure(EXAMPLES / f"{name}.yaml")
+    structure = load_structure(EXAMPLES / "walls" / f"{name}.yaml")
     assert follow(build_model(structure, "nonlinear"), SHAKING).lifted
