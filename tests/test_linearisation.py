@@ -10,6 +10,7 @@ from math import cos, sin, tan
 import numpy as np
 import pytest
 from mpmath import mp
+from scipy.integrate import solve_ivp
 
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
@@ -22,7 +23,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plotting.linearisation import draw_linearisation
 from rocking_cli.structure import load_structure
-from rocking_cli.studies.linearisation import linearisation
+from rocking_cli.studies.linearisation import linearisation, velocity_ratios
 from rocking_cli.studies.trust import preferred, trust
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -358,3 +359,21 @@ def test_the_preferred_kappa_is_the_boldest_line_and_what_is_not_drawn_is_said()
     assert curve.overturning_ratio1[0] < 0.5 and "50 %" in right.get_legend().get_title().get_text()
     close = linearisation(arch, Direction.POSITIVE, [0.2, 0.5], rho[1:])
     assert not draw_linearisation([close], [asked], "arch").axes[1].get_legend().get_title().get_text()
+
+
+@pytest.mark.parametrize("kappa", [1, 2])
+def test_the_velocity_step_of_the_block_just_overturns_it(kappa):
+    """Of the linear equation integrated from that rate: a little less comes back, a little more goes on."""
+    structure = load_structure(EXAMPLES / "frame.yaml")
+    block = equivalent_block(structure).positive
+    assert block.v_imp == pytest.approx(1.6108, abs=5e-4)
+    scale = block.kappa1 if kappa == 1 else block.kappa2
+    step = velocity_ratios(block, structure.gravity)[kappa - 1] * block.v_imp
+
+    def end(share):
+        rate = block.p**2 * scale * share * step / structure.gravity
+        pull = lambda t, y: [y[1], block.p**2 * (y[0] - block.phi_cr)]  # noqa: E731
+        motion = solve_ivp(pull, (0, 12 / block.p), [0, rate], rtol=1e-10)
+        return motion.y[0, -1]
+
+    assert end(0.999) < 0 < block.phi_cr < end(1.001)

@@ -158,6 +158,15 @@ def compare(
     return of(r, a), of(amplitudes, accelerations)
 
 
+def velocity_ratios(block: EquivalentBlock, gravity: float) -> tuple[float, float]:
+    """The velocity step that just overturns the equivalent block with kappa1 and kappa2, over the structure's own.
+
+    A step v gives q.. = p^2 (q - phi_cr) the rate p^2 kappa v/g, and p phi_cr just overturns: v = g lambda/p.
+    """
+    own = gravity / (block.p * block.v_imp)
+    return own * block.lambda_lin, own * block.lambda_
+
+
 def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) -> Reals:
     """Period of free rocking without losses [s]: four times the quarter from an amplitude to rest at phi = 0.
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from rocking_cli.core import Equivalence, Mechanism
-from rocking_cli.studies.linearisation import Linearisation
+from rocking_cli.studies.linearisation import Linearisation, velocity_ratios
 from rocking_cli.studies.trust import errors, preferred, trust
 from rocking_cli.views.view import Table, View, heading
 
@@ -22,7 +22,7 @@ def view(
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
         "symmetric": equivalence.symmetric,
-        "directions": {each.direction.label: _data(each) for each in asked},
+        "directions": {each.direction.label: _data(each, mechanism.gravity) for each in asked},
         "prefer": PREFERRED[preferred(list(asked))],
         "grades": {f"kappa{kappa}": errors(list(asked), kappa).grade.key for kappa in (1, 2)},
         "verdict": verdict,
@@ -32,7 +32,7 @@ def view(
         Table(
             title if len(asked) == 1 else f"{title}, {each.direction.label} direction",
             ["error of", "at", "kappa1", "kappa2"],
-            _rows(each),
+            _rows(each, mechanism.gravity),
             numbers=(2, 3),
         )
         for each in asked
@@ -40,8 +40,10 @@ def view(
     return View(data, [*tables, verdict])
 
 
-def _rows(each: Linearisation) -> list[list[str]]:
+def _rows(each: Linearisation, gravity: float) -> list[list[str]]:
     rows = [["uplift acceleration", "", _percent(each.uplift_ratio1), _percent(each.uplift_ratio2)]]
+    steps = [_percent(ratio) for ratio in velocity_ratios(each.block, gravity)]
+    rows.append(["overturning velocity", f"v_imp = {each.block.v_imp:.4g} m/s", *steps])
     rows += [
         ["free period", f"phi/phi_cr = {r:g}", _percent(ratio), _percent(ratio)]
         for r, ratio in zip(each.amplitude.tolist(), each.period_ratio.tolist(), strict=True)
@@ -62,12 +64,16 @@ def _percent(ratio: float) -> str:
     return f"{error:+.0f} %" if abs(error) >= 99.95 else f"{error:+.3g} %"
 
 
-def _data(each: Linearisation) -> dict[str, Any]:
+def _data(each: Linearisation, gravity: float) -> dict[str, Any]:
+    one, other = velocity_ratios(each.block, gravity)
+
     def finite(value: float) -> float | None:
         return value if value < float("inf") else None
 
     return {
         "uplift_ratio": {"kappa1": each.uplift_ratio1, "kappa2": each.uplift_ratio2},
+        "v_imp": each.block.v_imp,
+        "v_imp_ratio": {"kappa1": one, "kappa2": other},
         "free_period": [
             {"amplitude": r, "period": T, "ratio": ratio}
             for r, T, ratio in zip(
