@@ -34,6 +34,8 @@ EARTH, MEASURE = "#8a7f70", "#2b5d86"
 CURSOR = "#c4371a"
 TRACE: dict[str, Any] = {"color": INK, "linestyle": "-", "linewidth": 0.9}
 THRUST: dict[str, Any] = {"color": "#b3541e", "linestyle": (0, (3, 1)), "linewidth": 1.8}
+TIE: dict[str, Any] = {"color": "#1d6b4f", "linewidth": 1.3}
+SLACK = (0, (2.5, 2))
 # Distinct in grey by darkness, dash and weight as well as by hue; the heaviest shows on both sides of the others.
 LINES = {
     "nonlinear": {"color": "#111111", "linestyle": "-", "linewidth": 1.9},

@@ -70,9 +70,11 @@ class Film:
         return np.interp(time, self.history.time[moving], self.history.phi[moving])
 
     def ratio(self, rotation: Reals) -> Reals:
-        """Signed rotations, shape (n,) [rad], over the critical rotation of their direction."""
-        critical = self.picture.phi_cr
-        return rotation / np.where(rotation < 0, critical[Direction.NEGATIVE], critical[Direction.POSITIVE])
+        """Signed rotations, shape (n,) [rad], over the critical rotation of their direction, or the kinematic limit."""
+        over = self.picture.reference
+        first = over[self.picture.directions[0]]
+        sides = over.get(Direction.NEGATIVE, first), over.get(Direction.POSITIVE, first)
+        return rotation / np.where(rotation < 0, *sides)
 
     @cached_property
     def box(self) -> tuple[complex, complex]:

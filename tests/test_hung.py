@@ -1,0 +1,191 @@
+"""What hangs on a structure, and what keeps it to one side, as pictures, pages, tables and reports show them."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from mechanisms.block import Block
+from mechanisms.symmetric_frame import SymmetricFrame
+from rocking_cli.core import Direction
+from rocking_cli.plotting import hung, style
+from rocking_cli.plotting.structure import NO_CRITICAL, draw_structure
+from rocking_cli.studies.picture import NODES, picture
+from tests.test_cli import run, run_json
+
+OF_STONE = {"density": 2400.0, "depth": 1.0}
+BAR = {"name": "bar", "from": {"ground": [-6, 7.5]}, "to": {"at": [-0.3, 7.5]}, "stiffness": 1e5, "only": "tension"}
+FLOOR = {"name": "floor", "mass": 2000.0, "at": [0.2, 5], "floor": "borne"}
+THRUST = {"name": "thrust", "force": [3000.0, -4000.0], "at": [0.3, 4]}
+TENDON = {"name": "tendon", "path": [{"ground": [0, 0]}, {"at": [0, 0]}], "stiffness": 2e8, "prestress": 2e4}
+FACADE = {"width": 0.6, "height": 8.0, **OF_STONE}
+TIED = {"name": "tied", "width": 1.0, "height": 5.0, **OF_STONE, "ties": [TENDON]}
+TIED_FILE = """\
+mechanism: block
+name: tied
+width: 1
+height: 5
+density: 2400
+depth: 1
+ties:
+  - {name: tendon, path: [{ground: [0, 0]}, {at: [0, 0]}], stiffness: 200 kN/mm, prestress: 20 kN}
+"""
+LEANING_FILE = """\
+mechanism: block
+name: facade
+width: 0.6
+height: 8
+density: 2400
+depth: 1
+one_sided: positive
+rebound: 0.48
+loads:
+  - {name: floor, mass: 2 t, at: [0.2, 5], floor: borne}
+  - {name: thrust, force: [3 kN, -4 kN], at: [0.3, 4]}
+ties:
+  - {name: bar, from: {ground: [-6, 7.5]}, to: {at: [-0.3, 7.5]}, stiffness: 100 kN/m, only: tension}
+"""
+
+
+@pytest.fixture
+def tied(tmp_path):
+    """A column that a tendon leaves no critical rotation."""
+    path = tmp_path / "tied.yaml"
+    path.write_text(TIED_FILE)
+    return path
+
+
+@pytest.fixture
+def leaning(tmp_path):
+    """A loaded and tied facade that leans on side walls."""
+    path = tmp_path / "leaning.yaml"
+    path.write_text(LEANING_FILE)
+    return path
+
+
+def texts(figure):
+    return [text.get_text() for axes in figure.axes for text in axes.texts]
+
+
+class TestPicture:
+    def test_loads_and_ends_of_ties_move_with_the_body(self):
+        """By hand: a block turns by -phi about its right foot; the ground stays."""
+        shown = picture(Block(**FACADE, loads=[FLOOR, THRUST], ties=[BAR]))
+        loads, ((piece,),), slack = shown.hung(0.05, symbol=1.0)
+        turned = [0.3 + np.exp(-0.05j) * (z - 0.3) for z in (0.2 + 5j, 0.3 + 4j, -0.3 + 7.5j)]
+        np.testing.assert_allclose([*loads, piece[1]], turned)
+        assert piece[0] == -6 + 7.5j and slack == [False]
+
+    def test_a_tie_that_pulls_only_is_slack_the_other_way(self):
+        shown = picture(Block(**FACADE, ties=[BAR]))
+        assert shown.hung(-0.05, symbol=1.0)[2] == [True]
+        assert shown.hung(0.0, symbol=1.0)[2] == [False]
+        held = picture(Block(**FACADE, ties=[BAR | {"prestress": 2e3}]))  # slack once it is shorter by 20 mm
+        assert [held.hung(turn, symbol=1.0)[2] for turn in (-0.002, -0.004)] == [[False], [True]]
+
+    def test_ends_that_are_together_are_drawn_apart(self):
+        """What holds it below, what moves above; where it opens by 2 b sin(phi/2), so does its symbol."""
+        shown = picture(Block(**TIED))
+        ((below, above),) = shown.hung(0.0, symbol=0.1)[1][0]
+        assert (below, above) == (-0.1j, pytest.approx(0.1j))
+        ((below, above),) = shown.hung(0.02, symbol=0.0)[1][0]
+        assert abs(above - below) == pytest.approx(2 * 0.5 * np.sin(0.01))
+
+    def test_without_a_critical_rotation_the_limit_is_what_rotations_are_compared_with(self):
+        shown = picture(Block(**TIED))
+        assert set(shown.phi_cr.values()) == {None}
+        assert shown.reference[Direction.POSITIVE] == pytest.approx(pi / 2)
+        assert shown.as_dict()["phi_cr"] == {"positive": None, "negative": None}
+
+    @pytest.mark.parametrize(("side", "face"), [("positive", -0.3), ("negative", 0.3)])
+    def test_it_leans_on_the_side_that_it_cannot_rock_to(self, side, face):
+        shown = picture(Block(**FACADE, one_sided=side))
+        (wall,) = shown.walls
+        assert set(wall.real) == {face} and wall.imag.max() == 8.0
+        to_the_right = (wall[1] - wall[0]) * -1j  # where the hatches are
+        assert np.sign(to_the_right.real) == np.sign(face)
+        data = shown.as_dict()
+        assert data["one_sided"] == side and list(data["limit"]) == [side]
+        assert len(data["rotation"]) == NODES + 1 and {pin["direction"] for pin in data["pins"]} == {side}
+
+    def test_what_each_of_several_columns_has_is_drawn_on_each(self):
+        tendon = TENDON | {"path": [{"ground": [0, 0]}, {"body": "columns", "at": [0, 0]}], "each": True}
+        pot = {"name": "pot", "mass": 20.0, "at": [0, 3], "body": "columns", "each": True}
+        frame = SymmetricFrame(
+            column_width=1.0, column_height=6.0, columns=3, mass_ratio=1.0, mass=6e4, loads=[pot], ties=[tendon]
+        )
+        shown = picture(frame)
+        feet = [pin.point - 0.5 for pin in shown.pins if pin.direction > 0 and pin.point.imag == 0]
+        assert [tie.pieces[0].end.point for tie in shown.ties] == feet
+        assert [tie.name for tie in shown.ties] == ["tendon", "", ""]
+        assert [(load.point, load.text) for load in shown.loads] == [(foot + 3j, "20 kg") for foot in feet]
+
+    def test_a_page_has_every_end_where_the_picture_has_it(self):
+        shown = picture(Block(**FACADE, loads=[FLOOR], ties=[BAR]))
+        data = shown.as_dict()
+        k = NODES + 7
+        turn, part = data["rotation"][k], data["parts"][0]
+        loads, ((piece,),), _ = shown.hung(turn, symbol=0.0)
+        ends = [data["loads"][0], *data["ties"][0]["pieces"][0]["ends"]]
+        here = complex(part["x"][k], part["y"][k])
+        for each, place in zip(ends, [loads[0], *piece], strict=True):
+            z = complex(*each["point"])
+            found = z if each["part"] is None else here + np.exp(1j * part["psi"][k]) * z
+            assert found == pytest.approx(place, abs=1e-5)
+        slack = data["ties"][0]["slack"]
+        assert slack[NODES - 5] and not slack[NODES] and not slack[-1]
+
+
+class TestDraw:
+    def test_json_lists_what_hangs_on_it(self, leaning):
+        found = run_json("draw", leaning)
+        assert [(each["name"], each["mass"], each["force"]) for each in found["loads"]] == [
+            ("floor", 2000.0, None), ("thrust", None, [3000.0, -4000.0]),
+        ]  # fmt: skip
+        assert [(each["name"], each["only"]) for each in found["ties"]] == [("bar", "tension")]
+        assert found["one_sided"] == "positive"
+
+    def test_names_are_written_and_one_direction_is_shown(self):
+        figure = draw_structure(picture(Block(**FACADE, one_sided="positive", rebound=0.5, loads=[FLOOR, THRUST],
+                                              ties=[BAR])), "facade")  # fmt: skip
+        assert {"floor, 2 t", "thrust, 5 kN", "bar"} <= set(texts(figure))
+        assert [axes.get_title().split()[0] for axes in figure.axes] == ["at", "positive"]
+        lines = [line for axes in figure.axes for line in axes.lines if line.get_color() == style.TIE["color"]]
+        assert [line.get_linestyle() for line in lines] == ["-", "-"]
+
+    def test_a_slack_tie_is_dashed(self):
+        figure = draw_structure(picture(Block(**FACADE, ties=[BAR])), "facade")
+        looks = {
+            axes.get_title().split()[0]: line.get_linestyle()
+            for axes in figure.axes
+            for line in axes.lines
+            if line.get_color() == style.TIE["color"]
+        }
+        assert looks == {"negative": "--", "at": "-", "positive": "-"}
+
+    def test_without_a_critical_rotation_it_is_shown_at_an_angle_that_is_seen(self, tied, tmp_path):
+        figure = draw_structure(picture(Block(**TIED)), "tied")
+        assert any(NO_CRITICAL in text.get_text() for text in figure.texts)
+        assert any("9°" in axes.get_title() for axes in figure.axes)
+        out = tmp_path / "tied.png"
+        assert run("draw", tied, "--plot", out, "--at", 0.5).exit_code == 0 and out.stat().st_size > 10_000
+        assert "at most 0.999 times the limit" in run("draw", tied, "--at", 2, code=2).stderr
+
+    def test_everything_that_is_drawn_is_in_its_panel(self):
+        for made in (
+            Block(**FACADE, loads=[FLOOR, THRUST], ties=[BAR]),
+            Block(**TIED | {"loads": [FLOOR | {"at": [0.5, 5]}, THRUST | {"force": [-9.0, 0.0], "at": [0.5, 4]}]}),
+        ):
+            shown = picture(made)
+            figure = draw_structure(shown, "x")
+            for axes in figure.axes:
+                (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+                scale = axes.get_position().width * style.WIDTH / (right - left)
+                way = {"n": -1, "a": 0, "p": 1}[axes.get_title()[0]]
+                turn = way * shown.usual[Direction.POSITIVE] * shown.reference[Direction(way or 1)]
+                found = hung.symbols(shown, turn, scale)
+                z = np.concatenate([*(line[0] for line in found.lines), *found.weights, *map(np.array, found.forces)])
+                assert left <= z.real.min() and z.real.max() <= right
+                assert low <= z.imag.min() and z.imag.max() <= high
