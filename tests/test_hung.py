@@ -6,12 +6,17 @@ from math import pi
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction
+from rocking_cli.dynamics.history import respond
+from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import hung, style
+from rocking_cli.plotting.moving import moving, ratio_chart
 from rocking_cli.plotting.structure import NO_CRITICAL, draw_structure
+from rocking_cli.studies.film import Film
 from rocking_cli.studies.picture import NODES, picture
 from tests.test_cli import run, run_json
 
@@ -189,3 +194,33 @@ class TestDraw:
                 z = np.concatenate([*(line[0] for line in found.lines), *found.weights, *map(np.array, found.forces)])
                 assert left <= z.real.min() and z.real.max() <= right
                 assert low <= z.imag.min() and z.imag.max() <= high
+
+
+class TestAnimate:
+    @pytest.mark.parametrize("which", ["tied", "leaning"])
+    def test_a_gif_shows_what_hangs_on_it_in_its_own_colour(self, which, request, tmp_path):
+        out = tmp_path / "a.gif"
+        run("animate", request.getfixturevalue(which), "--pulse", "sine:0.5g:0.5s", "--fps", 4, "--out", out,
+            "--neighbours", 0)  # fmt: skip
+        green = tuple(int(style.TIE["color"][k : k + 2], 16) for k in (1, 3, 5))
+        with Image.open(out) as frames:
+            frames.seek(frames.n_frames // 2)
+            colours = {each for _, each in frames.convert("RGB").getcolors(1 << 16)}
+            assert any(np.abs(np.subtract(each, green)).max() <= 8 for each in colours)
+
+    def test_rotations_are_over_the_limit_where_there_is_no_critical_one(self):
+        mechanism = Block(**TIED)
+        motion = parse_pulse("sine:0.5g:0.5s").sampled()
+        history = respond(mechanism, motion, models=("nonlinear",))["nonlinear"]
+        film = Film(picture(mechanism), history, motion)
+        np.testing.assert_allclose(film.ratio(history.phi), history.ratio)
+        shown = moving(film, [ratio_chart({"nonlinear": history})], label="", speed=1.0, moment=0.0)
+        (chart,) = shown["charts"]
+        assert shown["ratio"] == "φ/limit" and "φ/limit" in chart["label"]
+        assert {level["text"] for level in chart["levels"]} == {"kinematic limit"}
+
+    def test_the_view_holds_all_that_hangs_on_it(self):
+        mechanism = Block(**FACADE, ties=[BAR])
+        motion = parse_pulse("sine:0.1g:0.5s").sampled()
+        film = Film(picture(mechanism), respond(mechanism, motion, models=("nonlinear",))["nonlinear"], motion)
+        assert film.box[0].real == pytest.approx(-6)

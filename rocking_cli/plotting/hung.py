@@ -129,12 +129,6 @@ def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
             labels.write(text, labels.along(*longest, size), color=style.TIE["color"], **look)
 
 
-def room(picture: Picture, rotation: float) -> list[complex]:
-    """Points of what hangs on a structure, for which there must be room [m], apart from symbols."""
-    places, ties, _ = picture.hung(rotation, 0.0)
-    return [*places.tolist(), *(end for tie in ties for piece in tie for end in piece)]
-
-
 def beside(picture: Picture) -> tuple[float, float, float, float]:
     """What springs along a face take of the room to the left, right, below and above of a structure [inches]."""
     left = right = below = above = 0.0

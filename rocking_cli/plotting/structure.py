@@ -146,7 +146,7 @@ def _box_at_rest(picture: Picture) -> tuple[complex, complex]:
 
 def _rest_panel(picture: Picture, low: complex, high: complex, around: tuple[float, float, float, float]) -> Panel:
     """Room for the structure from `low` to `high` with what is written around it, and for all that hangs on it."""
-    far = box_around([np.array([low, high, *hung.room(picture, 0.0)])])
+    far = box_around([np.array([low, high, *picture.held(0.0)])])
     beside = np.add(around, hung.beside(picture))
     left, right, below, above = np.maximum(beside, hung.margins(picture)).tolist()
     wider = hung.WORDS if picture.loads or picture.ties else 0.0
@@ -155,7 +155,7 @@ def _rest_panel(picture: Picture, low: complex, high: complex, around: tuple[flo
 
 def _displaced_panel(picture: Picture, rotation: float) -> Panel:
     outlines, pins = picture.placed(rotation)
-    moved = [*picture.extent, *pins, *hung.room(picture, rotation)]
+    moved = [*picture.extent, *pins, *picture.held(rotation)]
     low, high = box_around([np.array(moved), *(each for part in outlines for each in part)])
     side = max(0.1, NARROWEST / 4)
     left, right, below, above = np.maximum((side, side, 0.16, 0.12), hung.margins(picture)).tolist()

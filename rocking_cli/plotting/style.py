@@ -133,6 +133,11 @@ def heading(axes: Axes, text: str) -> None:
     axes.set_title(fitted(text, WIDTH - MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
+def over(ends_at_limit: tuple[bool, bool]) -> str:
+    """The symbol of a rotation over what it is compared with, by whether each direction has no critical rotation."""
+    return "φ/limit" if all(ends_at_limit) else "φ/φcr or limit" if any(ends_at_limit) else "φ/φcr"
+
+
 def plain(text: str) -> str:
     """A text of others as a label that has mathematics elsewhere: a $ in a name is a $."""
     return text.replace("$", r"\$")

@@ -82,7 +82,8 @@ class Film:
         phi = self.history.phi[: self._moving]
         views = np.linspace(float(phi.min()), float(phi.max()), VIEWS)
         outlines = [each for turn in views for part in self.picture.placed(float(turn))[0] for each in part]
-        return box_around([np.array(self.picture.extent), *outlines])
+        hung = [z for turn in views for z in self.picture.held(float(turn))]
+        return box_around([np.array([*self.picture.reach, *hung]), *outlines])
 
     def as_dict(self, step: float) -> Mapping[str, Any]:
         """What a page needs beside the picture: the rotation [rad] every `step` [s] from 0, and when it ends [s]."""

@@ -193,6 +193,11 @@ class Picture:
         ties = [[(place(piece.start), place(piece.end)) for piece in tie.pieces] for tie in self.ties]
         return loads, ties, [bool(row[0]) for row in self._slack(np.array([rotation]))]
 
+    def held(self, rotation: float) -> list[complex]:
+        """Where all that hangs on it is, at one signed rotation [m]: symbols apart, which have a size on paper."""
+        loads, ties, _ = self.hung(rotation, 0.0)
+        return [*loads.tolist(), *(end for tie in ties for piece in tie for end in piece)]
+
     def _carry(self, rotation: float) -> Callable[[int, Points], Points]:
         """What takes points of a part to where they are at one signed rotation."""
         centroids, psi = (values[:, 0] for values in self.at(np.array([rotation])))
@@ -278,6 +283,7 @@ class Picture:
             "name": self.mechanism.name,
             "title": self.mechanism.title,
             "phi_cr": {direction.label: phi for direction, phi in self.phi_cr.items()},
+            "reference": {direction.label: phi for direction, phi in self.reference.items()},
             "limit": {direction.label: limit for direction, limit in self.limit.items()},
             "one_sided": self.mechanism.one_sided,
             "rotation": _rounded(rotation),
@@ -322,6 +328,7 @@ class Picture:
             "ties": [
                 {
                     "name": each.name,
+                    "bed": each.is_bed,
                     "only": each.thing.only if isinstance(each.thing, Spring) else None,
                     "pieces": [
                         {"kind": piece.kind, "ends": [self._end(end) for end in (piece.start, piece.end)]}
