@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from math import pi
 
 import numpy as np
@@ -12,11 +13,14 @@ from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import respond
+from rocking_cli.dynamics.verdict import verdict
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import hung, style
+from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.moving import moving, ratio_chart
 from rocking_cli.plotting.structure import NO_CRITICAL, draw_structure
 from rocking_cli.studies.film import Film
+from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.picture import NODES, picture
 from tests.test_cli import run, run_json
 
@@ -224,3 +228,68 @@ class TestAnimate:
         motion = parse_pulse("sine:0.1g:0.5s").sampled()
         film = Film(picture(mechanism), respond(mechanism, motion, models=("nonlinear",))["nonlinear"], motion)
         assert film.box[0].real == pytest.approx(-6)
+
+
+class TestRespond:
+    def test_a_table_has_points_and_ties_after_all_else(self, leaning, tmp_path):
+        out = tmp_path / "h.csv"
+        found = run_json("respond", leaning, "--pulse", "sine:0.4g:0.8s", "--out", out)["responses"]["nonlinear"]
+        with out.open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        assert list(rows[0]) == [
+            "t [s]", "a_g [g]", "nonlinear phi [rad]", "nonlinear phi_dot [rad/s]", "nonlinear phi/limit",
+            *(f"nonlinear {name} u_{way} [m]" for name in ("top", "floor", "thrust", "bar") for way in "xy"),
+            "nonlinear bar elongation [m]", "nonlinear bar force [N]",
+        ]  # fmt: skip
+        phi, u, e, n = (
+            np.array([float(row[f"nonlinear {name}"]) for row in rows])
+            for name in ("phi [rad]", "floor u_x [m]", "bar elongation [m]", "bar force [N]")
+        )
+        np.testing.assert_allclose(u, (0.3 + np.exp(-1j * phi) * (-0.1 + 5j)).real - 0.2, atol=1e-9)  # by hand
+        np.testing.assert_allclose(n, 1e5 * e, rtol=1e-6, atol=1e-6)
+        assert n.max() == pytest.approx(found["ties"]["bar"]["peak_force"], rel=2e-3)
+
+    def test_a_history_that_overturns_has_no_places_after_it(self, tmp_path):
+        out = tmp_path / "h.csv"
+        run("respond", "--pulse", "sine:2g:1s", "--out", out)
+        with out.open(encoding="utf-8") as file:
+            last = list(csv.DictReader(file))[-1]
+        assert last["nonlinear phi [rad]"] == last["nonlinear top u_x [m]"] == last["linear2 top u_x [m]"] == ""
+
+    def test_forces_of_ties_are_drawn_below_the_rotation(self):
+        mechanism = Block(**TIED)
+        motion = parse_pulse("sine:0.5g:0.5s").sampled()
+        histories = respond(mechanism, motion, models=("nonlinear",))
+        watched = Watched(mechanism)
+        _, rotation, forces = draw_history(histories, motion, "x", watched=watched).axes
+        assert "limit" in rotation.get_ylabel() and "phi_{cr}" not in rotation.get_ylabel()
+        (line,) = (line for line in forces.lines if line.get_label() == "tendon")
+        largest = watched.peaks(histories["nonlinear"]).ties[0].force / 1000
+        assert largest * 0.99 < line.get_ydata().max() <= largest
+        assert "tendon" in {text.get_text() for text in forces.get_legend().get_texts()}
+
+    def test_without_ties_there_is_no_panel_for_them(self):
+        mechanism = Block(width=0.7, height=2.8)
+        motion = parse_pulse("sine:0.5g:0.5s").sampled()
+        histories = respond(mechanism, motion, models=("nonlinear",))
+        assert len(draw_history(histories, motion, "x", watched=Watched(mechanism)).axes) == 2
+
+    @pytest.mark.parametrize("side", ["positive", "negative"])
+    def test_the_side_that_it_leans_on_is_hatched(self, side):
+        mechanism = Block(**FACADE, one_sided=side, rebound=0.4)
+        motion = parse_pulse("sine:0.15g:0.8s").sampled()
+        histories = respond(mechanism, motion, models=("nonlinear",))
+        axes = draw_history(histories, motion, "x", watched=Watched(mechanism)).axes[1]
+        assert [text.get_text() for text in axes.texts if "wall" in text.get_text()] == ["side walls"]
+        low, high = axes.get_ylim()
+        sign = Direction[side.upper()]
+        assert max(sign * low, sign * high) > 2 * -min(sign * low, sign * high) > 0
+
+    def test_a_sentence_compares_with_what_that_direction_has(self):
+        """The tie holds it in the positive direction only; the other has its critical rotation still."""
+        held = Block(**FACADE, ties=[BAR | {"stiffness": 1e6}])
+        one = respond(held, parse_pulse("sine:0.3g:0.4s").sampled(), models=("nonlinear",))["nonlinear"]
+        assert one.ends_at_limit == (True, False)
+        assert one.peak_negative > one.peak_positive > 0
+        assert one.reference == "critical rotation" and one.furthest == one.peak_negative
+        assert f"{one.peak_negative:.4g} rad, {one.peak_ratio:.4g} of its critical" in verdict({"nonlinear": one})

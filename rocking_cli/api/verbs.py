@@ -272,6 +272,7 @@ def respond(
     'rocks'
     """
     from rocking_cli.studies.contact import Contacts
+    from rocking_cli.studies.movements import Watched
     from rocking_cli.views import history_table
     from rocking_cli.views.response import runs_view
 
@@ -284,14 +285,16 @@ def respond(
     contacts = {1: Contacts(ready.mechanism).check(nonlinear, shaking)} if nonlinear is not None else {}
 
     def columns() -> Columns:
-        blocks = list(history_table.blocks({str(name): run for name, run in found.items()}, shaking))
+        runs = {str(name): run for name, run in found.items()}
+        blocks = list(history_table.blocks(runs, shaking, watched=Watched(ready.mechanism)))
         return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
     def figure() -> Figure:
         from rocking_cli.plotting.history import draw_history
 
         checked = list(contacts.values()) if ready.mechanism.friction is not None else []
-        return draw_history(found, shaking, title, uplift=ready.uplift, contacts=checked)
+        watched = Watched(ready.mechanism)
+        return draw_history(found, shaking, title, uplift=ready.uplift, contacts=checked, watched=watched)
 
     return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism, contacts), columns, figure)
 

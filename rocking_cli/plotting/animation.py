@@ -262,7 +262,7 @@ def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float)
     t, ground = ground_trace(film.motion)
     lower.plot(t, ground, **style.TRACE)
     for axes, values, label in (
-        (upper, ratio, style.over(film.history.ends_at_limit).replace("φcr", r"$\phi_{cr}$").replace("φ/", r"$\phi$/")),
+        (upper, ratio, style.over(film.history.ends_at_limit, math=True)),
         (lower, ground, "ground [g]"),
     ):
         axes.set_xlim(start, max(end, start + 1e-3))

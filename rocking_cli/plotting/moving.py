@@ -87,7 +87,10 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dic
         reach = max(reach, float(np.abs(ratio).max()))
         shown = visible(ratio, bins)
         series.append(_series(NAMES[name], name, run.time[shown], ratio[shown]))
-    levels = [{"at": level, "text": first.reference} for level in (1, -1)]
+    levels = [
+        {"at": level, "text": "kinematic limit" if at_limit else "critical rotation"}
+        for level, at_limit in zip((1, -1), first.ends_at_limit, strict=True)
+    ]
     tall = min(1.1 * reach, TALLEST) if reach else TALLEST
     return {
         "label": f"rotation {style.over(first.ends_at_limit)}, clockwise up",

@@ -133,9 +133,10 @@ def heading(axes: Axes, text: str) -> None:
     axes.set_title(fitted(text, WIDTH - MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
-def over(ends_at_limit: tuple[bool, bool]) -> str:
+def over(ends_at_limit: tuple[bool, bool], *, math: bool = False) -> str:
     """The symbol of a rotation over what it is compared with, by whether each direction has no critical rotation."""
-    return "φ/limit" if all(ends_at_limit) else "φ/φcr or limit" if any(ends_at_limit) else "φ/φcr"
+    found = "φ/limit" if all(ends_at_limit) else "φ/φcr or limit" if any(ends_at_limit) else "φ/φcr"
+    return found.replace("φcr", r"$\phi_{cr}$").replace("φ", r"$\phi$") if math else found
 
 
 def plain(text: str) -> str:

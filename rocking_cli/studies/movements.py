@@ -109,7 +109,10 @@ class Watched:
         )
 
     def columns(self, phi: Reals) -> Iterator[tuple[str, Reals]]:
-        """Displacements of the points [m], elongations [m] and forces [N] of the ties, over signed rotations (n,)."""
+        """Displacements of the points [m], elongations [m] and forces [N] of the ties, over signed rotations (n,).
+
+        NaN where there is no rotation, and beyond the kinematic limit, to which a linear model does not keep.
+        """
         for name, spot in self.points.items():
             moved = self._signed(phi, partial(self._displacement, spot))
             yield f"{name} u_x [m]", moved.real
