@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import html
+import re
 from math import pi
 
 import numpy as np
@@ -293,3 +295,71 @@ class TestRespond:
         assert one.peak_negative > one.peak_positive > 0
         assert one.reference == "critical rotation" and one.furthest == one.peak_negative
         assert f"{one.peak_negative:.4g} rad, {one.peak_ratio:.4g} of its critical" in verdict({"nonlinear": one})
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory):
+    """The reports of a structure without a block and of a loaded facade: page as text, and data."""
+    found = {}
+    for name, text in (("tied", TIED_FILE), ("leaning", LEANING_FILE)):
+        folder = tmp_path_factory.mktemp(name)
+        (folder / "s.yaml").write_text(text)
+        options = ("--pulse", "sine:0.5g:0.7s", "--neighbours", 5)
+        data = run_json("report", folder / "s.yaml", *options, "-o", folder / "r.html")
+        page = re.sub(r"<script.*?</script>|<svg.*?</svg>", "", (folder / "r.html").read_text("utf-8"), flags=re.S)
+        found[name] = re.sub(r"\s+", " ", html.unescape(re.sub(r"<[^>]+>", " ", page))), data
+    return found
+
+
+class TestReport:
+    def test_each_part_that_needs_a_block_says_why_there_is_none(self, told):
+        text, data = told["tied"]
+        why = "its restoring moment does not vanish before the kinematic limit of 1.571 rad"
+        assert why in data["no_block"]
+        for said in (
+            "The nonlinear one, the only one there is. No single block is equivalent",
+            "No linear models: No single block is equivalent",
+            "There is no map: its axes are measured by the frequency parameter p",
+            "There is no equivalent block here, and so no error of one: no single block",
+            "Hold the largest forces of this report against what it and its ends can bear",
+        ):
+            assert said in text
+        assert "φcr and does not come back" not in text and "κ" not in text
+        assert all(list(each["responses"]) == ["nonlinear"] for each in data["motions"][0]["polarities"].values())
+        assert data["parameters"]["positive"]["p"] is None and data["parameters"]["positive"]["lambda"] > 0.2
+
+    def test_the_headline_is_true_to_the_numbers(self, told):
+        text, data = told["tied"]
+        (motion,) = data["motions"]
+        runs = [each["responses"]["nonlinear"] for each in motion["polarities"].values()]
+        ratio = max(run["peak_ratio"] for run in runs)
+        turned = np.degrees(max(max(run["peak_positive"], run["peak_negative"]) for run in runs))
+        assert f"by at most {turned:.3g}°, {100 * ratio:.3g} % of the tilt at which its motion would end" in text
+
+    @pytest.mark.parametrize(("which", "tie"), [("tied", "tendon"), ("leaning", "bar")])
+    def test_ties_are_told_with_their_largest_force_of_either_way_round(self, told, which, tie):
+        text, data = told[which]
+        (motion,) = data["motions"]
+        runs = [each["responses"]["nonlinear"] for each in motion["polarities"].values()]
+        force = max(abs(run["ties"][tie]["peak_force"]) for run in runs) / 1000
+        assert f"The largest force is that of {tie}: it pulls with {force:.4g} kN under {motion['name']}." in text
+
+    def test_loads_are_told_with_their_shares(self, told):
+        text, _ = told["leaning"]
+        assert "floor block 0.2, 5 2000 1 0.333 0.5" in text
+        assert "It is taken to lean on side walls that do not move." in text
+        assert "It rocks in the positive direction only" in text
+        assert "Constant forces" in text
+
+    def test_a_bare_structure_has_no_such_section(self, frame_report):
+        page = frame_report[0].read_text("utf-8")
+        assert "What hangs on it" not in page and "farthest the top moves sideways" in page
+
+    def test_a_fall_has_no_largest_force(self, leaning, tmp_path):
+        text = leaning.read_text().replace("stiffness: 100 kN/m", "stiffness: 1 N/m")
+        leaning.write_text(text)
+        out = tmp_path / "r.html"
+        run("report", leaning, "--pulse", "sine:1g:1.5s", "--neighbours", 5, "-o", out)
+        page = out.read_text("utf-8")
+        assert "it overturns, at least one way round: there is no largest movement or force" in page
+        assert "The largest force is" not in page

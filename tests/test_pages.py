@@ -166,6 +166,20 @@ def test_loads_and_ties_are_where_they_are_in_the_history(browser, folder):
     assert seen == {True, False}
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_report_of_a_tied_structure_reads_on_a_telephone(browser, folder, scheme):
+    structure, path = folder / "hung.yaml", folder / "hung-report.html"
+    structure.write_text(HUNG)
+    run("report", structure, "--pulse", "sine:0.5g:0.7s", "--neighbours", 5, "-o", path)
+    with opened(browser, path, viewport={"width": 360, "height": 700}, color_scheme=scheme) as page:
+        assert page.evaluate("document.documentElement.scrollWidth") <= 360
+        page.locator("nav a", has_text="What hangs on it").click()
+        assert page.locator("#hung table").count() == 5
+        assert page.locator(".tie").first.is_visible()
+        for each in page.evaluate(CONTRASTS):
+            assert each["ratio"] >= 4.5, each
+
+
 def test_a_structure_without_a_critical_rotation_moves_against_its_limit(browser, folder):
     structure, path = folder / "tied.yaml", folder / "tied.html"
     structure.write_text(TIED_FILE)
