@@ -363,3 +363,61 @@ class TestReport:
         page = out.read_text("utf-8")
         assert "it overturns, at least one way round: there is no largest movement or force" in page
         assert "The largest force is" not in page
+
+
+class TestStudies:
+    STUDY = """\
+name: tied
+structures: [tied.yaml]
+records: [{pulse: "sine:1g:0.6s"}, {pulse: "ricker:1g:0.5s"}]
+method: stripes
+levels: {measure: PGA, values: [0.1, 0.3, 0.6]}
+limit_states: [uplift, 0.0005, overturning]
+"""
+
+    def test_a_study_follows_what_has_no_block_by_itself(self, tied, tmp_path):
+        (tmp_path / "study.yaml").write_text(self.STUDY)
+        found = run_json("fragility", tmp_path / "study.yaml", "--store", "s.db")
+        assert found["runs"] == found["finished"] == 6 and found["failed"] == 0 and found["left_out"] == []
+        (said,) = found["without_block"]
+        assert said.startswith("tied: no single block is equivalent") and "kinematic limit" in said
+        run("results", "s.db", "--out", "runs.csv")
+        with open("runs.csv", encoding="utf-8") as file:  # noqa: PTH123
+            rows = list(csv.DictReader(file))
+        assert {row["p PGV/(g lambda)"] for row in rows} == {""} and rows[0]["PGA/(g lambda)"] != ""
+        one = next(row for row in rows if row["record"] == "sine:1g:0.6s" and float(row["level"]) == 0.6)
+        alone = run_json("respond", tied, "--pulse", "sine:1g:0.6s", "--scale", 0.6, "--neighbours", 0)
+        assert float(one["phi/phi_cr"]) == pytest.approx(alone["responses"]["nonlinear"]["peak_ratio"], rel=1e-6)
+
+    @pytest.mark.parametrize(
+        ("change", "what"),
+        [(("measure: PGA", "measure: p PGV/(g lambda)"), "p PGV/(g lambda) cannot be had of it"),
+         (("method: stripes", "method: stripes\nmodel: linear2"), "the model linear2 cannot be had of it"),
+         (("method: stripes", "method: stripes\nbivariate: [[PGA, p PGV/(g lambda)]]"), "p PGV/(g lambda) cannot be")],
+    )  # fmt: skip
+    def test_a_study_that_asks_for_a_block_is_refused_with_the_reason(self, change, what, tied, tmp_path):
+        (tmp_path / "study.yaml").write_text(self.STUDY.replace(*change))
+        said = run("fragility", tmp_path / "study.yaml", "--store", "s.db", code=2).stderr
+        assert what in said and "does not vanish before the kinematic limit" in said
+
+    def test_a_spectrum_refuses_what_has_no_block(self, tied):
+        said = run("spectrum", tied, "--pulse", "sine:0.4g:0.8s", "--sizes", "2:6:3", code=3).stderr
+        assert "no single block is equivalent to it" in said
+
+    @pytest.mark.parametrize(("loads", "says"), [("loads: [{name: a, mass: 1 t, at: [0, 4]}]", True), ("", False)])
+    def test_a_spectrum_says_what_is_scaled(self, loads, says, tmp_path):
+        path = tmp_path / "b.yaml"
+        path.write_text(f"mechanism: block\nwidth: 1\nheight: 4\ndensity: 2000\ndepth: 1\n{loads}\n")
+        text = run("spectrum", path, "--pulse", "sine:0.4g:0.8s", "--sizes", "4:6:3").stdout
+        assert ("their masses, stiffness and forces are not" in " ".join(text.split())) is says
+
+    def test_a_rebound_that_was_given_is_not_said_to_be_of_kinematics(self, leaning):
+        leaning.write_text(LEANING_FILE[: LEANING_FILE.index("loads:")])
+        text = run("spectrum", leaning, "--pulse", "sine:0.4g:0.8s", "--sizes", "4:6:3").stdout
+        assert "from kinematics" not in text
+
+    def test_margin_finds_the_factors_of_what_has_no_block(self, tied):
+        (found,) = run_json("margin", tied, "--pulse", "sine:0.4g:0.8s", "--neighbours", 3)["motions"]
+        uplift = run_json("equiv", tied)["directions"]["positive"]["lambda"]
+        assert found["uplift"] == pytest.approx(uplift / 0.4, rel=1e-3)
+        assert found["overturned"] == 0

@@ -244,13 +244,14 @@ def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
     def angle(phi: float) -> str:
         return ABSENT if isnan(phi) else f"{degrees(phi):.4g}"
 
-    free = any(runs[0].ends_at_limit)
+    free, some = all(runs[0].ends_at_limit), any(runs[0].ends_at_limit)
+    called = "the limit" if free else "critical, or the limit" if some else "critical"
     over = style.over(runs[0].ends_at_limit).replace("φcr", "φ_cr")
     moved = [watched.peaks(run) for run in runs]
     return [
         ["outcome", *(run.words for run in runs), ""],
         [
-            f"largest rotation over {'the limit' if free else 'critical'}, |φ|/{over.removeprefix('φ/')}",
+            f"largest rotation over {called}, |φ|/{over.removeprefix('φ/')}",
             *(_number(run.peak_ratio) for run in runs),
             "1",
         ],

@@ -183,7 +183,8 @@ def neighbours(
     peaks = np.where(others, np.inf, found.peak_ratio[1:])
     # A value that was reached, never one between two: half of infinity is no rotation.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
-    over = "of the limit" if any(model.ends_at_limit) else "phi_cr"
+    free = model.ends_at_limit
+    over = "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"
     as_itself = float((others == itself).mean())
     return Neighbours(around, model.name, float(others.mean()), (low, middle, high), as_itself, over=over)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees, inf, isinf, isnan
+from math import degrees, inf, isclose, isinf, isnan
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Statics
 from rocking_cli.core.advice import Grade
+from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.restitution import why_none
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.dynamics.history import History
@@ -19,7 +20,6 @@ from rocking_cli.studies.assessment import Assessment, MotionResult
 from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.neighbours import governing, severity
 from rocking_cli.views.contact import contact_words
-from rocking_cli.views.equiv import is_symmetric
 from rocking_cli.views.restitution import restitution_source, restitution_used
 
 MODELS: Mapping[ModelName, str] = {
@@ -197,8 +197,8 @@ def _uplift(content: Assessment, result: MotionResult) -> str:
     best, pga = result.histories["nonlinear"], result.measured.pga
     least = _least(content)
     needed = f"A ground acceleration of {_ground(content, least)} is enough to lift it"
-    alike = is_symmetric(content.structure) or not content.mechanism.rocks_both_ways
-    both = "" if alike else " in its weaker direction"
+    one, other = (side.lambda_ for side in content.structure.statics)
+    both = "" if isclose(one, other, rel_tol=AGREEMENT) else " in its weaker direction"
     if best.uplift_time >= 0:
         return f"Yes, first at {best.uplift_time:.2f} s. {needed}{both}; this motion reaches {pga:.3g} g."
     factor = result.margin.uplift
