@@ -16,6 +16,7 @@ from rocking_cli.studies.picture import picture
 from tests.browser import launch, opened
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
+from tests.test_hung import TIED_FILE
 
 FRAME, ACCEL = EXAMPLES / "frame.yaml", EXAMPLES / "accel.csv"
 EVIL = '<script>alert(1)</script> & "quotes" </script> {{ 7*7 }}'
@@ -114,6 +115,82 @@ def point(page, time, plot=0):
 
 def values(page):
     return [float(text) if text != "–" else None for text in page.locator(".value").all_text_contents()]
+
+
+HUNG = """\
+mechanism: block
+name: tied block
+width: 0.6
+height: 4
+density: 2000
+depth: 1
+loads:
+  - {name: floor, mass: 1 t, at: [0.2, 3]}
+  - {name: thrust, force: [100 N, 0 N], at: [-0.3, 2]}
+ties:
+  - {name: bar, from: {ground: [-2, 3]}, to: {at: [-0.3, 3]}, stiffness: 9 kN/m, only: tension}
+"""
+# Ends of the tie and places of the loads [m], as they are on the screen, and how the tie looks.
+OF_HUNG = """root => {
+  const plane = root.querySelector(".plane").getCTM(), tie = root.querySelector(".tie");
+  const back = (x, y) => { const at = new DOMPoint(x, y).matrixTransform(plane.inverse()); return [at.x, at.y]; };
+  const shift = tie.getCTM();
+  const place = (x, y) => { const at = new DOMPoint(x, y).matrixTransform(shift); return back(at.x, at.y); };
+  const points = tie.getAttribute("d").slice(1).split("L").map(pair => pair.split(",").map(Number));
+  const loads = [...root.querySelectorAll(".weight, .force")].map(each => each.getCTM());
+  const marks = loads.map(matrix => back(matrix.e, matrix.f));
+  return {ends: [place(...points[0]), place(...points.at(-1))], marks, slack: tie.classList.contains("slack"),
+          names: [...root.querySelectorAll(".hung")].map(each => each.textContent)};
+}"""
+
+
+def test_loads_and_ties_are_where_they_are_in_the_history(browser, folder):
+    structure, path = folder / "hung.yaml", folder / "hung.html"
+    structure.write_text(HUNG)
+    run("animate", structure, "--pulse", "sine:0.5g:0.7s", "--out", path, "--neighbours", 0)
+    mechanism = load_structure(structure)
+    shown = picture(mechanism)
+    seen = set()
+    with opened(browser, path) as page:
+        film = json.loads(page.locator("#data").text_content())["film"]
+        for k in range(0, len(film["rotation"]), 20):
+            page.locator("input[type=range]").evaluate(SET, k * film["step"])
+            found = page.locator(".motion").evaluate(OF_HUNG)
+            loads, ((ends,),), (slack,) = shown.hung(film["rotation"][k], 0.0)
+            np.testing.assert_allclose(np.array(found["ends"]) @ (1, 1j), ends, atol=1e-3)
+            np.testing.assert_allclose(np.array(found["marks"]) @ (1, 1j), loads, atol=1e-3)
+            if abs(film["rotation"][k]) > 0.02:  # further than a node of the table from rest
+                assert found["slack"] == slack
+                seen.add(slack)
+        assert found["names"] == ["bar", "floor, 1 t", "thrust, 0.1 kN"]
+    assert seen == {True, False}
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_report_of_a_tied_structure_reads_on_a_telephone(browser, folder, scheme):
+    structure, path = folder / "hung.yaml", folder / "hung-report.html"
+    structure.write_text(HUNG)
+    run("report", structure, "--pulse", "sine:0.5g:0.7s", "--neighbours", 5, "-o", path)
+    with opened(browser, path, viewport={"width": 360, "height": 700}, color_scheme=scheme) as page:
+        assert page.evaluate("document.documentElement.scrollWidth") <= 360
+        page.locator("nav a", has_text="What hangs on it").click()
+        assert page.locator("#hung table").count() == 5
+        assert page.locator(".tie").first.is_visible()
+        for each in page.evaluate(CONTRASTS):
+            assert each["ratio"] >= 4.5, each
+
+
+def test_a_structure_without_a_critical_rotation_moves_against_its_limit(browser, folder):
+    structure, path = folder / "tied.yaml", folder / "tied.html"
+    structure.write_text(TIED_FILE)
+    run("animate", structure, "--pulse", "sine:0.5g:0.7s", "--out", path, "--neighbours", 0)
+    with opened(browser, path) as page:
+        film = json.loads(page.locator("#data").text_content())["film"]
+        k = int(np.argmax(film["rotation"]))
+        page.locator("input[type=range]").evaluate(SET, k * film["step"])
+        share = film["rotation"][k] / (np.pi / 2)
+        assert f"φ/limit = {share:.5f}" in page.locator(".now").text_content()
+        assert "φ/limit" in page.locator(".legend").first.text_content()
 
 
 @pytest.mark.parametrize("what", ["report", "animation"])

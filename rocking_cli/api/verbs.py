@@ -124,15 +124,16 @@ def equiv(structure: Structure) -> Answer[Equivalence | None]:
     return Answer("equivalent block", found, views.view(ready), lambda: views.table([ready]), draw)
 
 
-def draw(structure: Structure, *, at: float = 1.0) -> Answer[Picture]:
+def draw(structure: Structure, *, at: float | None = None) -> Answer[Picture]:
     """A structure at rest with its dimensions, and displaced in both directions.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
-    at : float
-        How far it is displaced, as a multiple of phi_cr; at most as far as the mechanism goes.
+    at : float, optional
+        How far it is displaced, as a multiple of phi_cr, or of the kinematic limit where there is none; at most as far
+        as the mechanism goes. Without it 1, or what is seen well.
 
     Returns
     -------
@@ -159,7 +160,7 @@ def draw(structure: Structure, *, at: float = 1.0) -> Answer[Picture]:
     def figure() -> Figure:
         from rocking_cli.plotting.structure import draw_structure
 
-        return draw_structure(found, heading(mechanism), min(at, found.furthest))
+        return draw_structure(found, heading(mechanism), None if at is None else min(at, found.furthest))
 
     def columns() -> Columns:
         said = [each.text for each in found.sketch.lengths]
@@ -271,6 +272,7 @@ def respond(
     'rocks'
     """
     from rocking_cli.studies.contact import Contacts
+    from rocking_cli.studies.movements import Watched
     from rocking_cli.views import history_table
     from rocking_cli.views.response import runs_view
 
@@ -283,14 +285,16 @@ def respond(
     contacts = {1: Contacts(ready.mechanism).check(nonlinear, shaking)} if nonlinear is not None else {}
 
     def columns() -> Columns:
-        blocks = list(history_table.blocks({str(name): run for name, run in found.items()}, shaking))
+        runs = {str(name): run for name, run in found.items()}
+        blocks = list(history_table.blocks(runs, shaking, watched=Watched(ready.mechanism)))
         return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
     def figure() -> Figure:
         from rocking_cli.plotting.history import draw_history
 
         checked = list(contacts.values()) if ready.mechanism.friction is not None else []
-        return draw_history(found, shaking, title, uplift=ready.uplift, contacts=checked)
+        watched = Watched(ready.mechanism)
+        return draw_history(found, shaking, title, uplift=ready.uplift, contacts=checked, watched=watched)
 
     return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism, contacts), columns, figure)
 

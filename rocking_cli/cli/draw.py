@@ -27,7 +27,7 @@ def _ratio(ctx: click.Context, param: click.Parameter, value: float | None) -> f
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--at", "ratio", type=Finite(), metavar="RATIO", callback=_ratio,
-    help="How far it is displaced, as a multiple of phi_cr.  [default: 1]",
+    help="How far it is displaced, as a multiple of phi_cr, or of the limit where there is none.  [default: 1, 0.1]",
 )  # fmt: skip
 @options.plot("Where to", "[default: FILE with .png, in this folder; none with --json]")
 @options.as_json
@@ -36,7 +36,7 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
 
     Look at it before you trust a number: is this the mechanism you mean, and were your dimensions read right? Bodies,
     hinges with the paper's letters, centroids, R and alpha or the angles of the linkage, and for an arch its voussoirs
-    and the line of thrust at uplift.
+    and the line of thrust at uplift; loads, ties (dashed where slack), and the walls of what rocks to one side only.
 
     Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
 
@@ -56,11 +56,10 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
     keep_apart([("--plot", plot)], [file])
     mechanism = structures.load([file] if file else [])[0]
     shown = _picture(mechanism)
-    if ratio is None:
-        ratio = min(1.0, shown.furthest)  # a stocky body lies on its side before it is there
-    if ratio > shown.furthest:
-        hint = f"at most {shown.furthest:.4g} times phi_cr"
-        raise InputError(Problem(f"{ratio:g} times phi_cr is beyond the end of the mechanism", field="--at", hint=hint))
+    if ratio is not None and ratio > shown.furthest:
+        of = "the limit" if None in shown.phi_cr.values() else "phi_cr"
+        hint = f"at most {shown.furthest:.4g} times {of}"
+        raise InputError(Problem(f"{ratio:g} times {of} is beyond the end of the mechanism", field="--at", hint=hint))
     if plot is not None:
         from rocking_cli.plotting.structure import draw_structure
 

@@ -265,7 +265,7 @@ class _Job:
             title = f"{title}, under {given.motion.name}"
             self._table.add(found)
         _say_which_pulse(found.fit)
-        _write(found, out, plot, title, self._structure.uplift, contact=self._contact)
+        _write(found, out, plot, title, self._structure, contact=self._contact)
         doubts = structures.doubts(mechanism)
         one = view(found, self._structure, self._asked, self._polarity, title, doubts, impacts=self._impacts)
         if self._as_json or not self._several:
@@ -292,13 +292,16 @@ def _say_which_pulse(fit: PulseFit | None) -> None:
 
 
 def _write(
-    found: Answer, out: Path | None, plot: Path | None, title: str, uplift: tuple[float, float], *, contact: bool
+    found: Answer, out: Path | None, plot: Path | None, title: str, structure: Prepared, *, contact: bool
 ) -> None:  # fmt: skip
     """Write the histories and their picture to the files asked for.
 
     In a table those of the second polarity, or to the pulse alone, stand last, under names that say so.
     """
+    from rocking_cli.studies.movements import Watched
+
     first, *others = found.runs.values()
+    watched = Watched(structure.mechanism)
 
     def table() -> Iterable[Columns]:
         from rocking_cli.views import history_table
@@ -306,13 +309,14 @@ def _write(
         columns: dict[str, dynamics.History] = dict(first.items())
         columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
         columns |= {f"pulse {name}": run for name, run in (found.to_pulse or {}).items()}
-        return history_table.blocks(columns, found.first)
+        return history_table.blocks(columns, found.first, watched=watched)
 
     def draw() -> Figure:
         from rocking_cli.plotting.history import draw_history
 
         pulse = (found.fit, found.to_pulse) if found.fit is not None and found.to_pulse is not None else None
+        reversed_ = others[0] if others else None
         contacts = list(found.contacts.values()) if contact else []
-        return draw_history(first, found.first, title, others[0] if others else None, pulse, uplift, contacts)
+        return draw_history(first, found.first, title, reversed_, pulse, structure.uplift, contacts, watched)
 
     Output(out, plot, as_json=False).write(table, draw)

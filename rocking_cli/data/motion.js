@@ -16,6 +16,7 @@ function shape(parent, tag, attributes, text) {
   return node;
 }
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+const short = text => text.length > 40 ? text.slice(0, 39) + "…" : text;
 const fixed = (value, digits = 2) => (Math.round(value * 10 ** digits) / 10 ** digits + 0).toFixed(digits);
 const outline = points => "M" + points.map(p => p.join(",")).join("L") + "Z";
 
@@ -37,8 +38,10 @@ function roundStep(rough) {
 
 // The structure to scale. Returns what draws it anew at a width, and what moves it to a signed rotation [rad].
 function structureStage(svg, picture, colours, low, high) {
-  let moving = [], pins = [];
-  const ratioOf = r => r / picture.phi_cr[r < 0 ? "negative" : "positive"];
+  let moving = [], pins = [], moveHung;
+  const first = Object.keys(picture.reference)[0];  // of the directions that it can rock in
+  const sideOf = r => r === 0 ? first : r < 0 ? "negative" : "positive";
+  const ratioOf = r => r / picture.reference[sideOf(r)];
 
   // Where a part is: straight lines between the positions of the table.
   function placed(part, rotation) {
@@ -56,19 +59,77 @@ function structureStage(svg, picture, colours, low, high) {
       shape(svg, "line", {class: "earth", style: "stroke-width:1px", x1: x, y1: y, x2: x + tick[0], y2: y + tick[1]});
     }
   }
+  // Loads and ties, drawn into one group behind the bodies and one before them; returns what moves them.
+  function hang(behind, before, X, Y, width) {
+    const SYMBOL = 11, COIL = 40, WIDE = 5, TEETH = 8, ARROW = 42, WEIGHT = 8;
+    const steps = [];
+    const at = (end, places) => {
+      if (end.part === null) return [X(end.point[0]) + SYMBOL * end.lead[0], Y(end.point[1]) - SYMBOL * end.lead[1]];
+      const {x, y, psi} = places[end.part], c = Math.cos(psi), s = Math.sin(psi), [[p, q], [u, v]] = [end.point, end.lead];
+      return [X(x + c * p - s * q) + SYMBOL * (c * u - s * v), Y(y + s * p + c * q) - SYMBOL * (s * u + c * v)];
+    };
+    const write = (text, [x, y]) => {  // beside a point, on the side where there is more room
+      const right = x > 0.6 * width;
+      for (const [key, value] of Object.entries({x: x + (right ? -11 : 11), y: y - 6, "text-anchor": right ? "end" : "start"}))
+        text.setAttribute(key, value);
+    };
+    for (const tie of picture.ties) {
+      const layer = tie.bed ? behind : before;  // a structure may move over the springs along its face
+      const drawn = tie.pieces.map(piece => ({piece, line: shape(layer, "path", {class: "tie"})}));
+      for (const {ends} of tie.pieces)
+        for (const end of ends) if (end.part === null) {
+          const [x, y] = at(end, []);
+          shape(layer, "rect", {class: "anchor", x: x - 4, y: y - 4, width: 8, height: 8});
+        }
+      const name = shape(before, "text", {class: "hung tied"}, short(tie.name));
+      steps.push((places, k) => {
+        let longest = [0, [0, 0]];
+        for (const {piece, line} of drawn) {
+          const [[x0, y0], [x1, y1]] = piece.ends.map(end => at(end, places)), long = Math.hypot(x1 - x0, y1 - y0);
+          const [u, v] = long ? [(x1 - x0) / long, (y1 - y0) / long] : [1, 0];
+          const coil = piece.kind === "line" ? 0 : piece.kind === "symbol" ? long : Math.min(COIL, .6 * long);
+          const points = [[x0, y0]], from = (long - coil) / 2;
+          if (coil > 0) for (let j = 0; j <= TEETH; j++) {
+            const along = from + coil * j / TEETH, aside = j % 2 ? (j % 4 === 1 ? WIDE : -WIDE) : 0;
+            points.push([x0 + u * along - v * aside, y0 + v * along + u * aside]);
+          }
+          points.push([x1, y1]);
+          line.setAttribute("d", "M" + points.map(p => p.map(z => z.toFixed(2)).join(",")).join("L"));
+          line.setAttribute("class", tie.slack[k] ? "tie slack" : "tie");
+          if (long > longest[0]) longest = [long, [(x0 + x1) / 2, (y0 + y1) / 2]];
+        }
+        write(name, longest[1]);
+      });
+    }
+    for (const load of picture.loads) {
+      const [fx, fy] = load.force ?? [0, 0], size = Math.hypot(fx, fy) || 1, [u, v] = [fx / size, -fy / size];
+      const mark = load.force === null
+        ? shape(before, "path", {class: "weight", d: "M-8,8L8,8L5.6,-5L2.4,-5L2.4,-9L-2.4,-9L-2.4,-5L-5.6,-5Z"})
+        : shape(before, "path", {class: "force",
+            d: `M${-ARROW * u},${-ARROW * v}L${-9 * u},${-9 * v}M0,0L${-11 * u - 5 * v},${-11 * v + 5 * u}L${-11 * u + 5 * v},${-11 * v - 5 * u}Z`});
+      const name = shape(before, "text", {class: "hung"}, load.name && `${short(load.name)}, ${load.text}`);
+      steps.push(places => {
+        const [x, y] = at(load, places);
+        mark.setAttribute("transform", `translate(${x},${y})`);
+        write(name, load.force === null ? [x, y] : [x - ARROW * u, y - ARROW * v]);
+      });
+    }
+    return (places, k) => { for (const step of steps) step(places, k); };
+  }
   function build(width, tallest) {
     svg.replaceChildren();
-    const margin = 34, [x0, y0] = low, [x1, y1] = high;
+    const margin = picture.loads.some(load => load.force) ? 52 : 34, [x0, y0] = low, [x1, y1] = high;
     const scale = Math.min((width - 2 * margin) / (x1 - x0), tallest / (y1 - y0));
     const height = (y1 - y0) * scale + 2 * margin;
     const left = (width - (x1 - x0) * scale) / 2;
     const X = x => left + (x - x0) * scale, Y = y => margin + (y1 - y) * scale;
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    for (const line of picture.ground) {
+    for (const line of [...picture.ground, ...picture.walls]) {
       const points = line.map(p => [X(p[0]), Y(p[1])]);
       shape(svg, "path", {class: "earth", d: "M" + points.map(p => p.join(",")).join("L")});
       for (let k = 1; k < points.length; k++) hatch(points[k - 1], points[k]);
     }
+    const behind = shape(svg, "g", {});
     const plane = shape(svg, "g", {class: "plane", transform: `translate(${X(0)},${Y(0)}) scale(${scale},${-scale})`});
     for (const part of picture.parts) {
       const at = placed(part, 0);
@@ -82,6 +143,7 @@ function structureStage(svg, picture, colours, low, high) {
       shape(group, "circle", {class: "centroid", r: 3 / scale});
       return group;
     });
+    moveHung = hang(behind, shape(svg, "g", {}), X, Y, width);
     pins = picture.pins.map(pin => ({
       pin, X, Y, mark: shape(svg, "circle", {class: "pin", r: 4}), letter: shape(svg, "text", {class: "letter"}, pin.letter),
     }));
@@ -90,8 +152,8 @@ function structureStage(svg, picture, colours, low, high) {
     shape(svg, "text", {x: 18 + bar * scale, y: height - 5}, `${Number(bar.toPrecision(3))} m`);
   }
   function show(rotation) {
-    const side = rotation < 0 ? "negative" : "positive";
-    const places = picture.parts.map(part => placed(part, rotation));
+    const side = sideOf(rotation), places = picture.parts.map(part => placed(part, rotation));
+    moveHung(places, nearest(picture.rotation, rotation));
     moving.forEach((group, k) => {
       group.setAttribute("transform", `translate(${places[k].x},${places[k].y}) rotate(${places[k].psi * 180 / Math.PI})`);
       group.setAttribute("fill", colours[side][k]); // of its link in this direction
@@ -125,6 +187,7 @@ function timeChart(root, {label, tall, levels, series}) {
     `${label}, over time in seconds. Left and right arrow move the cursor, plus and minus zoom, zero shows all.`});
   const svg = shape(plot, "svg", {"aria-hidden": "true"}), clip = `clip-${++charts}`;
   const left = 52, right = 12, top = 8, bottom = 24, height = levels.length ? 210 : 150;
+  const fine = Math.max(3, 2 - Math.floor(Math.log10(tall)));  // digits of a value
   let cursor, width, view;
   const X = t => left + (t - view[0]) / (view[1] - view[0]) * (width - left - right);
   const Y = v => top + (1 - v / tall) / 2 * (height - top - bottom);
@@ -168,7 +231,7 @@ function timeChart(root, {label, tall, levels, series}) {
     cursor.setAttribute("x1", X(time)); cursor.setAttribute("x2", X(time));
     series.forEach(({x, y}, k) => {
       const known = time >= x[0] - 1e-9 && time <= x[x.length - 1] + 1e-9;
-      values[k].textContent = known ? fixed(y[nearest(x, time)], 3) : "–";
+      values[k].textContent = known ? fixed(y[nearest(x, time)], fine) : "–";
     });
   }
   function select(from, to) {
@@ -182,7 +245,7 @@ function timeChart(root, {label, tall, levels, series}) {
 }
 
 // All of it in `root`. `moment` is what is shown first [s]; keys are listened for in `listener`.
-function motionView(root, {picture, colours, film, charts, label, speed, moment}, listener) {
+function motionView(root, {picture, colours, film, charts, ratio, label, speed, moment}, listener) {
   const svg = shape(root, "svg", {role: "img", "aria-label": label, class: "stage"});
   const stage = structureStage(svg, picture, colours, film.low, film.high);
   const controls = element(root, "div", {class: "controls"});
@@ -198,6 +261,7 @@ function motionView(root, {picture, colours, film, charts, label, speed, moment}
   element(root, "p", {class: "hint"}, "Point at a chart to see the values and the structure at that moment. Drag across it, " +
     "pinch it, or click it and turn the wheel, to zoom. Keys: space plays, arrows move, + and − zoom, 0 shows all.");
   const end = Math.max(film.end, 1e-3), FINEST = 0.05;
+  const digits = Object.values(picture.phi_cr).includes(null) ? 5 : 2;  // over a limit all rotations are small
   let now = moment, view = [0, end], running = false, before = 0, frame = 0, width = 0;
 
   function rotationAt(time) {
@@ -212,7 +276,7 @@ function motionView(root, {picture, colours, film, charts, label, speed, moment}
     for (const chart of drawn) chart.show(now);
     slider.value = now;
     slider.setAttribute("aria-valuetext", `${now.toFixed(2)} seconds`);
-    read.textContent = `t = ${now.toFixed(2)} s, φ = ${fixed(rotation * 180 / Math.PI)}°, φ/φcr = ${fixed(stage.ratioOf(rotation))}`;
+    read.textContent = `t = ${now.toFixed(2)} s, φ = ${fixed(rotation * 180 / Math.PI, digits > 2 ? 3 : 2)}°, ${ratio} = ${fixed(stage.ratioOf(rotation), digits)}`;
   }
   function look(from, span) {
     const wide = clamp(span, Math.min(FINEST, end), end), start = clamp(from, 0, end - wide);

@@ -63,8 +63,19 @@ class History(Outcome[bool, int, float]):
 
     @property
     def reference(self) -> str:
-        """What its ratios are over: the critical rotation, or the kinematic limit."""
-        return "kinematic limit" if any(self.ends_at_limit) else "critical rotation"
+        """What its largest ratio is over: the critical rotation, or the kinematic limit."""
+        return "kinematic limit" if self.ends_at_limit[self._side] else "critical rotation"
+
+    @property
+    def furthest(self) -> float:
+        """The largest rotation of the direction in which the ratio is largest [rad]."""
+        return self.peak_negative if self._side else self.peak_positive
+
+    @property
+    def _side(self) -> int:
+        """The direction in which its ratio is largest: 0 for positive, 1 for negative."""
+        known = self.ratio[np.isfinite(self.ratio)]
+        return int(known[np.abs(known).argmax()] < 0)
 
     @property
     def first_impact(self) -> float:

@@ -158,8 +158,7 @@ def _ends(run: History) -> str:
     if run.peak_ratio > 1:
         return f"{names.ROCKS}: it passes its critical rotation, to {run.peak_ratio:.4g} of it, and is brought back"
     if any(run.ends_at_limit):
-        peak = max(run.peak_positive, run.peak_negative)
-        return f"{names.ROCKS} to {peak:.4g} rad, {run.peak_ratio:.4g} of its {run.reference}"
+        return f"{names.ROCKS} to {run.furthest:.4g} rad, {run.peak_ratio:.4g} of its {run.reference}"
     return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation"
 
 

@@ -26,9 +26,8 @@ from matplotlib.transforms import Affine2D, IdentityTransform
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from rocking_cli.core import Direction
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.plotting import style
+from rocking_cli.plotting import hung, style
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_ground, draw_scale
@@ -44,6 +43,7 @@ TITLE, FOOT, TRACE, GAP, LEFT = 0.6, 0.42, 0.95, 0.12, 0.82  # inches
 SHADES = (0.2, 0.4, 0.6, 0.8)  # between a colour and those it is drawn on, for smooth edges
 PIN = 3.0  # pixels: radius of a hinge
 NEARLY_WHITE = 0.97
+HEAD = 0.13  # inches: head of an arrow
 HOLD = 1.5  # s that the last frame stays
 
 
@@ -95,7 +95,8 @@ def _frames(stage: _Stage, film: Film, times: Reals, advance: Callable[[int], No
 def _palette() -> Image.Image:
     """The colours of a GIF: those of the style, and shades to white and to ink. Few colours make small files."""
     colours = {to_rgb("white"), to_rgb(style.INK)}
-    for each in (*style.BODIES, style.RESTING, style.EARTH, style.CURSOR, style.INK, style.FAINT):
+    drawn = (style.RESTING, style.EARTH, style.CURSOR, style.INK, style.FAINT, style.TIE["color"])
+    for each in (*style.BODIES, *drawn):
         colour, white, ink = (np.array(to_rgb(c)) for c in (each, "white", style.INK))
         for other in (white, ink):
             colours |= {tuple(colour + share * (other - colour)) for share in (0.0, *SHADES)}
@@ -112,13 +113,14 @@ class _Stage:
     def __init__(self, film: Film, title: str, start: float, end: float) -> None:
         self._film = film
         low, high = film.box
-        panel = Panel(low, high, (0.15, 0.15, 0.16, 0.15))
+        left, right, below, above = np.maximum((0.15, 0.15, 0.16, 0.15), hung.margins(film.picture)).tolist()
+        panel = Panel(low, high, (left, right, below, above))
         size = panel.plane
         panel.scale = min(
             (style.WIDTH - 2 * GAP - panel.room.real) / size.real, (TALLEST - panel.room.imag) / size.imag
         )
         spare = style.WIDTH - 2 * GAP - panel.inches.real
-        panel.around = 0.15 + spare / 2, 0.15 + spare / 2, 0.16, 0.15
+        panel.around = left + spare / 2, right + spare / 2, below, above
         below = 2 * TRACE + 3 * GAP + FOOT + 0.3
         panel.corner = complex(GAP, below)
         tall = ceil((below + panel.inches.imag + TITLE) * DOTS) / DOTS
@@ -140,7 +142,7 @@ class _Stage:
         self._still = np.asarray(Image.open(drawn).convert("RGB").reduce(FINER))
         height, width, _ = self._still.shape
         self._renderer: Any = RendererAgg(width, height, DOTS)  # type: ignore[no-untyped-call]
-        self._scale = panel.scale * DOTS
+        self._panel_scale, self._scale = panel.scale, panel.scale * DOTS
         left = panel.low.real - panel.around[0] / panel.scale - GAP / panel.scale
         self._origin = complex(left, panel.low.imag - (panel.around[2] + panel.corner.imag) / panel.scale)
         self._strip = [
@@ -152,6 +154,8 @@ class _Stage:
             for axes in (upper, lower)
         ]
         self._times = start, end
+        # Of rotations over a limit, all of which are small, more digits.
+        self._digits = 5 if any(film.history.ends_at_limit) else 2
 
     def frame(self, time: float, rotation: float, ratio: float) -> Image.Image:
         """One frame, in colours."""
@@ -171,7 +175,8 @@ class _Stage:
         for x0, x1, y0, y1 in self._strip:
             x = round(x0 + share * (x1 - x0))
             pen.line([(x, frame.height - y1), (x, frame.height - y0)], fill=style.CURSOR, width=2)
-        now = f"t = {time:6.2f} s    φ/φcr = {round(ratio, 2) + 0.0:+.2f}"
+        over = style.over(self._film.history.ends_at_limit)
+        now = f"t = {time:6.2f} s    {over} = {round(ratio, self._digits) + 0.0:+.{self._digits}f}"
         pen.text((frame.width - 12, 30), now, fill=style.INK, font=_font(13), anchor="ra")
         return frame
 
@@ -179,24 +184,65 @@ class _Stage:
         """Draw parts and hinges; the letters of these, and where they are [pixels]."""
         picture = self._film.picture
         outlines, pins = picture.placed(rotation)
-        direction = Direction.NEGATIVE if rotation < 0 else Direction.POSITIVE
-        pen = self._renderer.new_gc()
-        pen.set_foreground(style.INK)
-        pen.set_linewidth(self._renderer.points_to_pixels(style.MEDIUM))
-        pen.set_joinstyle("round")
-        pen.set_snap(False)  # it moves by less than a pixel
+        direction = picture.side(rotation)
+        shown = hung.symbols(picture, rotation, self._panel_scale)
+        self._draw_ties(shown, behind=True)
+        pen = self._pen(style.INK, style.MEDIUM)
         for k, polygons in enumerate(outlines):
             fill = to_rgb(colour(picture, k, direction))
             for each in polygons:
                 corners = self._pixels(np.append(each, each[0]))
                 self._renderer.draw_path(pen, Path(corners, closed=True), IdentityTransform(), fill)
-        shown = [] if rotation == 0 else [k for k, pin in enumerate(picture.pins) if pin.direction is direction]
-        for x, y in self._pixels(pins[shown]):
+        pen.restore()
+        self._draw_ties(shown, behind=False)
+        self._draw_loads(shown)
+        pen = self._pen(style.INK, style.MEDIUM)
+        seen = [] if rotation == 0 else [k for k, pin in enumerate(picture.pins) if pin.direction is direction]
+        for x, y in self._pixels(pins[seen]):
             ring = Affine2D().scale(PIN).translate(x, y)
             self._renderer.draw_path(pen, Path.unit_circle(), ring, to_rgb("white"))
         pen.restore()
-        places = self._pixels(pins[shown]) @ np.array([1, 1j])
-        return [(picture.pins[k].letter, complex(place)) for k, place in zip(shown, places, strict=True)]
+        places = self._pixels(pins[seen]) @ np.array([1, 1j])
+        return [(picture.pins[k].letter, complex(place)) for k, place in zip(seen, places, strict=True)]
+
+    def _pen(self, colour: str, points: float) -> Any:
+        pen = self._renderer.new_gc()
+        pen.set_foreground(colour)
+        pen.set_linewidth(self._renderer.points_to_pixels(points))
+        pen.set_joinstyle("round")
+        pen.set_snap(False)  # it moves by less than a pixel
+        return pen
+
+    def _draw_ties(self, shown: hung.Symbols, *, behind: bool) -> None:
+        """Draw ties and what holds them: those that the structure may move over, or the others."""
+        for line, loose, of_bed in shown.lines:
+            if of_bed is behind:
+                pen = self._pen(style.TIE["color"], style.TIE["linewidth"])
+                if loose:
+                    pen.set_dashes(0, [self._renderer.points_to_pixels(each) for each in (3.5, 2.5)])
+                self._renderer.draw_path(pen, Path(self._pixels(line)), IdentityTransform())
+                pen.restore()
+        pen = self._pen(style.INK, style.THIN)
+        for at, of_bed in shown.anchors:
+            if of_bed is behind:
+                self._fill(pen, at + hung.ANCHOR / self._panel_scale * hung.SQUARE, style.EARTH)
+        pen.restore()
+
+    def _draw_loads(self, shown: hung.Symbols) -> None:
+        pen = self._pen("white", style.THIN)
+        for outline in shown.weights:
+            self._fill(pen, outline, style.INK)
+        pen.restore()
+        pen = self._pen(style.CURSOR, style.BOLD)
+        for tail, tip in shown.forces:
+            head = tip + (tail - tip) / abs(tail - tip) * HEAD / self._panel_scale * np.array([0, 1 + 0.45j, 1 - 0.45j])
+            self._renderer.draw_path(pen, Path(self._pixels(np.array([tail, head.mean()]))), IdentityTransform())
+            self._fill(pen, head, style.CURSOR)
+        pen.restore()
+
+    def _fill(self, pen: Any, outline: NDArray[np.complex128], colour: str) -> None:
+        corners = self._pixels(np.append(outline, outline[0]))
+        self._renderer.draw_path(pen, Path(corners, closed=True), IdentityTransform(), to_rgb(colour))
 
     def _pixels(self, z: NDArray[np.complex128]) -> NDArray[np.float64]:
         """Where points are, from the lower left corner, shape (n, 2)."""
@@ -215,7 +261,10 @@ def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float)
     upper.plot(time, ratio, **style.TRACE)
     t, ground = ground_trace(film.motion)
     lower.plot(t, ground, **style.TRACE)
-    for axes, values, label in ((upper, ratio, r"$\phi/\phi_{cr}$"), (lower, ground, "ground [g]")):
+    for axes, values, label in (
+        (upper, ratio, style.over(film.history.ends_at_limit, math=True)),
+        (lower, ground, "ground [g]"),
+    ):
         axes.set_xlim(start, max(end, start + 1e-3))
         tall = 1.1 * max(float(np.abs(values).max()), 1e-3)
         axes.set_ylim(-tall, tall)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import shorten
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,6 +18,7 @@ from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.plotting.thinning import visible
 from rocking_cli.studies.contact import Contact
+from rocking_cli.studies.movements import Watched
 
 TALLEST = 1.6  # phi/phi_cr shown at most
 FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
@@ -25,6 +27,8 @@ SHORTEST = 0.1  # s of the time axis
 POINTS = 1000  # of a pulse
 MOST_NEEDED = 2.0  # friction shown at most: what bears next to nothing needs any
 IMPACTS = f"impacts of {100 * FELT:g} % of the strongest and more, in the order of the legend"
+FORCE = " force [N]"  # what columns of forces end with
+MOST_TIES, LONGEST = 6, 30  # ties in a panel, and characters of their names
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
 
 
@@ -36,6 +40,7 @@ def draw_history(
     pulse: tuple[PulseFit, Mapping[ModelName, History]] | None = None,
     uplift: tuple[float, float] | None = None,
     contacts: Sequence[Contact] = (),
+    watched: Watched | None = None,
 ) -> Figure:
     """Draw histories over time.
 
@@ -51,12 +56,13 @@ def draw_history(
         The responses to the reversed motion, drawn in a panel of their own.
     pulse : PulseFit and mapping of str to History, optional
         The pulse in the motion, drawn bold over it, and the responses to it alone, in a panel of their own.
-
     uplift : (float, float), optional
         The ground acceleration that lifts the structure to the positive and to the negative direction [standard
         gravity], drawn over the motion where nothing lifts it.
     contacts : sequence of Contact
         Of the nonlinear history under the motion, and under the reversed one: the friction needed, in a panel below.
+    watched : Watched, optional
+        With it the forces of ties are drawn below each response, and the side walls of what rocks to one side only.
 
     Returns
     -------
@@ -68,8 +74,10 @@ def draw_history(
     if pulse is not None:
         responses = {"record": histories, "its pulse alone": pulse[1]}
     shaken, rubs = motion is not None, bool(contacts)
-    figure = style.new_figure(1.4 * shaken + 3.4 * len(responses) + 1.7 * rubs)
-    ratios = [1] * shaken + [1.8] * len(responses) + [0.9] * rubs
+    tied = watched is not None and bool(watched.ties)
+    each_has = [1.8, 1.0] if tied else [1.8]
+    figure = style.new_figure(1.4 * shaken + (3.4 + 1.9 * tied) * len(responses) + 1.7 * rubs)
+    ratios = [1.0] * shaken + each_has * len(responses) + [0.9] * rubs
     panels = list(figure.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
     style.heading(panels[0], title)
     runs = [run for each in responses.values() for run in each.values()]
@@ -80,8 +88,14 @@ def draw_history(
             _draw_uplift(panels[0], uplift)
     reach = max(float(np.nanmax(np.abs(run.ratio))) for run in runs)
     tall = min(max(1.1 * reach, 1e-3), TALLEST)
-    for axes, (what, each) in zip(panels[shaken:], responses.items(), strict=False):
+    below = panels[shaken : shaken + len(each_has) * len(responses)]
+    for axes, (what, each) in zip(below[:: len(each_has)], responses.items(), strict=True):
         _draw_responses(axes, each, what, tall)
+        if watched is not None and not watched.mechanism.rocks_both_ways:
+            _draw_wall(axes, watched.mechanism.directions[0], tall)
+    if watched is not None and tied:
+        for axes, each in zip(below[1::2], responses.values(), strict=True):
+            _draw_forces(axes, each, watched)
     if rubs:
         _draw_contacts(panels[-1], contacts)
     panels[-1].set_xlim(0.0, end)
@@ -131,7 +145,8 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
         axes.axhline(level, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     axes.set_ylim(-1.3 * tall, tall)  # room for the impacts below
-    axes.set_ylabel(r"rotation $\phi/\phi_{cr}$, clockwise up", fontsize=style.LABEL)
+    over = style.over(next(iter(histories.values())).ends_at_limit, math=True)
+    axes.set_ylabel(f"rotation {over}, clockwise up", fontsize=style.LABEL)
     place = (0.005, (len(histories) + 1.2) * LANE)
     axes.annotate(IMPACTS, place, xycoords="axes fraction", fontsize=style.SMALL, color=style.INK)
     if not any(run.lifted for run in histories.values()):
@@ -161,6 +176,41 @@ def _draw_contacts(axes: Axes, contacts: Sequence[Contact]) -> None:
     axes.set_ylim(0.0, 1.15 * min(max(most, there or 0.0, 1e-3), MOST_NEEDED))
     axes.set_ylabel("friction needed", fontsize=style.LABEL)
     axes.legend(loc="upper right", ncols=3, **style.LEGEND)
+    style.tidy(axes)
+
+
+def _draw_wall(axes: Axes, free: Direction, tall: float) -> None:
+    """Hatch the side that it leans on, and leave little room there."""
+    edge = -0.1 * free * tall
+    axes.axhspan(min(0.0, edge), max(0.0, edge), facecolor="none", edgecolor=style.EARTH, hatch="////", linewidth=0)
+    axes.axhline(0.0, color=style.EARTH, linewidth=style.BOLD)
+    side = "right" if free > 0 else "left"  # away from the legend, and from the words on impacts
+    axes.annotate(
+        "side walls", (0.995 if free > 0 else 0.005, edge), (0, -3 * free), xycoords=axes.get_yaxis_transform(),
+        textcoords="offset points", ha=side, va="top" if free > 0 else "bottom", fontsize=style.SMALL, color=style.INK,
+    )  # fmt: skip
+    axes.set_ylim((-0.4 * tall, tall) if free > 0 else (-1.3 * tall, 0.45 * tall))
+
+
+def _draw_forces(axes: Axes, histories: Mapping[ModelName, History], watched: Watched) -> None:
+    """The forces of the ties over time in one history, that of the nonlinear model if there is one."""
+    model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
+    run = histories[model]
+    forces = {name.removesuffix(FORCE): values / 1000 for name, values in watched.columns(run.phi) if FORCE in name}
+    strongest = sorted(forces, key=lambda name: -float(np.nanmax(np.abs(forces[name]))))[:MOST_TIES]
+    for k, name in enumerate(each for each in forces if each in strongest):
+        known = forces[name][np.isfinite(forces[name])]
+        shown = visible(known)
+        look = {key: value for key, value in style.distinct(k).items() if "marker" not in key}
+        axes.plot(run.time[shown], known[shown], label=style.plain(shorten(name, LONGEST, placeholder=" ...")), **look)
+    axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
+    axes.set_ylabel("tie force [kN]", fontsize=style.LABEL)
+    some = f", the {MOST_TIES} strongest of {len(forces)}" if len(forces) > MOST_TIES else ""
+    style.make_room(axes, 0.3)
+    axes.legend(
+        loc="upper right", title=f"tension up, {model} model{some}", title_fontsize=style.TICK, alignment="left",
+        ncols=min(3, len(strongest)), **style.LEGEND,
+    )  # fmt: skip
     style.tidy(axes)
 
 

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.io.json_text import json_text
+from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import colour
 from rocking_cli.plotting.thinning import BINS, visible
 from rocking_cli.studies.film import Film
@@ -64,10 +64,11 @@ def moving(
         "picture": film.picture.as_dict(),
         "colours": {
             direction.label: [colour(film.picture, k, direction) for k in range(len(film.picture.parts))]
-            for direction in Direction
+            for direction in film.picture.directions
         },
         "film": film.as_dict(max(FINEST, film.end / MOST)),
         "charts": list(charts),
+        "ratio": style.over(film.history.ends_at_limit),
         "label": label,
         "speed": speed,
         "moment": moment,
@@ -75,16 +76,28 @@ def moving(
 
 
 def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dict[str, Any]:
-    """The rotation over the critical one over time, a curve for each model, of some two samples for each bin."""
+    """The rotation over the critical one, or over the kinematic limit where there is none, over time.
+
+    There is a curve for each model, of some two samples for each bin.
+    """
     series, reach = [], 0.0
+    first = next(iter(histories.values()))
     for name, run in histories.items():
         ratio = run.ratio[np.isfinite(run.ratio)]
         reach = max(reach, float(np.abs(ratio).max()))
         shown = visible(ratio, bins)
         series.append(_series(NAMES[name], name, run.time[shown], ratio[shown]))
-    levels = [{"at": level, "text": "critical rotation"} for level in (1, -1)]
+    levels = [
+        {"at": level, "text": "kinematic limit" if at_limit else "critical rotation"}
+        for level, at_limit in zip((1, -1), first.ends_at_limit, strict=True)
+    ]
     tall = min(1.1 * reach, TALLEST) if reach else TALLEST
-    return {"label": "rotation φ/φcr, clockwise up", "tall": tall, "levels": levels, "series": series}
+    return {
+        "label": f"rotation {style.over(first.ends_at_limit)}, clockwise up",
+        "tall": tall,
+        "levels": levels,
+        "series": series,
+    }
 
 
 def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BINS) -> dict[str, Any]:

@@ -61,13 +61,15 @@ class Panel:
         return axes
 
 
-def lay_out(left: Panel, middle: Panel, right: Panel, head: float, foot: float) -> float:
-    """Place three panels, side by side at one scale, or the middle one, larger, above the two others.
+def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) -> float:
+    """Place panels side by side at one scale, or the middle one, larger, above the others.
 
     Parameters
     ----------
-    left, middle, right : Panel
-        Their scale, corner and room to the sides are set.
+    panels : sequence of Panel
+        From left to right. Their scale, corner and room to the sides are set.
+    middle : Panel
+        One of them.
     head, foot : float
         What each needs above and below itself [inches].
 
@@ -76,11 +78,11 @@ def lay_out(left: Panel, middle: Panel, right: Panel, head: float, foot: float) 
     float
         The height of all [inches]; corners count from its lower edge.
     """
-    every = (left, middle, right)
-    together, apart = _largest(every), _largest([middle])
+    together, apart = _largest(panels), _largest([middle])
     if apart < STACKED * together:
-        return _row(every, together, foot) + head
-    low = _row([left, right], _largest([left, right]), foot) + head
+        return _row(panels, together, foot) + head
+    others = [each for each in panels if each is not middle]
+    low = _row(others, _largest(others), foot) + head
     return _row([middle], apart, low + foot) + head
 
 

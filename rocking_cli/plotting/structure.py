@@ -16,7 +16,7 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from rocking_cli.core import Angle, Direction, Length, Line, three_digits
-from rocking_cli.plotting import dimensions, style
+from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import EDGE, MARK, Labels, mathematics
 from rocking_cli.plotting.panels import GAP, Panel, lay_out
 from rocking_cli.studies.picture import Picture, Pin, box_around
@@ -30,11 +30,14 @@ EARTH = 0.08  # inches: depth of the hatches of the ground
 LONGEST_BAR = 0.8  # inches: of the scale
 WORDS = 40  # characters of a line under a panel
 NOTES = 125  # characters of a line of notes
+NO_CRITICAL = "without a critical rotation: displaced to an angle that is seen"
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
-def draw_structure(picture: Picture, title: str, ratio: float = 1.0) -> Figure:
+def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> Figure:
     """Draw a structure displaced in the negative direction, at rest with its dimensions, and in the positive direction.
+
+    One that rocks to one side only is displaced to that side alone.
 
     Parameters
     ----------
@@ -42,24 +45,28 @@ def draw_structure(picture: Picture, title: str, ratio: float = 1.0) -> Figure:
         What to draw.
     title : str
         Heading.
-    ratio : float
-        Rotation of the displaced structure over the critical one.
+    ratio : float, optional
+        Rotation of the displaced structure over the critical one, or over the kinematic limit where there is none;
+        without it, what can be seen well.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    turned = {direction: direction * ratio * picture.phi_cr[direction] for direction in Direction}
+    ratios = picture.usual if ratio is None else dict.fromkeys(picture.directions, ratio)
+    turned = {side: side * times * picture.reference[side] for side, times in ratios.items()}
     low, high = _box_at_rest(picture)
-    shown = [each for each in picture.sketch.lengths if each.direction is not Direction.NEGATIVE]
+    shown = [each for each in picture.sketch.lengths if _is_at_rest(picture, each)]
     rows, inside = dimensions.in_rows(shown, low, high)
-    rest = Panel(low, high, dimensions.room(rows, low, high))
+    rest = _rest_panel(picture, low, high, dimensions.room(rows, low, high))
     sides = {direction: _displaced_panel(picture, turn) for direction, turn in turned.items()}
-    words = {direction: _words(picture, direction) for direction in Direction}
+    words = {direction: _words(picture, direction) for direction in turned}
     foot = FOOT + ROW * max(text.count("\n") + bool(text) for text in words.values())
     named = [f"orange: {each.name}{_of(each)}" for each in _lines(picture)]
-    notes = fill("; ".join([*named, *picture.sketch.notes]), NOTES)
-    height = lay_out(sides[Direction.NEGATIVE], rest, sides[Direction.POSITIVE], HEAD, foot)
+    free = [] if None not in picture.phi_cr.values() else [NO_CRITICAL]
+    notes = fill("; ".join([*named, *picture.sketch.notes, *free]), NOTES)
+    in_order = [sides.get(Direction.NEGATIVE), rest, sides.get(Direction.POSITIVE)]
+    height = lay_out([each for each in in_order if each is not None], rest, HEAD, foot)
     below = GAP + NOTE * (notes.count("\n") + bool(notes))
     figure = Figure(figsize=(style.WIDTH, below + height + TITLE), dpi=style.DPI)
     for panel in (rest, *sides.values()):
@@ -77,25 +84,31 @@ def draw_structure(picture: Picture, title: str, ratio: float = 1.0) -> Figure:
     labels = _labels(axes, picture, rest, 0.0)
     _draw_parts(axes, picture, 0.0)
     _draw_lines(axes, picture, labels)
+    hung.draw_hung(axes, picture, 0.0, rest, labels)
     pins = _draw_pins(axes, picture, 0.0, _at_rest(picture), rest, labels)
-    dimensions.draw_outside(axes, rows, rest, low, high, labels)
+    left, right, below_it, above_it = (each / rest.scale for each in hung.beside(picture))
+    edges = low - complex(left, below_it), high + complex(right, above_it)
+    dimensions.draw_outside(axes, rows, rest, *edges, labels)
     _draw_letters(picture, 0.0, pins, labels)
-    angles = [each for each in picture.sketch.angles if each.direction is not Direction.NEGATIVE]
+    angles = [each for each in picture.sketch.angles if _is_at_rest(picture, each)]
     dimensions.draw_inside(axes, inside, angles, rest, labels)
+    hung.name_hung(picture, rest, labels)
     draw_scale(axes, rest)
     for direction, panel in sides.items():
         axes = panel.axes(figure)
         phi = abs(turned[direction])
-        times = "" if ratio == 1 else f"{ratio:g} "
+        times = "" if ratios[direction] == 1 else f"{ratios[direction]:g} "
+        of = "" if picture.phi_cr[direction] is None else rf"{times}$\phi_{{cr}}$ = "
         axes.set_title(
             f"{direction.label} ({SENSE[direction]})\n"
-            rf"$\phi$ = {times}$\phi_{{cr}}$ = {phi:.3g} rad = {three_digits(degrees(phi))}°",
+            rf"$\phi$ = {of}{phi:.3g} rad = {three_digits(degrees(phi))}°",
             fontsize=style.LABEL, color=style.INK,
         )  # fmt: skip
         draw_ground(axes, picture, panel)
         _draw_outline_at_rest(axes, picture)
         _draw_parts(axes, picture, turned[direction])
         labels = _labels(axes, picture, panel, turned[direction])
+        hung.draw_hung(axes, picture, turned[direction], panel, labels)
         own = [pin for pin in picture.pins if pin.direction is direction]
         pins = _draw_pins(axes, picture, turned[direction], own, panel, labels)
         _draw_letters(picture, turned[direction], pins, labels)
@@ -114,7 +127,7 @@ def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:
     low, high = picture.extent[0], picture.extent[1]
     axes.set_axis_off()
     axes.set_aspect("equal")
-    for line in picture.ground:
+    for line in (*picture.ground, *picture.walls):
         axes.plot(line.real, line.imag, color=style.EARTH, linewidth=style.BOLD, zorder=1)
     _draw_parts(axes, picture, 0.0)
     across, up = (high - low).real, (high - low).imag
@@ -131,17 +144,33 @@ def _box_at_rest(picture: Picture) -> tuple[complex, complex]:
     return box_around([np.array([*picture.extent, *measured])])
 
 
+def _rest_panel(picture: Picture, low: complex, high: complex, around: tuple[float, float, float, float]) -> Panel:
+    """Room for the structure from `low` to `high` with what is written around it, and for all that hangs on it."""
+    far = box_around([np.array([low, high, *picture.held(0.0)])])
+    beside = np.add(around, hung.beside(picture))
+    left, right, below, above = np.maximum(beside, hung.margins(picture)).tolist()
+    wider = hung.WORDS if picture.loads or picture.ties else 0.0
+    return Panel(*far, (left + wider, right + wider, below, above))
+
+
 def _displaced_panel(picture: Picture, rotation: float) -> Panel:
     outlines, pins = picture.placed(rotation)
-    low, high = box_around([np.array([*picture.extent, *pins]), *(each for part in outlines for each in part)])
+    moved = [*picture.extent, *pins, *picture.held(rotation)]
+    low, high = box_around([np.array(moved), *(each for part in outlines for each in part)])
     side = max(0.1, NARROWEST / 4)
-    return Panel(low, high, (side, side, 0.16, 0.12))
+    left, right, below, above = np.maximum((side, side, 0.16, 0.12), hung.margins(picture)).tolist()
+    return Panel(low, high, (left, right, below, above))
+
+
+def _is_at_rest(picture: Picture, each: Length | Angle | Line | Pin) -> bool:
+    """Whether it is shown at rest: what belongs to both directions, or to the first."""
+    return each.direction in (None, picture.directions[0])
 
 
 def _words(picture: Picture, direction: Direction) -> str:
     """The lengths and angles of a direction, where the two differ."""
     every: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
-    if not any(each.direction is Direction.NEGATIVE for each in every):
+    if not picture.mechanism.rocks_both_ways or not any(each.direction is Direction.NEGATIVE for each in every):
         return ""
     lines: list[str] = []
     wide = 0
@@ -162,11 +191,11 @@ def _of(line: Line) -> str:
 
 def _at_rest(picture: Picture) -> list[Pin]:
     """Hinges to mark at rest: of a linkage those of the positive direction, else all."""
-    positive = [pin for pin in picture.pins if pin.direction is Direction.POSITIVE]
-    return positive if picture.sketch.hinges and len(positive) > 1 else list(picture.pins)
+    first = [pin for pin in picture.pins if _is_at_rest(picture, pin)]
+    return first if picture.sketch.hinges and len(first) > 1 else list(picture.pins)
 
 
-def colour(picture: Picture, k: int, direction: Direction = Direction.POSITIVE) -> str:
+def colour(picture: Picture, k: int, direction: Direction) -> str:
     """The colour of a part while it rocks in a direction: that of its link."""
     link = picture.links[direction][k]
     return style.RESTING if link is None else style.BODIES[link % len(style.BODIES)]
@@ -175,7 +204,7 @@ def colour(picture: Picture, k: int, direction: Direction = Direction.POSITIVE) 
 def _draw_parts(axes: Axes, picture: Picture, rotation: float) -> None:
     outlines, _ = picture.placed(rotation)
     centroids = picture.at(np.array([rotation]))[0][:, 0]
-    direction = Direction.NEGATIVE if rotation < 0 else Direction.POSITIVE
+    direction = picture.side(rotation)
     for k, (part, polygons) in enumerate(zip(picture.parts, outlines, strict=True)):
         dashes = (0, (3, 2)) if part.assumed else "-"
         for each in polygons:
@@ -208,7 +237,7 @@ def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labe
             labels.keep_off([*each, each[0]], EDGE)
     for centroid in picture.at(np.array([rotation]))[0][:, 0]:
         labels.keep_off([centroid], MARK)
-    for line in picture.ground:
+    for line in (*picture.ground, *picture.walls):
         labels.keep_off(line, EDGE)
         labels.keep_off(np.concatenate([line[:1], _hatches(line, panel).ravel()]), EDGE / 2)
     return labels
@@ -266,12 +295,12 @@ def _draw_lines(axes: Axes, picture: Picture, labels: Labels) -> None:
 
 def _lines(picture: Picture) -> list[Line]:
     """The lines that are drawn at rest."""
-    return [each for each in picture.sketch.lines if each.direction is not Direction.NEGATIVE]
+    return [each for each in picture.sketch.lines if _is_at_rest(picture, each)]
 
 
 def draw_ground(axes: Axes, picture: Picture, panel: Panel) -> None:
-    """Draw the ground, hatched."""
-    for line in picture.ground:
+    """Draw the ground and side walls, hatched."""
+    for line in (*picture.ground, *picture.walls):
         axes.plot(line.real, line.imag, color=style.EARTH, linewidth=style.BOLD, zorder=1)
         ticks = [_xy(each) for each in _hatches(line, panel)]
         axes.add_collection(LineCollection(ticks, colors=style.EARTH, linewidths=style.THIN))

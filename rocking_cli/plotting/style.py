@@ -34,6 +34,8 @@ EARTH, MEASURE = "#8a7f70", "#2b5d86"
 CURSOR = "#c4371a"
 TRACE: dict[str, Any] = {"color": INK, "linestyle": "-", "linewidth": 0.9}
 THRUST: dict[str, Any] = {"color": "#b3541e", "linestyle": (0, (3, 1)), "linewidth": 1.8}
+TIE: dict[str, Any] = {"color": "#1d6b4f", "linewidth": 1.3}
+SLACK = (0, (2.5, 2))
 # Distinct in grey by darkness, dash and weight as well as by hue; the heaviest shows on both sides of the others.
 LINES = {
     "nonlinear": {"color": "#111111", "linestyle": "-", "linewidth": 1.9},
@@ -129,6 +131,12 @@ def fitted(text: str, width: float = WIDTH - 0.3, points: float = TITLE) -> str:
 def heading(axes: Axes, text: str) -> None:
     """The title of a picture, above its first panel; a $ in a name is a $."""
     axes.set_title(fitted(text, WIDTH - MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
+
+
+def over(ends_at_limit: tuple[bool, bool], *, math: bool = False) -> str:
+    """The symbol of a rotation over what it is compared with, by whether each direction has no critical rotation."""
+    found = "φ/limit" if all(ends_at_limit) else "φ/φcr or limit" if any(ends_at_limit) else "φ/φcr"
+    return found.replace("φcr", r"$\phi_{cr}$").replace("φ", r"$\phi$") if math else found
 
 
 def plain(text: str) -> str:

@@ -13,24 +13,28 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 from matplotlib.figure import Figure
 
-from rocking_cli.core import Angle, Direction, Length
+from rocking_cli.core import Angle, Length
 from rocking_cli.core.advice import preferred_kappa
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulse_fit import PulseFit
+from rocking_cli.plotting import style
 from rocking_cli.plotting.linearisation import draw_linearisation
 from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.report.figures import inline_svg
+from rocking_cli.report.hung import hung_on
 from rocking_cli.studies.assessment import Assessment, MotionResult, PulseMap, amplitude_in_g, share
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
+from rocking_cli.studies.movements import Watched
 from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.contact import COLUMNS as CONTACT_COLUMNS
 from rocking_cli.views.contact import contact_row
+from rocking_cli.views.equiv import Side, is_symmetric, sentence, sides_of, without
 from rocking_cli.views.parameters import PARAMETERS, values
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
@@ -70,6 +74,9 @@ def render(content: Assessment) -> str:
         drawing=_still(draw_structure(content.picture, content.name), "drawing"),
         measured=_dimensions(content),
         directions=_directions(content),
+        hung=hung_on(content),
+        alone=words.why_alone(content) if len(content.structure.default_models) == 1 else "",
+        over=_over(content),
         parameters=_parameters(content),
         advice=_advice(content),
         trust=_greek(content.trust),
@@ -114,6 +121,12 @@ def _still(figure: Figure, prefix: str) -> Markup:
     return Markup(inline_svg(figure, prefix))
 
 
+def _over(content: Assessment) -> str:
+    """The symbol of a rotation over what it is compared with."""
+    free = [side.phi_cr is None for side in content.structure.statics]
+    return style.over((free[0], free[1])).replace("φcr", "φ_cr")
+
+
 def _dimensions(content: Assessment) -> list[str]:
     measured: list[Length | Angle] = [*content.picture.sketch.lengths, *content.picture.sketch.angles]
     return [f"{each.text} ({each.direction.label})" if each.direction else each.text for each in measured]
@@ -127,36 +140,64 @@ def _number(value: float | None, digits: int = 4) -> str:
 
 
 def _directions(content: Assessment) -> list[str]:
-    if content.equivalence.symmetric:
+    sides = sides_of(content.structure)
+    if is_symmetric(content.structure) or len(sides) == 1:
         return ["value"]
-    return [f"{each.label} ({SENSE[each]})" for each in Direction]
+    return [f"{side.direction.label} ({SENSE[side.direction]})" for side in sides]
+
+
+def _shown(content: Assessment) -> list[Side]:
+    """The directions that have values of their own."""
+    sides = sides_of(content.structure)
+    return sides[:1] if is_symmetric(content.structure) else sides
 
 
 def _parameters(content: Assessment) -> list[dict[str, Any]]:
-    shown = [Direction.POSITIVE] if content.equivalence.symmetric else list(Direction)
-    blocks = [values(content.equivalence[each]) for each in shown]
-    return [
+    shown = _shown(content)
+    blocks = [values(side.block) if side.block is not None else without(side) for side in shown]
+    rows = [
         {
             "symbol": each.symbol,
             "values": [
-                _number(block[each.key]) + (f" ({degrees(block[each.key]):.3g}°)" if each.unit == "rad" else "")
+                _number(block[each.key])
+                + (f" ({degrees(block[each.key]):.3g}°)" if each.unit == "rad" and not isnan(block[each.key]) else "")
                 for block in blocks
             ],
             "unit": each.printed_unit if content.mechanism.has_mass else each.printed_unit.removeprefix("kg "),
             "meaning": each.meaning + (PER_MASS if each.of_mass and not content.mechanism.has_mass else ""),
         }
         for each in PARAMETERS
+        if not all(isnan(block[each.key]) for block in blocks)
+    ]
+    return rows if content.has_block else rows + _without_block(shown)
+
+
+def _without_block(shown: Sequence[Side]) -> list[dict[str, Any]]:
+    """What else there is to say of a structure that no block is equivalent to."""
+    limits = [side.statics.limit for side in shown]
+    return [
+        {
+            "symbol": "V''(0)/V'(0)",
+            "values": [_number(side.statics.stiffening) for side in shown],
+            "unit": "1/rad",
+            "meaning": "Stiffening: how fast the restoring moment grows from rest, over itself.",
+        },
+        {
+            "symbol": "φ_lim",
+            "values": [f"{_number(limit)} ({degrees(limit):.3g}°)" for limit in limits],
+            "unit": "rad",
+            "meaning": "Kinematic limit: the rotation at which it lies on the ground or locks, and its motion ends.",
+        },
     ]
 
 
-def _per_mass(content: Assessment, unit: str) -> bool:
-    return unit.startswith("kg ") and not content.mechanism.has_mass
-
-
 def _advice(content: Assessment) -> list[str]:
-    if content.equivalence.symmetric:
-        return [_greek(preferred_kappa(content.equivalence.positive).why)]
-    return [_greek(f"{each.label}: {preferred_kappa(content.equivalence[each]).why}") for each in Direction]
+    shown = _shown(content)
+    labels = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
+    said = [preferred_kappa(side.block).why if side.block is not None else sentence(side) for side in shown]
+    if not content.has_block:
+        said = [f"{each[0].upper()}{each[1:]}" for each in said]
+    return [_greek(f"{label}{each}") for label, each in zip(labels, said, strict=True)]
 
 
 def _geometry(content: Assessment) -> Rows:
@@ -186,7 +227,7 @@ def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> d
         "data": Markup(as_script(data)),
         "id": f"motion-{k}",
         "models": [words.MODELS[name] for name in result.histories],
-        "rows": _outcomes(list(result.histories.values())),
+        "rows": _outcomes(list(result.histories.values()), Watched(content.mechanism)),
         "fits": [_fit(fit) for fit in result.fits if result.file],
         "alone": words.alone(result),
     }
@@ -199,18 +240,32 @@ def _peak_time(run: History, film: Film) -> float:
     return float(run.time[int(np.nanargmax(np.abs(run.ratio)))]) if run.peak_ratio else film.start
 
 
-def _outcomes(runs: Sequence[History]) -> Rows:
+def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
     def angle(phi: float) -> str:
         return ABSENT if isnan(phi) else f"{degrees(phi):.4g}"
 
+    free, some = all(runs[0].ends_at_limit), any(runs[0].ends_at_limit)
+    called = "the limit" if free else "critical, or the limit" if some else "critical"
+    over = style.over(runs[0].ends_at_limit).replace("φcr", "φ_cr")
+    moved = [watched.peaks(run) for run in runs]
     return [
         ["outcome", *(run.words for run in runs), ""],
-        ["largest rotation over critical, |φ|/φ_cr", *(_number(run.peak_ratio) for run in runs), "1"],
+        [
+            f"largest rotation over {called}, |φ|/{over.removeprefix('φ/')}",
+            *(_number(run.peak_ratio) for run in runs),
+            "1",
+        ],
         ["largest rotation clockwise", *(angle(run.peak_positive) for run in runs), "°"],
         ["largest rotation anticlockwise", *(angle(run.peak_negative) for run in runs), "°"],
         ["first uplift", *(_number(run.uplift_time) for run in runs), "s"],
-        ["passes the critical rotation for good", *(_number(run.overturning_time) for run in runs), "s"],
+        [
+            "passes the critical rotation for good" if not free else "overturns",
+            *(_number(run.overturning_time) for run in runs),
+            "s",
+        ],
         ["number of impacts", *(str(run.impact_count) for run in runs), "1"],
+        ["fastest landing of a foot", *(_number(each.impact_velocity) for each in moved), "m/s"],
+        ["farthest the top moves sideways", *(_number(1000 * each.points[0].horizontal) for each in moved), "mm"],
     ]
 
 

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib.metadata import version
-from math import pi
+from math import nan, pi
 
 import numpy as np
 
-from rocking_cli.core import Equivalence, Mechanism
+from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import ModelName
@@ -184,31 +184,28 @@ class Assessment:
 
     Parameters
     ----------
-    mechanism : Mechanism
+    structure : Prepared
         The structure.
     file : File
         Where it was read.
-    equivalence : Equivalence
-        Its equivalent blocks.
     picture : Picture
         What it looks like.
     curves, asked : tuple of Linearisation
         The error of the equivalent block over its range, and where it is said in numbers; empty if it has none.
     trust : str
-        What that means.
+        What that means, or why there is none.
     results : tuple of MotionResult
         What each ground motion does.
     maps : tuple of PulseMap
-        One for each shape of pulse; empty if no history can be computed.
+        One for each shape of pulse; empty if no history can be computed, or no block is equivalent.
     title : TitleBlock
         For whom, by whom and how it was made.
     versions : mapping of str to str
         Of the software.
     """
 
-    mechanism: Mechanism
+    structure: Prepared
     file: File
-    equivalence: Equivalence
     picture: Picture
     curves: tuple[Linearisation, ...]
     asked: tuple[Linearisation, ...]
@@ -219,9 +216,19 @@ class Assessment:
     versions: Mapping[str, str]
 
     @property
+    def mechanism(self) -> Mechanism:
+        """The structure."""
+        return self.structure.mechanism
+
+    @property
+    def has_block(self) -> bool:
+        """Whether a single block is equivalent to it."""
+        return self.structure.why_no_block is None
+
+    @property
     def name(self) -> str:
         """What the structure is called."""
-        return self.mechanism.name or self.mechanism.mechanism
+        return self.structure.name
 
 
 def gather(
@@ -259,12 +266,8 @@ def gather(
         Whatever the studies raise.
     """
     done = progress or (lambda count: None)
-    mechanism, equivalence = structure.mechanism, structure.equivalence
-    try:
-        curves, asked = compare(mechanism, equivalence, AMPLITUDES, ACCELERATIONS)
-        said = trust(curves, asked)
-    except SolverError as error:  # the rest of the report stands without it
-        curves, asked, said = [], [], f"The error of the equivalent block is left out: {error}."
+    mechanism = structure.mechanism
+    curves, asked, said = _error_of_block(structure)
     done(1)
     results = []
     for each in given:
@@ -273,9 +276,8 @@ def gather(
     maps = _maps(structure, results)
     done(1)
     return Assessment(
-        mechanism=mechanism,
+        structure=structure,
         file=file,
-        equivalence=equivalence,
         picture=picture(mechanism),
         curves=tuple(curves),
         asked=tuple(asked),
@@ -292,6 +294,18 @@ def gather(
     )
 
 
+def _error_of_block(structure: Prepared) -> tuple[Sequence[Linearisation], Sequence[Linearisation], str]:
+    """The error of the equivalent block over its range and at some places, and what it means."""
+    if structure.why_no_block is not None:
+        why = structure.why_no_block.removeprefix(f"{structure.name}: ")
+        return [], [], f"There is no equivalent block here, and so no error of one: {why}."
+    try:
+        curves, asked = compare(structure.mechanism, structure.equivalence, AMPLITUDES, ACCELERATIONS)
+        return curves, asked, trust(curves, asked)
+    except SolverError as error:  # the rest of the report stands without it
+        return [], [], f"The error of the equivalent block is left out: {error}."
+
+
 def steps(given: Sequence[Scaled]) -> int:
     """How many steps `gather` takes."""
     return len(given) + 2
@@ -306,7 +320,7 @@ def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], aroun
     asked = measure(given.motion)
     doubtful = [] if given.pulse is not None else doubts(given.motion, asked) + coarse_for(given.motion, structure.p)
     under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
-    models, model = structure.models(), structure.model("nonlinear")
+    models, model = structure.models(structure.default_models), structure.model("nonlinear")
     runs = {sign: {each.name: follow(each, motion) for each in models} for sign, motion in under.items()}
     contacts = Contacts(structure.mechanism)
     worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
@@ -345,6 +359,10 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
 
 
 def _alone(structure: Prepared, fit: PulseFit, polarities: Sequence[int]) -> float:
+    if structure.why_no_block is not None:  # by what nothing is measured here
+        alone, model = fit.pulse.sampled(), structure.model("nonlinear")
+        runs = [follow(model, alone.scaled(polarity * fit.sign)) for polarity in polarities]
+        return nan if any(run.overturned for run in runs) else max(run.peak_ratio for run in runs)
     shape = _shape(fit.pulse)
     under = pulsed_model(structure, "nonlinear", shape, (1, -1))
     signs = [polarity * fit.sign for polarity in polarities]
@@ -358,8 +376,8 @@ def _shape(pulse: Pulse) -> Pulse:
 
 def _maps(structure: Prepared, results: Sequence[MotionResult]) -> list[PulseMap]:
     """A map for each shape among the best pulses; of the sine if there is none."""
-    if min(structure.equivalence.positive.eta, structure.equivalence.negative.eta) <= 0:
-        return []  # no history of it can be computed
+    if structure.why_no_block is not None or min(structure.etas) <= 0:
+        return []  # pulses have nothing to be measured by, or no history of it can be computed
     marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
     for result in results:
         if result.fits:

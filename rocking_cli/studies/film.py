@@ -70,9 +70,11 @@ class Film:
         return np.interp(time, self.history.time[moving], self.history.phi[moving])
 
     def ratio(self, rotation: Reals) -> Reals:
-        """Signed rotations, shape (n,) [rad], over the critical rotation of their direction."""
-        critical = self.picture.phi_cr
-        return rotation / np.where(rotation < 0, critical[Direction.NEGATIVE], critical[Direction.POSITIVE])
+        """Signed rotations, shape (n,) [rad], over the critical rotation of their direction, or the kinematic limit."""
+        over = self.picture.reference
+        first = over[self.picture.directions[0]]
+        sides = over.get(Direction.NEGATIVE, first), over.get(Direction.POSITIVE, first)
+        return rotation / np.where(rotation < 0, *sides)
 
     @cached_property
     def box(self) -> tuple[complex, complex]:
@@ -80,7 +82,8 @@ class Film:
         phi = self.history.phi[: self._moving]
         views = np.linspace(float(phi.min()), float(phi.max()), VIEWS)
         outlines = [each for turn in views for part in self.picture.placed(float(turn))[0] for each in part]
-        return box_around([np.array(self.picture.extent), *outlines])
+        hung = [z for turn in views for z in self.picture.held(float(turn))]
+        return box_around([np.array([*self.picture.reach, *hung]), *outlines])
 
     def as_dict(self, step: float) -> Mapping[str, Any]:
         """What a page needs beside the picture: the rotation [rad] every `step` [s] from 0, and when it ends [s]."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import nan
 
@@ -109,7 +109,10 @@ class Watched:
         )
 
     def columns(self, phi: Reals) -> Iterator[tuple[str, Reals]]:
-        """Displacements of the points [m], elongations [m] and forces [N] of the ties, over signed rotations (n,)."""
+        """Displacements of the points [m], elongations [m] and forces [N] of the ties, over signed rotations (n,).
+
+        NaN where there is no rotation, and beyond the kinematic limit, to which a linear model does not keep.
+        """
         for name, spot in self.points.items():
             moved = self._signed(phi, partial(self._displacement, spot))
             yield f"{name} u_x [m]", moved.real
@@ -150,6 +153,24 @@ class Watched:
             for direction in self.mechanism.directions
         }
         return max(float(rate) * _landing(self.mechanism, direction) for direction, rate in rates.items() if rate > 0)
+
+
+def largest(every: Sequence[Movements]) -> Movements:
+    """The largest values of several histories of a structure; NaN where one of them has none."""
+    points = [
+        replace(each[0], horizontal=_most(p.horizontal for p in each), vertical=_most(p.vertical for p in each))
+        for each in zip(*(moved.points for moved in every), strict=True)
+    ]
+    ties = [
+        replace(each[0], force=_most(t.force for t in each), elongation=_most(t.elongation for t in each))
+        for each in zip(*(moved.ties for moved in every), strict=True)
+    ]
+    return Movements(points, ties, _most(moved.impact_velocity for moved in every))
+
+
+def _most(values: Iterable[float]) -> float:
+    found = list(values)
+    return nan if any(np.isnan(found)) else max(found, key=abs)
 
 
 def _way(phi: float) -> Reals:

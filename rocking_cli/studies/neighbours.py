@@ -183,7 +183,8 @@ def neighbours(
     peaks = np.where(others, np.inf, found.peak_ratio[1:])
     # A value that was reached, never one between two: half of infinity is no rotation.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
-    over = "of the limit" if any(model.ends_at_limit) else "phi_cr"
+    free = model.ends_at_limit
+    over = "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"
     as_itself = float((others == itself).mean())
     return Neighbours(around, model.name, float(others.mean()), (low, middle, high), as_itself, over=over)
 
@@ -200,13 +201,15 @@ def severity(history: History, near: Neighbours | None = None) -> Severity:
     return (near.overturned, near.peak_ratio[1], itself) if near is not None else (0.0, 0.0, itself)
 
 
-def governing(severities: Mapping[str, Severity]) -> str:
+def governing(severities: Mapping[str, Severity], over: str = "phi_cr") -> str:
     """A sentence on the motion that is the worst, if one is.
 
     Parameters
     ----------
     severities : mapping of str to tuple
         That of each motion by its name, at least one.
+    over : str
+        What peaks are over.
     """
     worst = max(severities.values())
     if not any(worst):
@@ -218,9 +221,9 @@ def governing(severities: Mapping[str, Severity]) -> str:
     if share:
         why = f"{percent(share)} of its neighbours overturn"
     elif median:
-        why = f"the median peak of its neighbours is {median:.3g} phi_cr"
+        why = f"the median peak of its neighbours is {median:.3g} {over}"
     else:
-        why = "it overturns" if np.isinf(itself) else f"it reaches {itself:.3g} phi_cr"
+        why = "it overturns" if np.isinf(itself) else f"it reaches {itself:.3g} {over}"
     return f"{which[0]} governs: {why}."
 
 

@@ -5,7 +5,7 @@ Whoever draws it, on paper or on a page that moves, only has to place the parts.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -15,9 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Outline, RigidMotion, Sketch, disc
+from rocking_cli.core.attached import Spring
+from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.size import extent
 from rocking_cli.errors import MechanismError, RockingError
 from rocking_cli.plugins.errors import plugin_error
+from rocking_cli.studies.hung import Carried, End, Strand, carried, strands, walls
 
 Reals = NDArray[np.float64]
 Points = NDArray[np.complex128]
@@ -26,6 +29,7 @@ FURTHEST = 0.999  # of the kinematic limit, at which a linkage has no derivative
 SAME = 1e-6  # of the size: points that are nearer are one
 TINIEST = 1e-150  # m: scales of what is smaller are beyond the range of numbers
 STILL = 1e-9  # rate of turning below which a body does not turn
+SEEN = 0.1  # of the kinematic limit: how far is shown what has no critical rotation
 
 ASSUMED = (
     "dashed: a body whose shape the mechanism does not give, as a disc of the same mass and inertia, or as a point"
@@ -84,20 +88,49 @@ class Picture:
     pins : tuple of Pin
         The hinges and pivots of both directions.
     phi_cr, limit : mapping of Direction to float
-        Critical rotation, and the furthest that can be drawn [rad].
+        Critical rotation, None where there is none, and the furthest that can be drawn [rad], of the directions that it
+        can rock in.
     ground : tuple of ndarray of complex
         Lines with the ground on the right of someone who walks along them [m].
     sketch : Sketch
         Lengths, angles, lines and notes.
+    loads : tuple of Carried
+        Masses and forces on it.
+    ties : tuple of Strand
+        What ties it.
     """
 
     mechanism: Mechanism
     parts: tuple[Part, ...]
     pins: tuple[Pin, ...]
-    phi_cr: Mapping[Direction, float]
+    phi_cr: Mapping[Direction, float | None]
     limit: Mapping[Direction, float]
     ground: tuple[Points, ...]
     sketch: Sketch
+    loads: tuple[Carried, ...] = ()
+    ties: tuple[Strand, ...] = ()
+
+    @property
+    def directions(self) -> Sequence[Direction]:
+        """The directions it can rock in."""
+        return list(self.limit)
+
+    @property
+    def reference(self) -> Mapping[Direction, float]:
+        """What rotations are compared with [rad]: the critical one, the limit where there is none."""
+        return {side: self.limit[side] / FURTHEST if phi is None else phi for side, phi in self.phi_cr.items()}
+
+    @property
+    def usual(self) -> Mapping[Direction, float]:
+        """How far it is shown displaced, over the reference, if nobody asks: a stocky body lies before phi_cr."""
+        there = min((self.limit[side] / phi for side, phi in self.phi_cr.items() if phi is not None), default=1.0)
+        return {side: SEEN if phi is None else min(1.0, there) for side, phi in self.phi_cr.items()}
+
+    def side(self, rotation: float) -> Direction:
+        """The direction of a signed rotation; at rest, the first that it can rock in."""
+        if rotation == 0:
+            return self.directions[0]
+        return Direction.NEGATIVE if rotation < 0 else Direction.POSITIVE
 
     def at(self, rotation: Reals) -> tuple[Points, Reals]:
         """Where the parts are at signed rotations.
@@ -118,7 +151,7 @@ class Picture:
         psi = np.empty(centroids.shape)
         for direction in Direction:
             here = rotation >= 0 if direction > 0 else rotation < 0
-            phi = np.minimum(np.abs(rotation[here]), self.limit[direction])
+            phi = np.minimum(np.abs(rotation[here]), self.limit.get(direction, 0.0))
             motions = self.mechanism.motion(phi, direction)
             for k, part in enumerate(self.parts):
                 centroids[k, here] = motions[part.body].carry(part.centroid - part.shift)[0] + part.shift
@@ -127,22 +160,72 @@ class Picture:
 
     def placed(self, rotation: float) -> tuple[list[list[Points]], Points]:
         """The outlines of every part and the pins, shape (pins,), at one signed rotation [m]; see `at`."""
+        carry = self._carry(rotation)
+        outlines = [[carry(k, each) for each in part.outlines] for k, part in enumerate(self.parts)]
+        return outlines, np.array([complex(carry(pin.part, np.array(pin.point))) for pin in self.pins])
+
+    def hung(self, rotation: float, symbol: float) -> tuple[Points, list[list[tuple[complex, complex]]], list[bool]]:
+        """What hangs on it, at one signed rotation.
+
+        Parameters
+        ----------
+        rotation : float
+            [rad].
+        symbol : float
+            Length of the symbol of a spring whose ends are together at rest [m].
+
+        Returns
+        -------
+        loads : ndarray of complex, shape (loads,)
+            Where the loads act [m].
+        ties : list of list of (complex, complex)
+            The ends of the pieces of each tie [m].
+        slack : list of bool
+            Which of the ties are out of play.
+        """
+        carry = self._carry(rotation)
+
+        def place(end: End) -> complex:
+            here = np.array([end.point, end.point + symbol * end.lead])
+            return complex((here if end.part is None else carry(end.part, here))[1])
+
+        loads = np.array([complex(carry(each.part, np.array(each.point))) for each in self.loads], np.complex128)
+        ties = [[(place(piece.start), place(piece.end)) for piece in tie.pieces] for tie in self.ties]
+        return loads, ties, [bool(row[0]) for row in self._slack(np.array([rotation]))]
+
+    def held(self, rotation: float) -> list[complex]:
+        """Where all that hangs on it is, at one signed rotation [m]: symbols apart, which have a size on paper."""
+        loads, ties, _ = self.hung(rotation, 0.0)
+        return [*loads.tolist(), *(end for tie in ties for piece in tie for end in piece)]
+
+    def _carry(self, rotation: float) -> Callable[[int, Points], Points]:
+        """What takes points of a part to where they are at one signed rotation."""
         centroids, psi = (values[:, 0] for values in self.at(np.array([rotation])))
 
-        def carried(part: int, points: Points) -> Points:
+        def carry(part: int, points: Points) -> Points:
             moved: Points = centroids[part] + np.exp(1j * psi[part]) * (points - self.parts[part].centroid)
             return moved
 
-        outlines = [[carried(k, each) for each in part.outlines] for k, part in enumerate(self.parts)]
-        return outlines, np.array([complex(carried(pin.part, np.array(pin.point))) for pin in self.pins])
+        return carry
+
+    def _slack(self, rotation: Reals) -> list[NDArray[np.bool_]]:
+        """Where each tie is out of play, over signed rotations, shape (n,)."""
+        rows = []
+        for tie in self.ties:
+            row = np.zeros(rotation.shape, bool)
+            for side, limit in self.limit.items():
+                here = rotation * side >= 0
+                row[here] = tie.slack(self.mechanism, np.minimum(np.abs(rotation[here]), limit), side)
+            rows.append(row)
+        return rows
 
     @cached_property
     def links(self) -> Mapping[Direction, tuple[int | None, ...]]:
         """The link of a direction that each part belongs to, counted along its hinges; None of what stays at rest."""
-        return {direction: self._links(direction) for direction in Direction}
+        return {direction: self._links(direction) for direction in self.directions}
 
     def _links(self, direction: Direction) -> tuple[int | None, ...]:
-        motions = self.mechanism.motion(np.array([0.5 * self.phi_cr[direction]]), direction)
+        motions = self.mechanism.motion(np.array([0.5 * self.reference[direction]]), direction)
         size = abs(self.extent[1] - self.extent[0])
         # A link is what turns as fast, and would move one and the same point as fast.
         speeds = [np.array([size * motion.dpsi[0], motion.carry(0j)[1][0]]) for motion in motions]
@@ -163,13 +246,24 @@ class Picture:
 
     @property
     def furthest(self) -> float:
-        """How far it can be displaced in either direction, as a multiple of phi_cr."""
-        return min(self.limit[direction] / phi_cr for direction, phi_cr in self.phi_cr.items())
+        """How far it can be displaced in either direction, over the reference."""
+        return min(self.limit[direction] / phi for direction, phi in self.reference.items())
 
     @cached_property
     def extent(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of the structure at rest [m]."""
         return box_around([each for part in self.parts for each in part.outlines] + [self._points])
+
+    @cached_property
+    def reach(self) -> tuple[complex, complex]:
+        """Likewise of the structure and of all that hangs on it."""
+        ends = [end.point for tie in self.ties for piece in tie.pieces for end in (piece.start, piece.end)]
+        return box_around([np.array([*self.extent, *ends, *(each.point for each in self.loads)])])
+
+    @cached_property
+    def walls(self) -> tuple[Points, ...]:
+        """What a structure leans on that rocks to one side only, as the ground is given."""
+        return walls(self.mechanism, *self.extent)
 
     @property
     def _points(self) -> Points:
@@ -179,17 +273,19 @@ class Picture:
         """All of it in numbers and words, for a page: points are [x, y] in m, angles in rad.
 
         A part is placed by `x`, `y` (of its centroid) and `psi` (anticlockwise) over `rotation`, straight between
-        its values; its outlines, and the pins it carries, are about its centroid.
+        its values; its outlines, and what it carries, are about its centroid. A `part` of null is the ground.
         """
-        ends = [np.linspace(0.0, self.limit[direction], NODES + 1) for direction in Direction]
-        rotation = np.concatenate([-ends[1][:0:-1], ends[0]])
+        ends = [np.linspace(0.0, self.limit.get(direction, 0.0), NODES + 1) for direction in Direction]
+        rotation = np.unique(np.concatenate([-ends[1][:0:-1], ends[0]]) + 0.0)
         centroids, psi = self.at(rotation)
         return {
             "mechanism": self.mechanism.mechanism,
             "name": self.mechanism.name,
             "title": self.mechanism.title,
-            "phi_cr": {direction.label: self.phi_cr[direction] for direction in Direction},
-            "limit": {direction.label: self.limit[direction] for direction in Direction},
+            "phi_cr": {direction.label: phi for direction, phi in self.phi_cr.items()},
+            "reference": {direction.label: phi for direction, phi in self.reference.items()},
+            "limit": {direction.label: limit for direction, limit in self.limit.items()},
+            "one_sided": self.mechanism.one_sided,
             "rotation": _rounded(rotation),
             "parts": [
                 {
@@ -218,8 +314,38 @@ class Picture:
                 for each in self.sketch.lines
             ],
             "ground": [_pairs(each) for each in self.ground],
+            "walls": [_pairs(each) for each in self.walls],
+            "loads": [
+                {
+                    "name": each.name,
+                    "text": each.text,
+                    "mass": each.mass,
+                    "force": None if each.force is None else _pairs([each.force])[0],
+                    **self._end(End(each.part, each.point)),
+                }
+                for each in self.loads
+            ],
+            "ties": [
+                {
+                    "name": each.name,
+                    "bed": each.is_bed,
+                    "only": each.thing.only if isinstance(each.thing, Spring) else None,
+                    "pieces": [
+                        {"kind": piece.kind, "ends": [self._end(end) for end in (piece.start, piece.end)]}
+                        for piece in each.pieces
+                    ],
+                    "slack": slack.tolist(),
+                }
+                for each, slack in zip(self.ties, self._slack(rotation), strict=True)
+            ],
             "notes": list(self.sketch.notes),
         }
+
+    def _end(self, end: End) -> dict[str, Any]:
+        """A point that a part carries, about its centroid, or the ground, in m, and where a symbol begins from it."""
+        about = 0j if end.part is None else self.parts[end.part].centroid
+        point, lead = _pairs([end.point - about, end.lead])
+        return {"part": end.part, "point": point, "lead": lead}
 
 
 def picture(mechanism: Mechanism) -> Picture:
@@ -253,10 +379,11 @@ def box_around(outlines: Sequence[Points]) -> tuple[complex, complex]:
 
 def _picture(mechanism: Mechanism) -> Picture:
     bodies, sketch = mechanism.bodies(), mechanism.sketch()
-    phi_cr = {direction: mechanism.critical_rotation(direction) for direction in Direction}
-    if not (min(phi_cr.values()) > 0 and extent(mechanism) > TINIEST):
+    phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
+    limit = {direction: FURTHEST * mechanism.limit(direction) for direction in mechanism.directions}
+    seen = {direction: limit[direction] if phi is None else phi for direction, phi in phi_cr.items()}
+    if not (min(seen.values()) > 0 and extent(mechanism) > TINIEST):
         raise MechanismError("it is too small to be drawn: check the sizes and their units")
-    limit = {direction: FURTHEST * mechanism.limit(direction) for direction in Direction}
     parts = tuple(
         Part(
             body.name,
@@ -270,8 +397,8 @@ def _picture(mechanism: Mechanism) -> Picture:
         for shift in sketch.copies.get(body.name, (0j,))
     )
     pins = []
-    for direction in Direction:
-        phi = np.linspace(0.0, phi_cr[direction], 5)
+    for direction in mechanism.directions:
+        phi = np.linspace(0.0, seen[direction], 5)
         hinges = sketch.hinges.get(direction) or _found(bodies, mechanism.motion(phi, direction))
         pins += [pin for hinge in hinges for pin in _pins(hinge, direction, parts)]
     ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
@@ -279,7 +406,19 @@ def _picture(mechanism: Mechanism) -> Picture:
         sketch = replace(sketch, notes=[*sketch.notes, ASSUMED])
     if mechanism.crushed:
         sketch = replace(sketch, notes=[*sketch.notes, mechanism.crushed])
-    return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch)
+    copies = {body.name: [(k, part.shift) for k, part in enumerate(parts) if part.name == body.name] for body in bodies}
+    loads = tuple(carried(mechanism, copies))
+    ties = tuple(strands(mechanism, copies, [part.centroid for part in parts]))
+    return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch, loads, ties)
+
+
+def _critical(mechanism: Mechanism, direction: Direction) -> float | None:
+    try:
+        return mechanism.critical_rotation(direction)
+    except NoCriticalRotation:
+        if not mechanism.attached:
+            raise
+        return None
 
 
 def _outlines(body: Body, sketch: Sketch) -> Sequence[Outline]:

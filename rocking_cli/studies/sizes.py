@@ -6,7 +6,14 @@ from math import exp, isclose, log, pi
 
 from pydantic import ValidationError
 
-from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core import (
+    Direction,
+    Equivalence,
+    EquivalentBlock,
+    Mechanism,
+    NoEquivalentBlock,
+    equivalent_block,
+)
 from rocking_cli.dynamics.model import Model, ModelName, build_model
 from rocking_cli.errors import InputError, MechanismError, Problem
 
@@ -49,7 +56,8 @@ class Sizes:
             try:
                 self._known[scale] = equivalent_block(self.at(scale))
             except MechanismError as error:
-                raise MechanismError(f"{self._named(scale)}: {error}") from error
+                kind = NoEquivalentBlock if isinstance(error, NoEquivalentBlock) else MechanismError
+                raise kind(f"{self._named(scale)}: {error}") from error
         return self._known[scale]
 
     def block(self, scale: float) -> EquivalentBlock:
@@ -75,7 +83,11 @@ class Sizes:
                 return exp(two)
             slope = (off - missing) / (two - one) if two != one else 0.5
             one, off, two = two, missing, two + missing / (slope if 0.1 < slope < 2 else 0.5)
-        raise InputError(f"{self.mechanism.name}: no size of it was found with 2 pi/p = {period:.4g} s")
+        message = f"{self.mechanism.name}: no size of it was found with 2 pi/p = {period:.4g} s"
+        if self.mechanism.ties:
+            hint = "its ties do not grow with it, so that 2 pi/p need not grow with its size: ask for other sizes"
+            raise InputError(Problem(message, hint=hint))
+        raise InputError(message)
 
     def are_alike(self) -> bool:
         """Whether every size rocks as this one, but for the time it takes: no load or mass is given that stays."""

@@ -37,11 +37,14 @@ class Shape:
     own : Sizes, optional
         The structures of other sizes, where loads that do not grow with them make them rock otherwise; None where shape
         alone decides.
+    hung : bool
+        Whether loads or ties are given, whose places alone grow with it.
     """
 
     structure: PulsedModel
     slenderness: float | None = None
     own: Sizes | None = None
+    hung: bool = False
 
     @property
     def period(self) -> float:
@@ -82,9 +85,9 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, f
     """
     # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
     found = pulsed_model(Prepared(mechanism, file), model, parse_shape("sine"), eta=eta)
-    given = mechanism if eta is None else mechanism.model_copy(update={"restitution": eta})
+    given = mechanism if eta is None else Prepared(mechanism, file).with_eta(eta).mechanism
     sizes = Sizes(given, model, found.direction)
-    return Shape(found, own=None if sizes.are_alike() else sizes)
+    return Shape(found, own=None if sizes.are_alike() else sizes, hung=bool(mechanism.attached))
 
 
 def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> Shape:

@@ -146,7 +146,8 @@ def pulsed_model(
     direction = weakest(structure.equivalence, shape, polarities)
     if not structure.mechanism.rocks_both_ways:
         direction = structure.mechanism.directions[0]
-    given = structure.mechanism.restitution is not None
+    one_way = not structure.mechanism.rocks_both_ways
+    given = (structure.mechanism.rebound if one_way else structure.mechanism.restitution) is not None
     return PulsedModel(structure.name, structure.model(model), structure.equivalence, direction, given)
 
 

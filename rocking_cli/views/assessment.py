@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from rocking_cli.core import Direction
 from rocking_cli.studies.assessment import Assessment
+from rocking_cli.studies.movements import Watched
 from rocking_cli.views import assessment_words as words
+from rocking_cli.views.equiv import sides_of, without
 from rocking_cli.views.margin import margin_data
 from rocking_cli.views.parameters import values
 from rocking_cli.views.response import Shown, fit_data, runs_data
@@ -13,7 +14,7 @@ from rocking_cli.views.view import View
 
 def view(content: Assessment) -> View:
     """The answer in a sentence, and all that the report says as plain data."""
-    verdicts = words.verdicts(content)
+    verdicts, watched = words.verdicts(content), Watched(content.mechanism)
     data = {
         "structure": {
             "mechanism": content.mechanism.mechanism,
@@ -23,7 +24,11 @@ def view(content: Assessment) -> View:
         },
         "answer": words.in_a_sentence(content),
         "doubts": words.doubts(content),
-        "parameters": {each.label: values(content.equivalence[each]) for each in Direction},
+        "parameters": {
+            side.direction.label: values(side.block) if side.block is not None else without(side)
+            for side in sides_of(content.structure)
+        },
+        "no_block": content.structure.why_no_block,
         "motions": [
             {
                 "name": each.given.motion.name,
@@ -34,7 +39,9 @@ def view(content: Assessment) -> View:
                 "headline": said.headline,
                 "answers": {item.question: item.answer for item in said.answers},
                 "doubts": list(said.doubts),
-                **runs_data(each.runs, each.neighbours, Shown(mechanism=content.mechanism, contacts=each.contacts)),
+                **runs_data(
+                    each.runs, each.neighbours, Shown(watched, mechanism=content.mechanism, contacts=each.contacts)
+                ),
                 "polarity": each.polarity,
                 "margin": margin_data(each.margin),
                 "pulses": [fit_data(fit) for fit in each.fits],

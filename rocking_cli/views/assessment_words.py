@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees, inf, isinf, isnan
+from math import degrees, inf, isclose, isinf, isnan
 
 from rocking_cli import names
-from rocking_cli.core import Direction
+from rocking_cli.core import Direction, Statics
 from rocking_cli.core.advice import Grade
-from rocking_cli.core.restitution import restitution_in_words, why_none
+from rocking_cli.core.equivalence import AGREEMENT
+from rocking_cli.core.restitution import why_none
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
@@ -19,6 +20,7 @@ from rocking_cli.studies.assessment import Assessment, MotionResult
 from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.neighbours import governing, severity
 from rocking_cli.views.contact import contact_words
+from rocking_cli.views.restitution import restitution_source, restitution_used
 
 MODELS: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear model",
@@ -66,9 +68,9 @@ def in_a_sentence(content: Assessment) -> str:
     """The answer of the whole report."""
     name = content.name
     if not content.results:
-        least = min(content.equivalence[direction].lambda_ for direction in Direction)
+        least = _ground(content, _least(content))
         return (
-            f"{name} starts to rock when the ground accelerates sideways by {_ground(content, least)}. No ground "
+            f"{name} starts to rock when the ground accelerates sideways by {least}. No ground "
             "motion was given, so this report does not say whether an earthquake overturns it."
         )
     falls = [each for each in content.results if _overturns(each)]
@@ -85,7 +87,9 @@ def in_a_sentence(content: Assessment) -> str:
         return f"{name} {names.NO_UPLIFT}: {under} {are} too weak to lift it.{close}"
     worst = max(moved, key=_worst_ratio)
     which = worst.given.motion.name
-    share = f"{_share(_worst_ratio(worst))} of the rotation from which it would fall"
+    run = worst.histories["nonlinear"]
+    share = f"{degrees(run.furthest):.3g}°, " if any(run.ends_at_limit) else ""
+    share += f"{_share(_worst_ratio(worst))} of {_end(run)}"
     if len(content.results) == 1:
         return f"{name} {names.ROCKS} under {which} and does not overturn: it turns by at most {share}.{close}"
     return (
@@ -113,8 +117,15 @@ def governs(content: Assessment) -> str:
         {
             each.given.motion.name: severity(each.histories["nonlinear"], each.neighbours[each.polarity])
             for each in content.results
-        }
+        },
+        _over(content),
     )
+
+
+def _over(content: Assessment) -> str:
+    """What peaks are over."""
+    free = [side.phi_cr is None for side in content.structure.statics]
+    return "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"
 
 
 def doubts(content: Assessment) -> list[str]:
@@ -127,17 +138,30 @@ def doubts(content: Assessment) -> list[str]:
     size = doubtful_size(content.mechanism)
     if size is not None:
         said.append(f"Check the sizes and their units: {size}{'' if size.endswith('?') else '.'}")
-    etas = [content.equivalence[direction].eta for direction in Direction]
-    if min(etas) <= 0:
+    etas = content.structure.etas
+    given = restitution_source(content.mechanism) == "given"
+    if not content.mechanism.rocks_both_ways:
+        said.append(
+            "It is taken to lean on side walls that do not move. "
+            + ("" if given else "How it is thrown back there was computed for impacts in sequence, and not measured.")
+        )
+    elif min(etas) <= 0:
         said.append(
             f"Kinematics give a restitution of {min(etas):.3g}: {why_none(min(etas))}. Time histories and the "
             "overturning map need a measured restitution in the file, and are left out."
         )
-    elif content.mechanism.restitution is None:
+    elif not given:
         said.append(
             f"How much motion an impact takes away (η = {min(etas):.3g}) was computed for rigid bodies that "
             "neither slide nor bounce. It was not measured, and the response depends on it."
         )
+    if content.mechanism.springs:
+        said.append(
+            "What ties it is taken as elastic: it neither yields nor breaks nor pulls out of what holds it. Hold the "
+            "largest forces of this report against what it and its ends can bear."
+        )
+    if content.structure.misleading:
+        said.append(f"{content.structure.misleading[0].upper()}{content.structure.misleading[1:]}: they are left out.")
     said.append(
         "The bodies are taken as rigid, on rigid ground, in one plane, without sliding and without crushing at their "
         "edges; the section on joints says what that asks of them. The vertical motion of the ground is left out. Worn "
@@ -156,7 +180,7 @@ def _verdict(content: Assessment, result: MotionResult) -> Verdict:
             Answer("Will it uplift?", _uplift(content, result)),
             Answer("Will it overturn?", _overturning(result)),
             Answer("How close is that?", _closeness(content, result)),
-            Answer("Which model to trust?", _trusted(result)),
+            Answer("Which model to trust?", _trusted(content, result)),
             *_joints(content, result),
         ),
         tuple(_doubts(result)),
@@ -171,9 +195,10 @@ def _joints(content: Assessment, result: MotionResult) -> tuple[Answer, ...]:
 
 def _uplift(content: Assessment, result: MotionResult) -> str:
     best, pga = result.histories["nonlinear"], result.measured.pga
-    least = min(content.equivalence[direction].lambda_ for direction in Direction)
+    least = _least(content)
     needed = f"A ground acceleration of {_ground(content, least)} is enough to lift it"
-    both = "" if content.equivalence.symmetric else " in its weaker direction"
+    one, other = (side.lambda_ for side in content.structure.statics)
+    both = "" if isclose(one, other, rel_tol=AGREEMENT) else " in its weaker direction"
     if best.uplift_time >= 0:
         return f"Yes, first at {best.uplift_time:.2f} s. {needed}{both}; this motion reaches {pga:.3g} g."
     factor = result.margin.uplift
@@ -196,7 +221,7 @@ def _fate(run: History, *, capital: bool = False) -> str:
     if run.overturned:
         said = f"yes, it overturns, {SENSE[Direction(run.fell_to)]} at {run.overturning_time:.2f} s"
     elif run.lifted:
-        said = f"no, it rocks to {_share(run.peak_ratio)} of the critical rotation"
+        said = f"no, it rocks to {_share(run.peak_ratio)} of the {run.reference}"
     else:
         said = f"no, it {names.NO_UPLIFT}"
     return said[0].upper() + said[1:] if capital else said
@@ -210,13 +235,9 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
     best, found = result.histories["nonlinear"], result.margin
     said = []
     if best.peak_ratio > 0:
-        turned = {Direction.POSITIVE: best.peak_positive, Direction.NEGATIVE: best.peak_negative}
-        side = max(turned, key=lambda each: turned[each] / content.equivalence[each].phi_cr)
-        said.append(
-            f"It turns by at most {degrees(turned[side]):.3g}° {SENSE[side]}. That is {_share(best.peak_ratio)} of the "
-            f"critical rotation, {degrees(content.equivalence[side].phi_cr):.3g}°, beyond which its weight pushes it "
-            "over instead of back."
-        )
+        side = Direction.POSITIVE if best.furthest == best.peak_positive else Direction.NEGATIVE
+        statics = content.structure.statics[0 if side > 0 else 1]
+        said.append(f"It turns by at most {degrees(best.furthest):.3g}° {SENSE[side]}. {_what_that_is(best, statics)}")
         if best.peak_ratio > 1:
             said.append("It passes that, and only the next push of the ground brings it back.")
     said.append(str(result.neighbours[result.polarity]))
@@ -224,8 +245,32 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
     return " ".join(said)
 
 
-def _trusted(result: MotionResult) -> str:
+def _what_that_is(run: History, statics: Statics) -> str:
+    """What the largest rotation is, over that from which it would fall."""
+    share = f"That is {_share(run.peak_ratio)} of the {run.reference}, {degrees(statics.reference):.3g}°"
+    if statics.phi_cr is None:
+        return f"{share}, where the motion would end. Up to there it is pulled back: there is no critical rotation."
+    if statics.why_no_block is None and run.reference == "critical rotation":
+        return f"{share}, beyond which its weight pushes it over instead of back."
+    return f"{share}, beyond which it is pushed over instead of back."
+
+
+def _least(content: Assessment) -> float:
+    """The smaller uplift acceleration of its directions."""
+    return min(side.lambda_ for side in content.structure.statics)
+
+
+def _end(run: History) -> str:
+    """The rotation that a peak is compared with, in plain words."""
+    if run.reference == "critical rotation":
+        return "the rotation from which it would fall"
+    return "the tilt at which its motion would end"
+
+
+def _trusted(content: Assessment, result: MotionResult) -> str:
     runs = result.histories
+    if len(runs) == 1:
+        return f"The nonlinear one, the only one there is. {why_alone(content)}"
     best = runs["nonlinear"]
     itself = "The nonlinear model follows the structure without linearising it, and its numbers are quoted here."
     called = {name: f"the {model}" for name, model in MODELS.items()}
@@ -243,6 +288,13 @@ def _trusted(result: MotionResult) -> str:
     if disagree(runs):
         said.append("Look at weaker and stronger motions too before relying on any of them.")
     return " ".join(said)
+
+
+def why_alone(content: Assessment) -> str:
+    """Why there are no linear models, in sentences."""
+    why = content.structure.why_no_block or content.structure.misleading or ""
+    why = why.removeprefix(f"{content.name}: ")
+    return f"{why[0].upper()}{why[1:]}."
 
 
 def _doubts(result: MotionResult) -> list[str]:
@@ -279,7 +331,8 @@ def alone(result: MotionResult) -> str:
         return f"{pulse} overturns the structure."
     if ratio == 0:
         return f"{pulse} does not lift the structure."
-    return f"{pulse} rocks the structure to {_share(ratio)} of its critical rotation."
+    of = result.histories["nonlinear"].reference
+    return f"{pulse} rocks the structure to {_share(ratio)} of its {of}."
 
 
 def _ground(content: Assessment, lambda_: float) -> str:
@@ -293,8 +346,7 @@ def _share(ratio: float) -> str:
 
 def restitution(content: Assessment) -> str:
     """Which restitution the histories used, and where it comes from."""
-    etas = [content.equivalence[direction].eta for direction in Direction]
-    return restitution_in_words(etas, given=content.mechanism.restitution is not None).replace("eta", "η")
+    return restitution_used(content.structure).replace("eta", "η")
 
 
 def _listed(words: Sequence[str]) -> str:

@@ -20,12 +20,12 @@ from rocking_cli.views.view import Table, View, heading, number
 
 def view(structure: Prepared) -> View:
     """The parameters of both directions, in one column where they agree, and which kappa to prefer."""
-    mechanism, sides = structure.mechanism, _sides(structure)
+    mechanism, sides = structure.mechanism, sides_of(structure)
     data = {
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
         "gravity": mechanism.gravity,
-        "symmetric": _symmetric(structure),
+        "symmetric": is_symmetric(structure),
         "one_sided": mechanism.one_sided,
         "hung": hung_data(mechanism),
         "per_unit_mass": not mechanism.has_mass,
@@ -34,9 +34,9 @@ def view(structure: Prepared) -> View:
         "misleading": structure.misleading,
         "directions": {side.direction.label: _data(side) | _extras(mechanism, side) for side in sides},
     }
-    shown = sides[:1] if _symmetric(structure) else sides
+    shown = sides[:1] if is_symmetric(structure) else sides
     per_mass = "" if mechanism.has_mass else ", per unit mass"
-    columns = [values(side.block) if side.block is not None else _without(side) for side in shown]
+    columns = [values(side.block) if side.block is not None else without(side) for side in shown]
     rows = [
         [
             each.key,
@@ -51,7 +51,7 @@ def view(structure: Prepared) -> View:
     heads = ["", *(("value",) if len(shown) == 1 else (side.direction.label for side in shown)), "unit", "meaning"]
     table = Table(heading(mechanism), heads, rows, numbers=range(1, len(shown) + 1))
     where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
-    said = [f"{prefix}{_sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
+    said = [f"{prefix}{sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
     if structure.why_no_block is None:
         said.append(
             "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; either kappa "
@@ -74,7 +74,8 @@ class Side(NamedTuple):
     eta: float
 
 
-def _sides(structure: Prepared) -> list[Side]:
+def sides_of(structure: Prepared) -> list[Side]:
+    """The directions that a structure can rock in."""
     sides = []
     for direction in structure.mechanism.directions:
         k = 0 if direction > 0 else 1
@@ -86,14 +87,14 @@ def _sides(structure: Prepared) -> list[Side]:
     return sides
 
 
-def _symmetric(structure: Prepared) -> bool:
+def is_symmetric(structure: Prepared) -> bool:
     """Whether one column serves for both directions."""
     if structure.why_no_block is None:
         return structure.equivalence.symmetric
     return alike(*structure.statics) and isclose(*structure.etas, rel_tol=AGREEMENT)
 
 
-def _without(side: Side) -> dict[str, float]:
+def without(side: Side) -> dict[str, float]:
     """What there is of the parameters where no block is equivalent; NaN for the rest."""
     known = {"lambda": side.statics.lambda_, "eta": side.eta}
     if side.statics.phi_cr is not None:
@@ -103,7 +104,7 @@ def _without(side: Side) -> dict[str, float]:
 
 def _data(side: Side) -> dict[str, Any]:
     """The parameters of a direction; null where there is no block."""
-    found: dict[str, Any] = values(side.block) if side.block is not None else _without(side)
+    found: dict[str, Any] = values(side.block) if side.block is not None else without(side)
     advice = preferred_kappa(side.block) if side.block is not None else None
     return {
         **found,
@@ -120,7 +121,8 @@ def _extras(mechanism: Mechanism, side: Side) -> dict[str, float]:
     return {each.key: each.value for each in mechanism.found(side.direction)}
 
 
-def _sentence(side: Side) -> str:
+def sentence(side: Side) -> str:
+    """Which kappa to prefer in a direction; where no block is equivalent, why, and what it does instead."""
     if side.block is not None:
         return f"critical rotation {degrees(side.block.phi_cr):.4g} deg. {preferred_kappa(side.block).why}"
     statics = side.statics
@@ -151,8 +153,8 @@ def table(found: Sequence[Prepared]) -> dict[str, list[Any]]:
     for structure in found:
         mechanism = structure.mechanism
         per_mass = "no" if mechanism.has_mass else "yes"
-        for side in _sides(structure):
-            shown = values(side.block) if side.block is not None else _without(side)
+        for side in sides_of(structure):
+            shown = values(side.block) if side.block is not None else without(side)
             rows.append([mechanism.name, mechanism.mechanism, side.direction.label, *shown.values(), per_mass])
     units = [f"{each.key} [{each.unit}]" if each.unit else each.key for each in PARAMETERS]
     names = ["name", "mechanism", "direction", *units, "per unit mass"]
@@ -161,10 +163,10 @@ def table(found: Sequence[Prepared]) -> dict[str, list[Any]]:
 
 def warnings(structure: Prepared) -> Iterator[str]:
     """What to be careful about in the parameters."""
-    mechanism, one = structure.mechanism, _symmetric(structure)
+    mechanism, one = structure.mechanism, is_symmetric(structure)
     if not mechanism.rocks_both_ways:
         return
-    for side in _sides(structure)[: 1 if one else 2]:
+    for side in sides_of(structure)[: 1 if one else 2]:
         if side.eta <= 0:
             way = "" if one else f" ending {side.direction.label} motion"
             yield (

@@ -45,6 +45,16 @@ def left_out(plan: Plan) -> list[str]:
     ]
 
 
+def without_block(plan: Plan) -> list[str]:
+    """A sentence on each structure that no block is equivalent to: what phi_cr stands for there."""
+    found = dict.fromkeys(each.structure for each in plan.trials if each.reason is None and not each.p)
+    return [
+        f"{structure}: no single block is equivalent to it. It has no p, and where it has no critical rotation phi_cr "
+        "stands for its kinematic limit, which overturning then is."
+        for structure in found
+    ]
+
+
 def view(
     store: Store,
     plan: Plan,
@@ -83,6 +93,7 @@ def view(
     for structure, measures in dict.fromkeys((each.structure, each.measures) for each in surfaces):
         those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
         parts += _surfaces(structure, measures, those, confidence)
+    parts += without_block(plan)
     data = {
         "study": name,
         "store": str(store.path),
@@ -94,6 +105,7 @@ def view(
         "finished": finished,
         "failed": failed,
         "left_out": left_out(plan),
+        "without_block": without_block(plan),
         "records": [asdict(each) for each in plan.records],
         "curves": [_curve_data(each) for each in curves],
         "surfaces": [_surface_data(each) for each in surfaces],

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.studies.movements import Watched
 
 Reals = NDArray[np.float64]
 ROWS = 25_000  # of a block
@@ -17,13 +18,24 @@ ROWS = 25_000  # of a block
 def _names(histories: Mapping[str, History], motion: GroundMotion | None) -> list[str]:
     """Time, ground acceleration, and for each history rotation, rate and ratio, with units."""
     vertical = ["v_g [g]"] if motion is not None and motion.vertical is not None else []
-    each = [f"{name} {what}" for name in histories for what in ("phi [rad]", "phi_dot [rad/s]", "phi/phi_cr")]
+    each = [
+        f"{name} {what}" for name, run in histories.items() for what in ("phi [rad]", "phi_dot [rad/s]", _ratio(run))
+    ]
     return ["t [s]", "a_g [g]", *vertical, *each]
 
 
+def _ratio(run: History) -> str:
+    return (
+        "phi/limit" if all(run.ends_at_limit) else "phi/(phi_cr or limit)" if any(run.ends_at_limit) else "phi/phi_cr"
+    )
+
+
 def blocks(
-    histories: Mapping[str, History], motion: GroundMotion | None, rows: int = ROWS
-) -> Iterator[dict[str, Reals]]:  # fmt: skip
+    histories: Mapping[str, History],
+    motion: GroundMotion | None,
+    rows: int = ROWS,
+    watched: Watched | None = None,
+) -> Iterator[dict[str, Reals]]:
     """Columns by their headings, a block of samples at a time.
 
     Parameters
@@ -34,6 +46,8 @@ def blocks(
         The ground motion they respond to.
     rows : int
         Samples in a block, at most.
+    watched : Watched, optional
+        Points and ties: with them, the last columns are displacements, elongations and forces in each history.
 
     Yields
     ------
@@ -53,7 +67,12 @@ def blocks(
             # A motion that has come to rest before the longest one stays there.
             after = np.nan if run.overturned else 0.0
             columns += [_padded(values, part, after) for values in (run.phi, run.rate, run.ratio)]
-        yield dict(zip(names, columns, strict=True))
+        found = dict(zip(names, columns, strict=True))
+        if watched is not None:
+            for name, run in histories.items():
+                phi = _padded(run.phi, part, np.nan if run.overturned else 0.0)
+                found |= {f"{name} {what}": values for what, values in watched.columns(phi)}
+        yield found
 
 
 def _at(time: Reals, motion: GroundMotion) -> Reals:

@@ -300,7 +300,8 @@ def _tables(
 
 def _table(title: str, histories: Histories, watched: Watched | None) -> Table:
     runs = list(histories.values())
-    over = "limit" if any(runs[0].ends_at_limit) else "phi_cr"
+    free = runs[0].ends_at_limit
+    over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"
     rows = [
         ["outcome", *(run.words for run in runs), ""],
         [f"peak / {over}", *(number(run.peak_ratio, 5) for run in runs), ""],

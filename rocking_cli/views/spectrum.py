@@ -17,6 +17,7 @@ from rocking_cli.views.overturning import FROM_KINEMATICS, numbers
 from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
+HUNG = "Lengths are scaled, and where loads and ties are; their masses, stiffness and forces are not."
 LISTED = 3  # histories that could not be followed
 
 
@@ -51,6 +52,8 @@ def view(results: Results) -> View:
         said.append(
             "Scale: the structure with all its lengths times this. The larger, the smaller its frequency parameter p."
         )
+    if any(each.shape.hung for each in results.spectra):
+        said.append(HUNG)
     return View(lambda: _all(results), [*parts, *said])
 
 
@@ -125,6 +128,7 @@ def _data(results: Results, each: Spectrum) -> dict[str, Any]:
         "lambda": structure.lambda_,
         "eta": structure.eta,
         "alike": each.shape.own is None,
+        "hung": each.shape.hung,
         "lambdas": each.uplifts.tolist() if each.shape.own is not None else None,
         "size": each.periods.tolist(),
         "scale": None if blocks else each.scales.tolist(),

@@ -10,10 +10,11 @@ from math import isclose, nan
 from typing import Any
 
 from rocking_cli import __version__
-from rocking_cli.core import equivalent_block
+from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equivalent_block
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.studies.fragility.definition import Definition
 from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
 from rocking_cli.studies.fragility.sources import KeptMotions
@@ -168,22 +169,38 @@ def libraries() -> dict[str, str]:
 def _trial(study: Study, sample: Sample) -> Trial:
     structure = study.structures[sample.structure]
     start = Trial(structure.name or structure.mechanism, sample.number, sample.drawn)
+    mechanism = sample.mechanism
     try:
-        equivalence = equivalent_block(sample.mechanism)
-        least = min(equivalence.positive.eta, equivalence.negative.eta)
-        if study.definition.eta is None and least <= 0:
+        p, lambda_, rotations = _mechanics(mechanism, study.definition)
+        least = min(mechanism.eta(side) for side in mechanism.directions)
+        if study.definition.eta is None and mechanism.rocks_both_ways and least <= 0:
             raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
     except RockingError as error:
         return replace(start, reason=str(error))
-    p, lambda_ = weaker(equivalence, study.definition.model)
     return replace(
         start,
         p=p,
         lambda_=lambda_,
-        gravity=sample.mechanism.gravity,
-        phi_cr_positive=equivalence.positive.phi_cr,
-        phi_cr_negative=equivalence.negative.phi_cr,
+        gravity=mechanism.gravity,
+        phi_cr_positive=rotations[0],
+        phi_cr_negative=rotations[1],
     )
+
+
+def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, tuple[float, float]]:
+    """p, lambda and the rotations that others are compared with, of a structure with an equivalent block or without.
+
+    Raises `NoEquivalentBlock` if it has none and the study asks for what needs one.
+    """
+    try:
+        found = equivalent_block(mechanism)
+    except NoEquivalentBlock as error:
+        needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else asked.measures_in_p
+        if needs:
+            raise NoEquivalentBlock(f"{' and '.join(needs)} cannot be had of it: {error}") from error
+        sides = both_statics(mechanism)
+        return 0.0, min(side.lambda_ for side in sides), (sides[0].reference, sides[1].reference)
+    return *weaker(found, asked.model), (found.positive.phi_cr, found.negative.phi_cr)
 
 
 def _hazard(study: Study) -> list[list[float]] | None:

@@ -243,6 +243,12 @@ class Definition(Sampling):
         return list(dict.fromkeys([*found, *([self.hazard.measure] if self.hazard is not None else [])]))
 
     @property
+    def measures_in_p(self) -> list[str]:
+        """The measures asked for that need a frequency parameter."""
+        asked = [self.levels.measure, *self.fitted_measures, *(one for pair in self.bivariate for one in pair)]
+        return [name for name in dict.fromkeys(asked) if name in MEASURES and MEASURES[name].needs_p]
+
+    @property
     def hazard_measure(self) -> str | None:
         """What the hazard curve is of."""
         return self.hazard.measure if self.hazard is not None else None

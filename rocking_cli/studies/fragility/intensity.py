@@ -24,7 +24,7 @@ class Reference:
     Parameters
     ----------
     p : float or ndarray
-        Frequency parameter [rad/s].
+        Frequency parameter [rad/s]; NaN where there is none.
     lambda_ : float or ndarray
         Uplift acceleration over g.
     gravity : float or ndarray
@@ -53,12 +53,15 @@ class Measure:
         Which quantity of the motion it is of: a field of `sources.Record`, in proportion to the factor on the motion.
     relative : callable, optional
         What it makes of that for a structure; without it the measure is that quantity itself.
+    needs_p : bool
+        Whether it asks for the frequency parameter, which a structure without an equivalent block has not.
     """
 
     name: str
     unit: str
     of: str
     relative: Callable[[float | Reals, Reference], float | Reals] | None = None
+    needs_p: bool = False
 
 
 PGA, PGV = "PGA", "PGV"
@@ -69,7 +72,7 @@ MEASURES: Mapping[str, Measure] = {
         Measure(PGV, "m/s", "pgv"),
         # The a of a pulse [paper, Eq. 40]: 1 is needed to uplift.
         Measure("PGA/(g lambda)", "", "pga", lambda pga, of: pga * STANDARD_GRAVITY / of.uplift),
-        Measure("p PGV/(g lambda)", "", "pgv", lambda pgv, of: of.p * pgv / of.uplift),
+        Measure("p PGV/(g lambda)", "", "pgv", lambda pgv, of: of.p * pgv / of.uplift, needs_p=True),
     )
 }
 

@@ -35,13 +35,13 @@ class Trial:
     reason : str or None
         Why it cannot be run; None if it can.
     p : float
-        Frequency parameter [rad/s]; this and the rest are 0 if it cannot be run.
+        Frequency parameter [rad/s], 0 if no block is equivalent; this and the rest are 0 if it cannot be run.
     lambda_ : float
         Uplift acceleration over g that the model keeps.
     gravity : float
         [m/s2].
     phi_cr_positive, phi_cr_negative : float
-        Critical rotations [rad].
+        Critical rotations [rad]; the kinematic limit where there is none.
     """
 
     structure: str
@@ -128,7 +128,8 @@ class Plan:
     def reference(self, sample: Integers) -> Reference:
         """What the dimensionless measures refer to, for samples by their places."""
         columns = np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])[sample]
-        return Reference(columns[:, 0], columns[:, 1], columns[:, 2])
+        p = np.where(columns[:, 0] > 0, columns[:, 0], np.nan)
+        return Reference(p, columns[:, 1], columns[:, 2])
 
     def motion(self, record: Integers, factor: float | Reals = 1.0) -> dict[str, Reals]:
         """The quantities that measures are of, of records by their places, times factors."""

@@ -1,0 +1,182 @@
+"""What hangs on a structure, in symbols of one size on paper: weights, forces, and ties as lines and springs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Polygon
+from numpy.typing import NDArray
+
+from rocking_cli.plotting import style
+from rocking_cli.plotting.labels import MARK, Labels
+from rocking_cli.plotting.panels import Panel
+from rocking_cli.studies.hung import Carried
+from rocking_cli.studies.picture import Picture
+
+Points = NDArray[np.complex128]
+SYMBOL = 0.1  # inches: from a point to where the symbol of a short spring begins
+COIL = 0.4  # inches: the spring in a line, at most
+SHARE = 0.6  # of a line that its spring takes, at most
+TEETH, WIDE = 4, 0.045  # of a spring, and how far these go to either side [inches]
+WEIGHT = 0.075  # inches: half the width of a weight
+ARROW = 0.45  # inches: length of a force
+ANCHOR = 0.04  # inches: half the width of what holds a tie
+LONGEST = 1.7  # inches of a name
+WORDS = 0.3  # inches to either side of a structure for names
+BEHIND = 0.8  # order of what the structure may move over
+SQUARE: Points = np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j], np.complex128)
+OUTLINE: Points = np.array(
+    [-1 - 1j, 1 - 1j, 0.7 + 0.6j, 0.3 + 0.6j, 0.3 + 1.1j, -0.3 + 1.1j, -0.3 + 0.6j, -0.7 + 0.6j], np.complex128
+)
+"""A weight with its handle, of half width 1."""
+
+
+class Symbols(NamedTuple):
+    """What hangs on a structure at one rotation [m].
+
+    Parameters
+    ----------
+    lines : list of (ndarray of complex, bool, bool)
+        The ties, whether each is slack, and whether it is of a bed, which the structure may move over.
+    anchors : list of (complex, bool)
+        Where the ground holds them, and whether that is of a bed.
+    weights : list of ndarray of complex
+        Outlines of masses.
+    forces : list of (complex, complex)
+        From where to where the arrows go.
+    """
+
+    lines: list[tuple[Points, bool, bool]]
+    anchors: list[tuple[complex, bool]]
+    weights: list[Points]
+    forces: list[tuple[complex, complex]]
+
+
+def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
+    """What hangs on a structure at a signed rotation, at so many inches a metre."""
+    places, ties, slack = picture.hung(rotation, SYMBOL / scale)
+    lines, anchors = [], []
+    for tie, ends, loose in zip(picture.ties, ties, slack, strict=True):
+        for piece, (start, end) in zip(tie.pieces, ends, strict=True):
+            lines.append((_drawn(start, end, piece.kind, scale), loose, tie.is_bed))
+            held = [at for at, each in ((start, piece.start), (end, piece.end)) if each.part is None]
+            anchors += [(at, tie.is_bed) for at in held]
+    weights, forces = [], []
+    for load, place in zip(picture.loads, places.tolist(), strict=True):
+        if load.force is None:
+            weights.append(place + OUTLINE * WEIGHT / scale)
+        elif load.force:
+            forces.append((_tail(load, place, scale), place))
+    return Symbols(lines, anchors, weights, forces)
+
+
+def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, labels: Labels) -> None:
+    """Draw what hangs on a structure, for words to keep off."""
+    shown = symbols(picture, rotation, panel.scale)
+    for line, loose, behind in shown.lines:
+        dashes, order = style.SLACK if loose else "-", BEHIND if behind else 4.5
+        axes.plot(line.real, line.imag, linestyle=dashes, zorder=order, **style.TIE)
+        labels.keep_off(line)
+    for at, behind in shown.anchors:
+        square = at + ANCHOR / panel.scale * SQUARE
+        order = BEHIND if behind else 5
+        axes.add_patch(
+            Polygon(_xy(square), facecolor=style.EARTH, edgecolor=style.INK, linewidth=style.THIN, zorder=order)
+        )
+        labels.keep_off([at], MARK)
+    for outline in shown.weights:
+        axes.add_patch(Polygon(_xy(outline), facecolor=style.INK, edgecolor="white", linewidth=style.THIN, zorder=5))
+        labels.keep_off([*outline, outline[0]], MARK)
+    for tail, tip in shown.forces:
+        axes.annotate(
+            "", (tip.real, tip.imag), (tail.real, tail.imag), annotation_clip=False, zorder=6,
+            arrowprops={
+                "arrowstyle": "-|>,head_width=0.2,head_length=0.45", "color": style.CURSOR, "linewidth": style.BOLD,
+                "shrinkA": 0, "shrinkB": 0,
+            },
+        )  # fmt: skip
+        labels.keep_off([tail, tip], MARK)
+
+
+def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
+    """Write at rest what loads and ties are called, and how large the loads are."""
+    look: dict[str, Any] = {"fontsize": style.TICK, "zorder": 7}
+    places, ties, _ = picture.hung(0.0, SYMBOL / panel.scale)
+    for load, place in zip(picture.loads, places.tolist(), strict=True):
+        if not load.name:
+            continue
+        text, size = _fitted(load.name, f", {load.text}")
+        if load.force:
+            out = _tail(load, place, panel.scale)
+            labels.write(text, labels.around(out, out - place, 0.02, size), color=style.CURSOR, **look)
+        else:
+            labels.write(text, labels.around(place, 1 + 0.5j, WEIGHT, size, turning=0.6), color=style.INK, **look)
+    for tie, ends in zip(picture.ties, ties, strict=True):
+        if not tie.name:
+            continue
+        text, size = _fitted(tie.name)
+        kinds = [piece.kind for piece in tie.pieces]
+        if set(kinds) == {"symbol"}:
+            start, end = ends[len(ends) // 2]
+            away = start - end if len(ends) > 1 else 1 - 0.3j
+            at = start if len(ends) > 1 else (start + end) / 2
+            labels.write(text, labels.around(at, away, SYMBOL, size, turning=0.6), color=style.TIE["color"], **look)
+        else:
+            longest = max((each for each, kind in zip(ends, kinds, strict=True) if kind != "symbol"), key=_length)
+            labels.write(text, labels.along(*longest, size), color=style.TIE["color"], **look)
+
+
+def beside(picture: Picture) -> tuple[float, float, float, float]:
+    """What springs along a face take of the room to the left, right, below and above of a structure [inches]."""
+    left = right = below = above = 0.0
+    for tie in picture.ties:
+        for away in (SYMBOL * end.lead for end in tie.ground if abs(end.lead) > 1):
+            left, right = max(left, ANCHOR - away.real), max(right, ANCHOR + away.real)
+            below, above = max(below, ANCHOR - away.imag), max(above, ANCHOR + away.imag)
+    return left, right, below, above
+
+
+def margins(picture: Picture) -> tuple[float, float, float, float]:
+    """What arrows need to the left, right, below and above of where they act [inches]."""
+    left = right = below = above = 0.0
+    for load in picture.loads:
+        if load.force:
+            way = -load.force / abs(load.force) * (ARROW + 0.03)
+            left, right = max(left, -way.real), max(right, way.real)
+            below, above = max(below, -way.imag), max(above, way.imag)
+    return left, right, below, above
+
+
+def _tail(load: Carried, place: complex, scale: float) -> complex:
+    """Where the arrow of a force begins: its point is where it acts."""
+    return place - (load.force or 0j) / abs(load.force or 1.0) * ARROW / scale
+
+
+def _drawn(start: complex, end: complex, kind: str, scale: float) -> Points:
+    """The line of a piece."""
+    long = abs(end - start)
+    if kind == "line" or long == 0:
+        return np.array([start, end])
+    coil = long if kind == "symbol" else min(COIL / scale, SHARE * long)
+    unit = (end - start) / long
+    first = start + unit * (long - coil) / 2
+    steps = np.arange(2 * TEETH + 1)
+    to_side = np.where(steps % 2 == 0, 0.0, np.where(steps % 4 == 1, 1.0, -1.0)) * WIDE / scale
+    return np.array([start, *(first + unit * (coil * steps / (2 * TEETH) + 1j * to_side)), end])
+
+
+def _fitted(name: str, more: str = "") -> tuple[str, complex]:
+    """A name as far as there is room for it, and its size [inches]."""
+    text = style.plain(style.fitted(name, LONGEST, style.TICK)) + more
+    return text, style.size_of(text, style.TICK)
+
+
+def _length(ends: Sequence[complex]) -> float:
+    return abs(ends[1] - ends[0])
+
+
+def _xy(z: Points) -> NDArray[np.float64]:
+    return np.stack([z.real, z.imag], axis=-1)

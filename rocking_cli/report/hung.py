@@ -1,0 +1,129 @@
+"""What a report says of what hangs on a structure: loads, ties, and how far it all moves in each ground motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import isnan
+from typing import NamedTuple
+
+from rocking_cli.core.attached import ConstantForce, PointMass, Spot, Spring, SpringBed
+from rocking_cli.studies.assessment import Assessment, MotionResult
+from rocking_cli.studies.movements import Movements, Watched, largest
+
+ABSENT = "-"
+Rows = list[list[str]]
+
+
+class Hung(NamedTuple):
+    """Tables and a sentence.
+
+    Parameters
+    ----------
+    masses : list of rows
+        Name, body, place [m], mass [kg], and its shares in sideways and vertical inertia and as weight.
+    forces : list of rows
+        Name, body, place [m], force to the right and up [kN].
+    ties : list of rows
+        Name, where from and to, sense, stiffness [kN/m], prestress [kN].
+    moved : list of rows
+        Motion, point, how far sideways and up [mm].
+    strained : list of rows
+        Motion, tie, largest force [kN] and elongation [mm].
+    said : list of str
+        Sentences on these.
+    """
+
+    masses: Rows
+    forces: Rows
+    ties: Rows
+    moved: Rows
+    strained: Rows
+    said: list[str]
+
+
+def hung_on(content: Assessment) -> Hung | None:
+    """What hangs on a structure; None if nothing does."""
+    mechanism = content.mechanism
+    if not mechanism.attached:
+        return None
+    watched = Watched(mechanism)
+    found = {each.given.motion.name: _worse(watched, each) for each in content.results}
+    things = mechanism.attached
+    return Hung(
+        masses=[_mass(each) for each in things if isinstance(each, PointMass)],
+        forces=[_force(each) for each in things if isinstance(each, ConstantForce)],
+        ties=[_tie(each) for each in things if isinstance(each, Spring | SpringBed)],
+        moved=[
+            [name, point.name, _mm(point.horizontal), _mm(point.vertical)]
+            for name, moved in found.items()
+            for point in moved.points
+        ],
+        strained=[
+            [name, tie.name, _kilo(tie.force), _mm(tie.elongation)]
+            for name, moved in found.items()
+            for tie in moved.ties
+        ],
+        said=list(_said(found)),
+    )
+
+
+def _worse(watched: Watched, result: MotionResult) -> Movements:
+    """The largest values of every way round that the motion was looked at, by the nonlinear model."""
+    return largest([watched.peaks(runs["nonlinear"]) for runs in result.runs.values()])
+
+
+def _mass(load: PointMass) -> list[str]:
+    shares = (load.horizontal, load.vertical, load.weight)
+    return [load.name, *_place(load.spot), f"{load.mass:.4g}", *(f"{share:.3g}" for share in shares)]
+
+
+def _force(load: ConstantForce) -> list[str]:
+    return [load.name, *_place(load.spot), _kilo(load.force.real), _kilo(load.force.imag)]
+
+
+def _tie(tie: Spring | SpringBed) -> list[str]:
+    if isinstance(tie, SpringBed):
+        where, stiffness = (
+            f"along a face, {_spot(tie.start)} to {_spot(tie.end)}",
+            tie.modulus * abs(tie.end.at - tie.start.at),
+        )
+        return [tie.name, where, "pulls and pushes", _kilo(tie.count * stiffness), _kilo(0.0)]
+    sense = {"tension": "pulls only", "compression": "pushes only", None: "pulls and pushes"}[tie.only]
+    number = f", {tie.count:g} of them" if tie.count != 1 else ""
+    where = ", ".join(_spot(spot) for spot in tie.spots) + number
+    return [tie.name, where, sense, _kilo(tie.stiffness), _kilo(tie.prestress)]
+
+
+def _place(spot: Spot) -> tuple[str, str]:
+    return spot.body or "ground", f"{spot.at.real:.4g}, {spot.at.imag:.4g}"
+
+
+def _spot(spot: Spot) -> str:
+    body, place = _place(spot)
+    return f"{body} ({place})"
+
+
+def _kilo(value: float) -> str:
+    return ABSENT if isnan(value) else f"{value / 1000 + 0.0:.4g}"
+
+
+def _mm(value: float) -> str:
+    return ABSENT if isnan(value) else f"{1000 * value + 0.0:.4g}"
+
+
+def _said(found: Mapping[str, Movements]) -> Iterator[str]:
+    """Sentences on the largest force, and on the motions that overturn it."""
+    every = [(name, tie) for name, moved in found.items() for tie in moved.ties if not isnan(tie.force)]
+    if every:
+        name, tie = max(every, key=lambda each: abs(each[1].force))
+        if tie.force:
+            way = "pulls" if tie.force > 0 else "pushes"
+            yield f"The largest force is that of {tie.name}: it {way} with {_kilo(abs(tie.force))} kN under {name}."
+        else:
+            yield "No motion here puts a force on any tie."
+    falls = [name for name, moved in found.items() if any(isnan(point.horizontal) for point in moved.points)]
+    if falls:
+        yield (
+            f"Under {' and '.join(falls)} it overturns, at least one way round: there is no largest movement or force, "
+            "and the table has none."
+        )

@@ -1,0 +1,187 @@
+"""What hangs on a structure as it is drawn: loads, ties as pieces between points, and the walls that it leans on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Direction, Mechanism, three_digits
+from rocking_cli.core.attached import TOGETHER, Attached, ConstantForce, PointMass, Spot, Spring, SpringBed
+
+Points = NDArray[np.complex128]
+Copies = Mapping[str, Sequence[tuple[int, complex]]]
+"""Of each body: its place among the parts, and how far from the body it is [m], of each part that it is drawn as."""
+BED = 8  # springs that a bed is drawn as
+TONNE = 1000.0  # kg from which a mass is given in t
+
+
+class End(NamedTuple):
+    """An end of a piece of a tie: a point of a part, or of the ground (None), at rest [m].
+
+    `lead` is how far from there a symbol begins, in lengths of a symbol; it turns with the part.
+    """
+
+    part: int | None
+    point: complex
+    lead: complex = 0j
+
+
+class Piece(NamedTuple):
+    """A piece of a tie: a line, a line with a spring in it, or all of it a spring."""
+
+    start: End
+    end: End
+    kind: Literal["line", "spring", "symbol"]
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A load as it is drawn.
+
+    Parameters
+    ----------
+    name, text : str
+        What it is called, and how large it is.
+    part : int
+        What carries it.
+    point : complex
+        Where, at rest [m].
+    mass : float or None
+        [kg]; None of a force.
+    force : complex or None
+        [N], to the right and up; None of a mass.
+    """
+
+    name: str
+    text: str
+    part: int
+    point: complex
+    mass: float | None = None
+    force: complex | None = None
+
+
+@dataclass(frozen=True)
+class Strand:
+    """A tie as it is drawn.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    pieces : tuple of Piece
+        From end to end; of a bed, some of its springs.
+    thing : Spring or SpringBed
+        What it does.
+    """
+
+    name: str
+    pieces: tuple[Piece, ...]
+    thing: Spring | SpringBed
+
+    @property
+    def is_bed(self) -> bool:
+        """Whether it is a row of springs along a face."""
+        return isinstance(self.thing, SpringBed)
+
+    @property
+    def ground(self) -> list[End]:
+        """Where it is held by the ground."""
+        return [end for piece in self.pieces for end in (piece.start, piece.end) if end.part is None]
+
+    def slack(self, mechanism: Mechanism, phi: NDArray[np.float64], direction: Direction) -> NDArray[np.bool_]:
+        """Where it is out of play, over rotations in a direction, shape (n,)."""
+        if isinstance(self.thing, SpringBed) or self.thing.only is None:
+            return np.zeros(phi.shape, bool)
+        e, _, _ = self.thing.elongation(mechanism.followed(phi, direction))
+        taut = self.thing.slack_at(e) * (1.0 if self.thing.only == "tension" else -1.0)
+        return np.asarray(
+            taut < -1e-9 * (abs(self.thing.prestress) + self.thing.stiffness * float(np.abs(e).max(initial=0.0)))
+        )
+
+
+def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
+    """The loads of a structure; one that each of several bodies has, on each of them."""
+    each = _each(mechanism)
+    for load in mechanism.attached:
+        if not isinstance(load, PointMass | ConstantForce):
+            continue
+        count = mechanism.alike().get(load.spot.body or "", 1) if each.get(load.name) else 1
+        for k, (part, shift) in enumerate(_copies(load.spot.body, copies, every=each.get(load.name, False))):
+            point, name = load.spot.at + shift, load.name if k == 0 else ""
+            if isinstance(load, PointMass):
+                mass = load.mass / count
+                yield Carried(name, _mass(mass), part, point, mass=mass)
+            else:
+                force = load.in_direction(mechanism.directions[0]) / count
+                yield Carried(name, f"{three_digits(abs(force) / 1000)} kN" if force else "0", part, point, force=force)
+
+
+def strands(mechanism: Mechanism, copies: Copies, centroids: Sequence[complex]) -> Iterator[Strand]:
+    """The ties of a structure; one that each of several bodies has, on each of them."""
+    each = _each(mechanism)
+    for tie in mechanism.attached:
+        if not isinstance(tie, Spring | SpringBed):
+            continue
+        first = next(spot.body for spot in _spots(tie) if spot.body is not None)
+        for k, (part, shift) in enumerate(_copies(first, copies, every=each.get(tie.name, False))):
+            name = tie.name if k == 0 else ""
+            if isinstance(tie, SpringBed):
+                yield Strand(name, tuple(_bed(tie, part, shift, centroids[part])), tie)
+            else:
+                of_body = {body: those[min(k, len(those) - 1)][0] for body, those in copies.items()}
+                yield Strand(name, tuple(_pieces(tie, of_body, shift)), tie)
+
+
+def walls(mechanism: Mechanism, low: complex, high: complex) -> tuple[Points, ...]:
+    """The side wall between two corners of a structure that rocks to one side only.
+
+    It is on the right of someone who walks along the line.
+    """
+    if mechanism.rocks_both_ways:
+        return ()
+    if mechanism.directions[0] is Direction.POSITIVE:  # it leans on what is to its left
+        return (np.array([complex(low.real, high.imag), low]),)
+    return (np.array([complex(high.real, low.imag), high]),)
+
+
+def _each(mechanism: Mechanism) -> Mapping[str, bool]:
+    loads = {load.name: load.each for load in mechanism.loads or []}
+    return loads | {tie.name: tie.each for tie in mechanism.ties or []}
+
+
+def _copies(body: str | None, copies: Copies, *, every: bool) -> Sequence[tuple[int, complex]]:
+    found = copies[body or ""]
+    return found if every else found[:1]
+
+
+def _spots(tie: Attached) -> Sequence[Spot]:
+    return [tie.start, tie.end] if isinstance(tie, SpringBed) else tie.spots if isinstance(tie, Spring) else []
+
+
+def _pieces(tie: Spring, of_body: Mapping[str, int], shift: complex) -> Iterator[Piece]:
+    for one, other in zip(tie.spots, tie.spots[1:], strict=False):
+        parts = [None if spot.body is None else of_body[spot.body] for spot in (one, other)]
+        if abs(other.at - one.at) <= TOGETHER * (1 + abs(one.at)):
+            # Its ends are together at rest: they are drawn apart, what holds it below what moves.
+            up = -1j if parts[1] is None else 1j
+            yield Piece(End(parts[0], one.at + shift, -up), End(parts[1], other.at + shift, up), "symbol")
+        else:
+            kind: Literal["line", "spring"] = "spring" if None in parts else "line"
+            yield Piece(End(parts[0], one.at + shift), End(parts[1], other.at + shift), kind)
+
+
+def _bed(bed: SpringBed, part: int, shift: complex, centroid: complex) -> Iterator[Piece]:
+    along = (bed.end.at - bed.start.at) / abs(bed.end.at - bed.start.at)
+    middle = (bed.start.at + bed.end.at) / 2 + shift
+    out = 1j * along if ((middle - centroid) * (1j * along).conjugate()).real > 0 else -1j * along
+    for share in (np.arange(BED) + 0.5) / BED:
+        at = bed.start.at + complex(share) * (bed.end.at - bed.start.at) + shift
+        yield Piece(End(None, at, 1.5 * out), End(part, at), "symbol")
+
+
+def _mass(mass: float) -> str:
+    return f"{mass / TONNE:.3g} t" if mass >= TONNE else f"{mass:.3g} kg"
