@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.outcome import Outcomes
 
 Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Number = TypeVar("Number", np.float64, np.int64)
 
 NOTHING, NO_IMPACTS = np.empty(0), np.empty((0, 3))
 RELEASE_DT = 0.005  # s between samples of a free motion without a record
@@ -108,6 +110,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         _joined([model.held[..., 4] if len(model.held) else np.zeros(model.forces.shape[:2]) for model in models])
         if tied
         else np.empty((0, 2)),
+        _corners(models),
         np.array(records),
         us.joined(),
         vs.joined(),
@@ -121,6 +124,14 @@ def _three_forces(model: Model) -> Reals:
     cells = len(model.forces)
     held = model.held[..., :4] if len(model.held) else np.zeros((cells, 2, 4))
     return np.concatenate([model.forces.reshape(cells, 2, 2, 4), held[:, :, None, :]], axis=2)
+
+
+def _corners(models: Sequence[Model]) -> Integers:
+    """The corners below each cell of all models; of no rows if none has any."""
+    if not any(len(model.corners) for model in models):
+        return np.zeros((0, 2), np.int64)
+    alone = (np.zeros((len(model.forces), 2), np.int64) for model in models)
+    return _joined([model.corners if len(model.corners) else no for model, no in zip(models, alone, strict=True)])
 
 
 class _Row:
@@ -154,5 +165,5 @@ def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:
     return result
 
 
-def _joined(arrays: Sequence[Reals]) -> Reals:
+def _joined(arrays: Sequence[NDArray[Number]]) -> NDArray[Number]:
     return np.ascontiguousarray(arrays[0] if len(arrays) == 1 else np.concatenate(arrays))
