@@ -89,7 +89,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
     for model in models:
         structures.append((cells, len(model.forces), model.is_linear))
         cells += len(model.forces)
-    us, vs, aheads, v_aheads = _Row(), _Row(), _Row(), _Row()
+    us, vs, aheads, v_aheads, v_aboves = _Row(), _Row(), _Row(), _Row(), _Row()
     any_vertical = any(motion is not None and motion.vertical is not None for motion in motions)
     tied = any_vertical and any(len(model.held) for model in models)
     for motion in motions:
@@ -99,7 +99,8 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         length = max(u.size, ceil((v.size - 1) * v_dt / dt) + 1)
         places = (*us.add(u), *vs.add(v), *aheads.add(_strongest_to_come(np.abs(u), 1.0, length)))
         if any_vertical:
-            v_aheads.add(_strongest_to_come(np.maximum(-v, 0.0), dt / v_dt, length))  # beside the other
+            for row, strength in ((v_aheads, -v), (v_aboves, v)):  # beside the other
+                row.add(_strongest_to_come(np.maximum(strength, 0.0), dt / v_dt, length))
         records.append((*places, dt, v_dt))
     return kernels.Deck(
         np.array(structures, dtype=np.int64),
@@ -116,6 +117,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         vs.joined(),
         aheads.joined(),
         v_aheads.joined(),
+        v_aboves.joined(),
     )
 
 

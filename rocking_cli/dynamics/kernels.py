@@ -67,13 +67,14 @@ class Deck(NamedTuple):
     certain: (
         np.ndarray
     )  # (cells, 2): largest ground acceleration, over g, that cannot stop an outward motion from there
-    held: np.ndarray  # (cells, 2): the largest Q/(g |B|) still to come; of no rows where `forces` are of two
+    held: np.ndarray  # (cells, 2): the largest |Q|/(g |B|) still to come; of no rows where `forces` are of two
     corners: np.ndarray  # int (cells, 2): corners of the force up to the start of each cell; of no rows if none has any
     records: np.ndarray  # (k, 8): see the columns above
     u: np.ndarray  # horizontal ground acceleration of all records [m/s2], straight between samples, zero after the last
     v: np.ndarray  # vertical ground acceleration
     ahead: np.ndarray  # at each sample of the horizontal component, the largest |u| from there on [m/s2]
     v_ahead: np.ndarray  # and the largest -v
+    v_above: np.ndarray  # and the largest v
 
 
 class Samples(NamedTuple):
@@ -108,6 +109,7 @@ class Motion(NamedTuple):
     v_dt: float
     ahead: np.ndarray
     v_ahead: np.ndarray
+    v_above: np.ndarray
 
 
 class Law(NamedTuple):
@@ -518,21 +520,25 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, marks):
 
 
 @compile_kernel
-def is_certain(structure, d, q, strongest, weight):
+def is_certain(structure, d, q, strongest, weight, most_weight):
     """Whether an outward motion from q beyond phi_cr overturns whatever comes: nothing later can turn it back.
 
-    `weight` is the least (g + v_g'')/g to come: less weight pulls it over, while what ties it back stays.
+    `weight` and `most_weight` are the least and the largest (g + v_g'')/g to come: less weight pulls less, while what
+    ties it back stays, and more holds it against what pushes it over.
     """
     numbers = structure.numbers
     if weight <= 0:
         return False
-    held = structure.held.shape[0] > 0 and weight != 1
+    held = structure.held.shape[0] > 0 and (weight != 1 or most_weight != 1)
     if structure.linear:
         return not held and q >= numbers[d, Q_CR] + numbers[d, KAPPA_G] * (strongest / weight)
     cell = min(int(q * numbers[d, PER_CELL]), structure.certain.shape[0] - 1)
+    needed = strongest / weight
     if held:  # -w g G - Q = -w (g G + Q) - (1 - w) Q
-        strongest += (1 - weight) * numbers[d, GRAVITY] * structure.held[cell, d]
-    return numbers[d, GRAVITY] * structure.certain[cell, d] >= strongest / weight
+        tied = numbers[d, GRAVITY] * structure.held[cell, d]
+        light, heavy = strongest + (1 - weight) * tied, strongest + (most_weight - 1) * tied
+        needed = max(light / weight, heavy / most_weight)
+    return numbers[d, GRAVITY] * structure.certain[cell, d] >= needed
 
 
 @compile_inline
@@ -615,7 +621,7 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
     It begins at rest, with q = `start`. Returns how it ended.
     """
     linear, numbers, forces, _, _, _, corners = structure
-    u, factor, dt, v, v_factor, v_dt, ahead, v_ahead = motion
+    u, factor, dt, v, v_factor, v_dt, ahead, v_ahead, v_above = motion
     every, phi_out, rate_out, impacts = samples
     marks[:] = nan
     marks[PEAK : PEAK + 2] = 0.0
@@ -755,7 +761,8 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
         if not resting and w >= 0 and q > law.q_cr:
             strongest = ahead[k] * abs(factor) if k < ahead.size else 0.0
             weight = 1 - v_ahead[k] * v_factor / gravity if k < v_ahead.size and v_ahead[k] > 0 else 1.0
-            if is_certain(structure, d, q, strongest, weight):
+            most_weight = 1 + v_above[k] * v_factor / gravity if k < v_above.size else 1.0
+            if is_certain(structure, d, q, strongest, weight, most_weight):
                 marks[ENDED], marks[SIDE] = t, d
                 return OVERTURNED
         if marks[IMPACTS] - before > most_impacts or idle > IDLE:
@@ -830,6 +837,7 @@ def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
             of[V_DT],
             deck.ahead[later],
             deck.v_ahead[v_later],
+            deck.v_above[v_later],
         )
         marks = all_marks[i]
         marks[STATUS] = follow(structure, motion, what[START], rtol, most_impacts, samples, marks)

@@ -42,7 +42,7 @@ class Table:
         Width of a cell, in q [kg^(1/2) m].
     held : ndarray, shape (n, 5)
         The cubic of Q/(g sqrt(I)), the part of the first force that does not scale with g, and from the start of each
-        cell on the largest Q/(g |B|); of no rows if nothing ties the structure.
+        cell on the largest |Q|/(g |B|); of no rows if nothing ties the structure.
     corners : ndarray of int, shape (n,)
         How many corners of the force there are up to the start of each cell; a cell that has one in it is between two.
     """
@@ -147,7 +147,7 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Ta
     # An outward motion gains energy as long as -V' - s B u >= 0, and does so for good where that holds up to the end.
     with np.errstate(divide="ignore", invalid="ignore"):
         enough = np.where(restoring < 0, -restoring / np.abs(at.B), -1.0)
-        most_held = np.where(at.Q > 0, at.Q / (gravity * np.abs(at.B)), 0.0)
+        most_held = np.where(at.Q != 0, np.abs(at.Q) / (gravity * np.abs(at.B)), 0.0)
     certain = np.minimum.accumulate(enough[::-1])[::-1]
     to_come = np.maximum.accumulate(most_held[::-1])[::-1]
     held = np.column_stack([over_root(at.Q / gravity, at.dQ / gravity, at.U / gravity), to_come[:-1]])

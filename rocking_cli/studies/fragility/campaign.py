@@ -171,7 +171,7 @@ def _trial(study: Study, sample: Sample) -> Trial:
     try:
         equivalence = equivalent_block(sample.mechanism)
         least = min(equivalence.positive.eta, equivalence.negative.eta)
-        if study.definition.eta is None and least <= 0:
+        if study.definition.eta is None and least <= 0 and sample.mechanism.rocks_both_ways:
             raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
     except RockingError as error:
         return replace(start, reason=str(error))
