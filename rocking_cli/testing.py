@@ -26,6 +26,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from pydantic import ValidationError
 
 from rocking_cli.core import (
     Body,
@@ -41,6 +42,7 @@ from rocking_cli.core import (
     equivalent_block,
     polygon,
 )
+from rocking_cli.core.attached import Spot
 from rocking_cli.core.attachments import followed
 from rocking_cli.core.coefficients import coefficients, jump
 from rocking_cli.core.equilibrium import NoCriticalRotation
@@ -67,6 +69,9 @@ ALIKE = 1e-9  # of its size: how near a value must come to what the bodies say
 DRAWN = 2e-3  # how near, over the size of a body, its outlines with their straight sides must come to its inertia
 A_LITTLE = 0.25  # of the critical rotation, in which nothing may go through the ground
 FLUSH = 1e-8  # of the size of the structure: how near to the ground counts as on it
+A_BIT = 0.01  # of the weight: what is hung on a structure to see whether it takes it
+A_MASS = 1000.0  # kg
+HUNG = ("loads", "ties", "interlock", "one_sided", "rebound")  # fields that every mechanism takes
 GIVEN = 0.625  # a coefficient of restitution that no structure has by itself
 
 
@@ -353,6 +358,73 @@ def an_impact_gains_no_energy(structure: Mechanism) -> None:
         )
 
 
+def carries_what_hangs_on_it(structure: Mechanism) -> None:
+    """It takes masses, a load, a force and a tie: coefficients and restitution are those of its bodies with them."""
+    bare = _unladen(structure)
+    spot, size = _liveliest(bare), _size(bare)
+    weight = bare.gravity * sum(body.mass for body in bare.weighed())
+    mass, force, stiffness = A_BIT * weight / bare.gravity, A_BIT * weight * (0.3 - 1j), A_BIT * weight / size
+    prestress, anchor = 0.1 * A_BIT * weight, spot.at - size * (1 + 0.5j)
+    share = {"horizontal": 0.6, "vertical": 0.7, "weight": 0.8}
+    at = {"body": spot.body, "at": [spot.at.real, spot.at.imag]}
+    ends = {"from": {"ground": [anchor.real, anchor.imag]}, "to": at}
+    loads = [{"name": "mass", "mass": mass, **share, **at}, {"name": "force", "force": [force.real, force.imag], **at}]
+    ties = [{"name": "tie", **ends, "stiffness": stiffness, "prestress": prestress}]
+    laden = _changed(bare, {"loads": loads, "ties": ties})
+
+    def energies(phi: Reals, direction: Direction) -> tuple[Reals, Reals]:
+        """By where the point is: that of the weight over g, and that of tie and force."""
+        z = bare.followed(phi, direction)(spot).z
+        longer = np.abs(z - anchor) - abs(spot.at - anchor)
+        work = ((z - spot.at) * np.conj(force)).real
+        return share["weight"] * mass * (z - spot.at).imag, prestress * longer + stiffness * longer**2 / 2 - work
+
+    for direction in Direction:
+        top = _top(bare, direction)
+        step = min(STEP, SHARE * top)
+        phi = np.linspace(0.02, 1.0, 9) * top
+        says, own = (each.coefficients(phi, direction) for each in (laden, bare))
+        z = [bare.followed(phi + shift * step, direction)(spot).z for shift in SHIFTS]
+        moved = _quotient(z, step)
+        around = [energies(phi + shift * step, direction) for shift in SHIFTS]
+        here = energies(phi, direction)
+        inertia = mass * (share["horizontal"] * moved.real**2 + share["vertical"] * moved.imag**2)
+        moment = np.abs(own.G).max() + np.abs(own.B).max()
+        for name, added, big in (
+            ("I", inertia, own.I.max()),
+            ("G", _quotient([each[0] for each in around], step).real, moment),
+            ("B", direction * share["horizontal"] * mass * moved.real, moment),
+            ("V", here[0], moment),
+            ("Q", _quotient([each[1] for each in around], step).real, bare.gravity * moment),
+            ("U", here[1], bare.gravity * moment),
+        ):
+            what = f"{name} of coefficients with a load and a tie, {direction.label} direction,"
+            _near(what, phi, getattr(says, name), getattr(own, name) + added, 1e-6 * big, "of bodies and load")
+        turned = _quotient([each.Q for each in _around(laden, phi, direction, step)], step).real
+        _near(f"dQ, {direction.label} direction,", phi, says.dQ, turned, 1e-6 * bare.gravity * moment, "the quotient")
+        old, new = (complex(bare.followed(np.zeros(1), side)(spot).dz[0]) for side in (direction, direction.opposite))
+        before, after = bare.restitution_from_kinematics(direction), laden.restitution_from_kinematics(direction)
+        base = float(bare.coefficients(np.zeros(1), direction.opposite).I[0])
+
+        def product(one: complex, other: complex) -> float:
+            return mass * (share["horizontal"] * one.real * other.real + share["vertical"] * one.imag * other.imag)
+
+        expected = (before * base - product(old, new)) / (base + product(new, new))
+        _demand(abs(after - expected) <= 1e-9, f"eta with a load is {after:.9g}, and by bodies and load {expected:.9g}")
+
+
+def may_lean_on_side_walls(structure: Mechanism) -> None:
+    """It may rock to one side only, with the uplift and the critical rotation of that side."""
+    bare = _unladen(structure)
+    for direction in Direction:
+        kept = {"one_sided": direction.label, "rebound": GIVEN, "restitution": None}
+        sided = _changed(bare, kept)
+        here = f"where it rocks in the {direction.label} direction only"
+        _demand(list(sided.directions) == [direction] and sided.eta(direction) == GIVEN, f"its rebound is lost {here}")
+        _agree(f"uplift {here}", sided.uplift(direction), bare.uplift(direction))
+        _agree(f"critical_rotation {here}", sided.critical_rotation(direction), bare.critical_rotation(direction))
+
+
 def outlines_are_those_of_the_bodies(structure: Mechanism) -> None:
     """Outlines enclose something, and their bodies have a mass and inertia that such shapes can have."""
     sketch = structure.sketch()
@@ -489,6 +561,8 @@ CHECKS: tuple[Callable[[Mechanism], None], ...] = (
     outlines_are_those_of_the_bodies,
     hinges_hold_together,
     joints_hold_what_moves,
+    carries_what_hangs_on_it,
+    may_lean_on_side_walls,
     stands_on_the_edge_of_its_base,
 )
 """The contract. Each takes a structure and raises an AssertionError that says what is wrong."""
@@ -514,6 +588,36 @@ def _demand(holds: object, otherwise: str) -> None:
     """Fail with a sentence; unlike `assert` also under `python -O`."""
     if not holds:
         raise AssertionError(otherwise)
+
+
+def _unladen(structure: Mechanism) -> Mechanism:
+    """It without what users hang on it, and with masses in kilograms."""
+    hung = [key for key in HUNG if getattr(structure, key) is not None]
+    return _changed(structure, {**dict.fromkeys(hung), **({} if structure.has_mass else {"mass": A_MASS})})
+
+
+def _changed(structure: Mechanism, fields: dict[str, object]) -> Mechanism:
+    try:
+        return structure.model_copy(update=fields)
+    except ValidationError as error:
+        reasons = "; ".join(each["msg"] for each in error.errors(include_url=False))
+        raise AssertionError(f"it does not take {', '.join(fields) or 'a copy'}: {reasons}") from error
+
+
+def _liveliest(structure: Mechanism) -> Spot:
+    """The corner of a body, or the centroid of one whose shape is not known, that moves most as it begins to rock."""
+    sketch = structure.sketch()
+    spots = []
+    for body in structure.bodies():
+        known = sketch.outlines.get(body.name, ()) if sketch.uniform else ()
+        shapes = [body.outline] if body.outline else list(known)
+        spots += [Spot(body.name, complex(corner)) for shape in shapes or [[body.centroid]] for corner in shape]
+    follow = structure.followed(np.zeros(1), Direction.POSITIVE)
+    return max(spots, key=lambda spot: abs(complex(follow(spot).dz[0])))
+
+
+def _around(structure: Mechanism, phi: Reals, direction: Direction, step: float) -> list[Coefficients]:
+    return [structure.coefficients(phi + shift * step, direction) for shift in SHIFTS]
 
 
 def _agree(what: str, said: float, found: float) -> None:

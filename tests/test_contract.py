@@ -343,7 +343,25 @@ class GivesNothing(Plain):
         return None
 
 
+class InCircles(Plain):
+    """How it moves hangs on its critical rotation, which with loads hangs on how it moves."""
+
+    def critical_rotation(self, direction):
+        return float(np.arctan(self.width / self.height))
+
+    def motion(self, phi, direction):
+        self.critical_rotation(direction)
+        return super().motion(phi, direction)
+
+
+class OwnEta(Plain):
+    def eta(self, direction):
+        return 0.9
+
+
 WRONG = [
+    (InCircles, "carries_what_hangs_on_it", "RecursionError"),
+    (OwnEta, "may_lean_on_side_walls", "its rebound is lost where it rocks in the positive direction only"),
     (
         DoubledB,
         "coefficients_are_those_of_the_bodies",

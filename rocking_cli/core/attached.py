@@ -19,6 +19,7 @@ from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.kinematics import Direction, Points, Reals
 
 TOGETHER = 1e-9  # m, and of the distance from the origin: points that are nearer at rest are one
+ROUNDING = 1e-14  # m, and of that distance: elongations that are none
 NEAR = 1e-6  # rad or so: two points that met at rest are still so near that their distance is its derivative times phi
 
 
@@ -195,7 +196,11 @@ class Spring:
             e += span - rest
             first += np.where(still, 0.0, rate)
             second += np.where(still, 0.0, bend)
-        return e, first, second
+        return np.where(np.abs(e) <= ROUNDING * self._reach, 0.0, e), first, second
+
+    @property
+    def _reach(self) -> float:
+        return 1 + max(abs(spot.at) for spot in self.spots)
 
     @property
     def _sense(self) -> float:

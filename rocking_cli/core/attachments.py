@@ -123,7 +123,7 @@ def attach(carrier: Carrier, loads: Sequence[Load], ties: Sequence[Tie]) -> Iter
         bodies = [spot.body for spot in spots if spot.body is not None]
         if not bodies:
             raise Refused(loc, "from", "both ends are on the ground: nothing stretches it")
-        yield loc, tie.attached(spots, carrier.count(bodies[0], each=tie.each))
+        yield loc, tie.attached(spots, max(carrier.count(body, each=tie.each) for body in bodies))
 
 
 def _own_name(name: str, names: set[str], loc: Loc) -> None:

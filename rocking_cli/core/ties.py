@@ -109,6 +109,8 @@ class Tie(Described):
         for key in ("stiffness", "area", "length", "only", "prestress"):
             if getattr(self, key):
                 raise geometry_error(key, "a bed has a modulus and nothing else")
+        if self.bed is not None and self.bed.start == self.bed.end:
+            raise geometry_error("bed", "its face has no length")
         if self.modulus is None:
             raise geometry_error("modulus", "a bed needs its modulus, N/m per metre of the face")
 

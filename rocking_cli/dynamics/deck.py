@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.outcome import Outcomes
 
 Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Number = TypeVar("Number", np.float64, np.int64)
 
 NOTHING, NO_IMPACTS = np.empty(0), np.empty((0, 3))
 RELEASE_DT = 0.005  # s between samples of a free motion without a record
@@ -87,7 +89,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
     for model in models:
         structures.append((cells, len(model.forces), model.is_linear))
         cells += len(model.forces)
-    us, vs, aheads, v_aheads = _Row(), _Row(), _Row(), _Row()
+    us, vs, aheads, v_aheads, v_aboves = _Row(), _Row(), _Row(), _Row(), _Row()
     any_vertical = any(motion is not None and motion.vertical is not None for motion in motions)
     tied = any_vertical and any(len(model.held) for model in models)
     for motion in motions:
@@ -97,7 +99,8 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         length = max(u.size, ceil((v.size - 1) * v_dt / dt) + 1)
         places = (*us.add(u), *vs.add(v), *aheads.add(_strongest_to_come(np.abs(u), 1.0, length)))
         if any_vertical:
-            v_aheads.add(_strongest_to_come(np.maximum(-v, 0.0), dt / v_dt, length))  # beside the other
+            for row, strength in ((v_aheads, -v), (v_aboves, v)):  # beside the other
+                row.add(_strongest_to_come(np.maximum(strength, 0.0), dt / v_dt, length))
         records.append((*places, dt, v_dt))
     return kernels.Deck(
         np.array(structures, dtype=np.int64),
@@ -108,11 +111,13 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         _joined([model.held[..., 4] if len(model.held) else np.zeros(model.forces.shape[:2]) for model in models])
         if tied
         else np.empty((0, 2)),
+        _corners(models),
         np.array(records),
         us.joined(),
         vs.joined(),
         aheads.joined(),
         v_aheads.joined(),
+        v_aboves.joined(),
     )
 
 
@@ -121,6 +126,14 @@ def _three_forces(model: Model) -> Reals:
     cells = len(model.forces)
     held = model.held[..., :4] if len(model.held) else np.zeros((cells, 2, 4))
     return np.concatenate([model.forces.reshape(cells, 2, 2, 4), held[:, :, None, :]], axis=2)
+
+
+def _corners(models: Sequence[Model]) -> Integers:
+    """The corners below each cell of all models; of no rows if none has any."""
+    if not any(len(model.corners) for model in models):
+        return np.zeros((0, 2), np.int64)
+    alone = (np.zeros((len(model.forces), 2), np.int64) for model in models)
+    return _joined([model.corners if len(model.corners) else no for model, no in zip(models, alone, strict=True)])
 
 
 class _Row:
@@ -154,5 +167,5 @@ def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:
     return result
 
 
-def _joined(arrays: Sequence[Reals]) -> Reals:
+def _joined(arrays: Sequence[NDArray[Number]]) -> NDArray[Number]:
     return np.ascontiguousarray(arrays[0] if len(arrays) == 1 else np.concatenate(arrays))

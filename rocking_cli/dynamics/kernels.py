@@ -50,6 +50,7 @@ IDLE = 10_000  # of these intervals without impact: swinging in a hollow beyond 
 LOOPS = 10_000  # events in one sample interval, or a piece of it, before giving up
 STRIDE = 100.0  # of 1/p: the longest step of the closed form, whose cosh would overflow at 700
 SLOW = 0.5  # of 1/p: the interval to go on with after the record
+BEHIND = 1e-11  # of a cell: how far behind a corner of the force a motion goes on
 COINCIDE = 1e-9  # of an interval: samples of two components closer than this are at one moment
 
 
@@ -66,12 +67,14 @@ class Deck(NamedTuple):
     certain: (
         np.ndarray
     )  # (cells, 2): largest ground acceleration, over g, that cannot stop an outward motion from there
-    held: np.ndarray  # (cells, 2): the largest Q/(g |B|) still to come; of no rows where `forces` are of two
+    held: np.ndarray  # (cells, 2): the largest |Q|/(g |B|) still to come; of no rows where `forces` are of two
+    corners: np.ndarray  # int (cells, 2): corners of the force up to the start of each cell; of no rows if none has any
     records: np.ndarray  # (k, 8): see the columns above
     u: np.ndarray  # horizontal ground acceleration of all records [m/s2], straight between samples, zero after the last
     v: np.ndarray  # vertical ground acceleration
     ahead: np.ndarray  # at each sample of the horizontal component, the largest |u| from there on [m/s2]
     v_ahead: np.ndarray  # and the largest -v
+    v_above: np.ndarray  # and the largest v
 
 
 class Samples(NamedTuple):
@@ -92,6 +95,7 @@ class Structure(NamedTuple):
     angles: np.ndarray
     certain: np.ndarray
     held: np.ndarray
+    corners: np.ndarray
 
 
 class Motion(NamedTuple):
@@ -105,6 +109,7 @@ class Motion(NamedTuple):
     v_dt: float
     ahead: np.ndarray
     v_ahead: np.ndarray
+    v_above: np.ndarray
 
 
 class Law(NamedTuple):
@@ -388,6 +393,45 @@ def inspect(forces, law, ground, t, tau, state, size, ended, marks):
 
 
 @compile_inline
+def corners_below(corners, law, q):
+    """How many corners of the force lie below q."""
+    return corners[min(max(int(q * law.per_cell), 0), corners.shape[0] - 1), law.d]
+
+
+@compile_inline
+def passes(corners, law, q, q1):
+    """Whether there is a corner of the force between two places."""
+    return corners.shape[0] > 0 and corners_below(corners, law, q) != corners_below(corners, law, q1)
+
+
+@compile_kernel
+def up_to_corner(forces, corners, law, ground, tau, state, size, ended):
+    """The part of a step up to the first corner of the force, which no step of any order may pass, and q behind it.
+
+    Where the step meets none, all of it and NaN.
+    """
+    q, w, f = state
+    q1, w1, f1 = ended
+    reached, until = q1, size
+    rising = w > 0 or (w == 0 and (q == 0 or f > 0))
+    if rising == (w1 <= 0):  # it may go there and come back
+        turn, extreme = turning_point(forces, law, ground, tau, state, size, f1, rising)
+        if passes(corners, law, q, extreme):
+            reached, until = extreme, turn
+    if not passes(corners, law, q, reached):
+        return size, nan
+    outward = reached > q
+    way = 1 if outward else -1
+    here = corners_below(corners, law, q)
+    k = min(max(int(q * law.per_cell), 0), corners.shape[0] - 1)
+    while corners[k, law.d] == here:
+        k += way
+    node = k if outward else k + 1
+    x, _ = locate(forces, law, ground, tau, state, 0.0, until, nan, HEIGHT, node / law.per_cell, not outward)
+    return x, (node + way * BEHIND) / law.per_cell
+
+
+@compile_inline
 def misses(law, rtol, state, ended, e_q, e_w):
     """The error of a step over what is allowed: rtol of q and w, and of a hundredth of phi_cr where they are small."""
     if law.exact:
@@ -412,12 +456,12 @@ def falls(state, ended):
 
 
 @compile_inline
-def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
+def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, marks):
     """Advance a motion from tau towards end, to the first impact or the kinematic limit.
 
     Parameters
     ----------
-    forces, law, ground : ndarray, Law, Ground
+    forces, corners, law, ground : ndarray, ndarray, Law, Ground
         What the motion obeys.
     t, tau, end : float
         Time of the sample, and from there the start and the end of the flight [s].
@@ -444,6 +488,12 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
             size = min(size, -2.05 * w / f)
         whole = size == left
         ended, e_q, e_w = advance(forces, law, ground, tau, state, size)
+        part, behind = size, nan
+        if corners.shape[0] > 0:
+            part, behind = up_to_corner(forces, corners, law, ground, tau, state, size, ended)
+            if isfinite(behind):
+                size, whole = part, False
+                ended, e_q, e_w = advance(forces, law, ground, tau, state, size)
         error = misses(law, rtol, state, ended, e_q, e_w)
         if not error <= 1:
             h = size * (max(0.2, 0.9 * error**-0.2) if isfinite(error) else 0.1)
@@ -460,7 +510,9 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
             size = inside
             if hit:
                 return IMPACT, end if whole else min(tau + size, end), ended, h
-        state = ended
+            if inside < part:
+                behind = nan
+        state = State(behind, ended.w, ended.f) if isfinite(behind) else ended
         tau = end if whole else tau + size
         if state.q >= law.q_end:
             return LIMIT, tau, state, h
@@ -468,21 +520,25 @@ def fly(forces, law, ground, t, tau, end, state, h, rtol, marks):
 
 
 @compile_kernel
-def is_certain(structure, d, q, strongest, weight):
+def is_certain(structure, d, q, strongest, weight, most_weight):
     """Whether an outward motion from q beyond phi_cr overturns whatever comes: nothing later can turn it back.
 
-    `weight` is the least (g + v_g'')/g to come: less weight pulls it over, while what ties it back stays.
+    `weight` and `most_weight` are the least and the largest (g + v_g'')/g to come: less weight pulls less, while what
+    ties it back stays, and more holds it against what pushes it over.
     """
     numbers = structure.numbers
     if weight <= 0:
         return False
-    held = structure.held.shape[0] > 0 and weight != 1
+    held = structure.held.shape[0] > 0 and (weight != 1 or most_weight != 1)
     if structure.linear:
         return not held and q >= numbers[d, Q_CR] + numbers[d, KAPPA_G] * (strongest / weight)
     cell = min(int(q * numbers[d, PER_CELL]), structure.certain.shape[0] - 1)
+    needed = strongest / weight
     if held:  # -w g G - Q = -w (g G + Q) - (1 - w) Q
-        strongest += (1 - weight) * numbers[d, GRAVITY] * structure.held[cell, d]
-    return numbers[d, GRAVITY] * structure.certain[cell, d] >= strongest / weight
+        tied = numbers[d, GRAVITY] * structure.held[cell, d]
+        light, heavy = strongest + (1 - weight) * tied, strongest + (most_weight - 1) * tied
+        needed = max(light / weight, heavy / most_weight)
+    return numbers[d, GRAVITY] * structure.certain[cell, d] >= needed
 
 
 @compile_inline
@@ -549,7 +605,9 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, samples):
     nothing = np.zeros(MARKS)
     s = 1.0 - 2.0 * law.d
     while drawn < samples.phi.size and drawn * dt <= t + end:
-        _, tau, state, h = fly(structure.forces, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing)
+        _, tau, state, h = fly(
+            structure.forces, structure.corners, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing
+        )
         phi, speed = angle(structure, law.d, state.q)
         samples.phi[drawn], samples.rate[drawn] = s * phi, s * state.w * speed
         drawn += 1
@@ -562,8 +620,8 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
 
     It begins at rest, with q = `start`. Returns how it ended.
     """
-    linear, numbers, forces, _, _, _ = structure
-    u, factor, dt, v, v_factor, v_dt, ahead, v_ahead = motion
+    linear, numbers, forces, _, _, _, corners = structure
+    u, factor, dt, v, v_factor, v_dt, ahead, v_ahead, v_above = motion
     every, phi_out, rate_out, impacts = samples
     marks[:] = nan
     marks[PEAK : PEAK + 2] = 0.0
@@ -622,6 +680,7 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
             state = State(q, w, f)
             ended, e_q, e_w = advance(forces, law, Ground(s * u0, s * ramp, gravity, 0.0), 0.0, state, span)
             uneventful = ended.q < law.q_end and (rises(law, state, ended) or falls(state, ended))
+            uneventful = uneventful and not passes(corners, law, q, ended.q)
             if uneventful and misses(law, rtol, state, ended, e_q, e_w) <= 1:
                 marks[PEAK + d] = max(marks[PEAK + d], ended.q)
                 q, w, f = ended
@@ -666,7 +725,7 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
                     known = True
                 ground = Ground(s * u0, s * ramp, g, grade)
                 began, state, step = tau, State(q, w, f), h
-                event, tau, (q, w, f), h = fly(forces, law, ground, t, tau, end, state, h, rtol, marks)
+                event, tau, (q, w, f), h = fly(forces, corners, law, ground, t, tau, end, state, h, rtol, marks)
                 if not shaken and drawn * out_dt <= t + tau and drawn < phi_out.size:
                     flight = (began, tau, state, step)
                     drawn = draw(structure, law, ground, t, flight, rtol, out_dt, drawn, samples)
@@ -702,7 +761,8 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
         if not resting and w >= 0 and q > law.q_cr:
             strongest = ahead[k] * abs(factor) if k < ahead.size else 0.0
             weight = 1 - v_ahead[k] * v_factor / gravity if k < v_ahead.size and v_ahead[k] > 0 else 1.0
-            if is_certain(structure, d, q, strongest, weight):
+            most_weight = 1 + v_above[k] * v_factor / gravity if k < v_above.size else 1.0
+            if is_certain(structure, d, q, strongest, weight, most_weight):
                 marks[ENDED], marks[SIDE] = t, d
                 return OVERTURNED
         if marks[IMPACTS] - before > most_impacts or idle > IDLE:
@@ -759,7 +819,10 @@ def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
         cells = slice(deck.structures[m, 0], deck.structures[m, 0] + deck.structures[m, 1])
         linear = deck.structures[m, 2] == 1
         held = deck.held[cells] if deck.held.shape[0] > 0 else deck.held
-        structure = Structure(linear, numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells], held)
+        corners = deck.corners[cells] if deck.corners.shape[0] > 0 else deck.corners
+        structure = Structure(
+            linear, numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells], held, corners
+        )
         of, size = deck.records[r], what[SIZE]
         horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
         vertical = slice(int(of[V_FIRST]), int(of[V_FIRST]) + int(of[V_SIZE]))
@@ -774,6 +837,7 @@ def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
             of[V_DT],
             deck.ahead[later],
             deck.v_ahead[v_later],
+            deck.v_above[v_later],
         )
         marks = all_marks[i]
         marks[STATUS] = follow(structure, motion, what[START], rtol, most_impacts, samples, marks)

@@ -26,6 +26,7 @@ from rocking_cli.dynamics.tables import Table, tabulate
 from rocking_cli.errors import InputError, Problem
 
 Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
 ModelName = Literal["nonlinear", "linear1", "linear2"]
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
@@ -64,6 +65,8 @@ class Model:
     most_eta : tuple of float
         The restitution with which an impact that ends motion in the positive and in the negative direction keeps all
         energy; 1 for a symmetric structure.
+    corners : ndarray
+        See `rocking_cli.dynamics.kernels.Deck`; of no rows where no tie goes slack or comes into play.
     """
 
     name: ModelName
@@ -79,6 +82,7 @@ class Model:
     one_sided: Direction | None = None
     uplift_error: float = 0.0
     most_eta: tuple[float, float] = (1.0, 1.0)
+    corners: Integers = field(default_factory=lambda: np.zeros((0, 2), np.int64))
 
     @property
     def p(self) -> float:
@@ -110,8 +114,10 @@ class Model:
         """Whether both directions are alike, so that a reversed motion does the same."""
         if self.one_sided is not None:
             return False
-        pairs = ((self.numbers[0], self.numbers[1]), *((of[:, 0], of[:, 1]) for of in (self.forces, self.certain)))
-        return all(np.allclose(one, other, rtol=0, atol=ALIKE * np.abs(one).max()) for one, other in pairs)
+        pairs = ((of[:, 0], of[:, 1]) for of in (self.forces, self.certain, self.held) if len(of))
+        same = all(np.allclose(one, other, rtol=0, atol=ALIKE * np.abs(one).max()) for one, other in pairs)
+        one, other = self.numbers  # each in a unit of its own
+        return same and np.allclose(one, other, rtol=ALIKE, atol=ALIKE**2)
 
     def q(self, ratio: float) -> float:
         """The kernel's coordinate at a signed rotation given as a fraction of its direction's phi_cr."""
@@ -199,11 +205,12 @@ def _nonlinear(label: str, mechanism: Mechanism, statics: tuple[Statics, Statics
     )
     tied = any(table.held.size for table in tables)
     held = np.stack([_rows(table.held, len(table.forces)) for table in tables], axis=1) if tied else np.zeros((0, 2, 5))
+    corners = np.stack([table.corners for table in tables], axis=1)
     phi_cr = statics[0].reference, statics[1].reference
     ends = statics[0].phi_cr is None, statics[1].phi_cr is None
     return Model(
         "nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables=tables, held=held,
-        ends_at_limit=ends,
+        corners=corners if corners.any() else corners[:0], ends_at_limit=ends,
     )  # fmt: skip
 
 

@@ -7,12 +7,29 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from pydantic import ValidationError
+
 from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.statics import STRAIGHT
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
-from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+
+
+def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
+    """A structure with another restitution of every impact: the rebound of one that rocks to one side only.
+
+    Raises `InputError` if it cannot have it.
+    """
+    field = "restitution" if mechanism.rocks_both_ways else "rebound"
+    try:
+        return mechanism.model_copy(update={field: eta})
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        reason = first["ctx"]["reason"] if first["type"] == "geometry" else f"{first['msg']}, got {eta:g}"
+        name = mechanism.name or mechanism.mechanism
+        raise InputError(Problem(f"{name}: {reason[0].lower()}{reason[1:]}", field=field)) from None
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,9 +133,8 @@ class Prepared:
         return [self.model(name) for name in names]
 
     def with_eta(self, eta: float) -> Prepared:
-        """The same structure with another restitution of every impact."""
-        field = "restitution" if self.mechanism.rocks_both_ways else "rebound"
-        return Prepared(self.mechanism.model_copy(update={field: eta}), self.file)
+        """The same structure with another restitution of every impact. Raises `InputError` if it cannot have it."""
+        return Prepared(with_restitution(self.mechanism, eta), self.file)
 
     @contextmanager
     def _named(self) -> Iterator[None]:

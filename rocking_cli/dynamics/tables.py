@@ -17,6 +17,8 @@ from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.statics import Statics
 
 Reals = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Integers = NDArray[np.int64]
 TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, of thick short arches to 3e-11
 FEWEST, MOST = 2048, 16384  # cells from rest to the kinematic limit
 END = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at the limit itself
@@ -40,7 +42,9 @@ class Table:
         Width of a cell, in q [kg^(1/2) m].
     held : ndarray, shape (n, 5)
         The cubic of Q/(g sqrt(I)), the part of the first force that does not scale with g, and from the start of each
-        cell on the largest Q/(g |B|); of no rows if nothing ties the structure.
+        cell on the largest |Q|/(g |B|); of no rows if nothing ties the structure.
+    corners : ndarray of int, shape (n,)
+        How many corners of the force there are up to the start of each cell; a cell that has one in it is between two.
     """
 
     forces: Reals
@@ -49,6 +53,7 @@ class Table:
     nodes: Reals
     cell: float
     held: Reals = field(default_factory=lambda: np.zeros((0, 5)))
+    corners: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
     def end(self) -> float:
@@ -98,17 +103,25 @@ def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> 
 def _bends(mechanism: Mechanism, direction: Direction, cells: int) -> Reals:
     """Where ties go slack or come into play, as shares of the range of q in a direction."""
     shares = []
+    phi, _ = _even_steps(mechanism, direction, cells)
     slack = partial(mechanism.slackness, direction=direction)
-    if len(slack(np.zeros(1))):
-        phi, _ = _even_steps(mechanism, direction, cells)
-        sign = slack(phi) > 0
-        for row, k in zip(*np.nonzero(sign[:, :-1] != sign[:, 1:]), strict=True):
-            low, high = phi[k], phi[k + 1]
-            for _ in range(50):
-                middle = (low + high) / 2
-                low, high = (middle, high) if (slack(np.array([middle]))[row, 0] > 0) == sign[row, k] else (low, middle)
-            shares.append((k + (low - phi[k]) / (phi[k + 1] - phi[k])) / cells)
+    sign, bent = _bent(mechanism, direction, phi)
+    for row, k in zip(*np.nonzero(bent), strict=True):
+        low, high = phi[k], phi[k + 1]
+        for _ in range(50):
+            middle = (low + high) / 2
+            low, high = (middle, high) if (slack(np.array([middle]))[row, 0] > 0) == sign[row, k] else (low, middle)
+        shares.append((k + (low - phi[k]) / (phi[k + 1] - phi[k])) / cells)
     return np.array(shares)
+
+
+def _bent(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple[Bools, Bools]:
+    """For each tie that acts in one sense only: whether it is on either side at rotations, and changes between two."""
+    slack = mechanism.slackness(phi, direction)
+    sign = slack > 0
+    # One that has no force at rest is, from there on, on the side to which it sets out.
+    sign[:, 0] = np.where(slack[:, 0] == 0, sign[:, 1], sign[:, 0])
+    return sign, sign[:, :-1] != sign[:, 1:]
 
 
 def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Table:
@@ -117,19 +130,27 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Ta
     c = 1 / np.sqrt(at.I)
     dc = -at.J * c**4  # over q, as all slopes here; I' = 2 J
 
-    def over_root(y: Reals, dy: Reals) -> Reals:
-        return _cubics(width, y * c, dy * c**2 + y * dc)
+    bent: Bools = np.any(_bent(mechanism, direction, phi)[1], axis=0)
+
+    def over_root(y: Reals, dy: Reals, energy: Reals | None = None) -> Reals:
+        found = _cubics(width, y * c, dy * c**2 + y * dc)
+        if energy is not None and bent.any():
+            # No cubic follows a corner: a parabola between the same ends that does the same work.
+            v0, v1, mean = (y * c)[:-1][bent], (y * c)[1:][bent], np.diff(energy)[bent] / width
+            bow = 3 * (v0 + v1 - 2 * mean)
+            found[bent] = np.stack([v0, v1 - v0 - bow, bow, np.zeros_like(bow)], axis=1)
+        return found
 
     gravity = mechanism.gravity
     restoring = at.restoring(gravity)
-    forces = [over_root(restoring, at.stiffness(gravity)), over_root(at.B, at.dB)]
+    forces = [over_root(restoring, at.stiffness(gravity), at.V + at.U / gravity), over_root(at.B, at.dB)]
     # An outward motion gains energy as long as -V' - s B u >= 0, and does so for good where that holds up to the end.
     with np.errstate(divide="ignore", invalid="ignore"):
         enough = np.where(restoring < 0, -restoring / np.abs(at.B), -1.0)
-        most_held = np.where(at.Q > 0, at.Q / (gravity * np.abs(at.B)), 0.0)
+        most_held = np.where(at.Q != 0, np.abs(at.Q) / (gravity * np.abs(at.B)), 0.0)
     certain = np.minimum.accumulate(enough[::-1])[::-1]
     to_come = np.maximum.accumulate(most_held[::-1])[::-1]
-    held = np.column_stack([over_root(at.Q / gravity, at.dQ / gravity), to_come[:-1]])
+    held = np.column_stack([over_root(at.Q / gravity, at.dQ / gravity, at.U / gravity), to_come[:-1]])
     return Table(
         np.hstack(forces),
         np.hstack([_cubics(width, phi, c), _cubics(width, c, dc)]),
@@ -137,6 +158,7 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Ta
         phi,
         width,
         held if at.Q.any() else held[:0],
+        np.cumsum(np.concatenate([[False], bent[1:] | bent[:-1]])),
     )
 
 

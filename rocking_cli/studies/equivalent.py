@@ -16,6 +16,7 @@ from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import ModelName, build_model, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
+from rocking_cli.dynamics.prepared import with_restitution
 from rocking_cli.dynamics.verdict import CLOSE
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -149,8 +150,12 @@ def equivalent(
     Raises
     ------
     InputError
-        If a restitution cannot be used.
+        If a restitution cannot be used, or a structure rocks to one side only, as no block that all could share does.
     """
+    for each in mechanisms:
+        if not each.rocks_both_ways:
+            reason = f"{_name(each)}: it rocks in the {each.one_sided} direction only, and the linear block in both"
+            raise InputError(Problem(reason, field="one_sided"))
     first = _equivalence(mechanisms[0])
     ground = pulse.sampled().scaled(polarity)
     direction = _lifted_first(first, pulse, ground, polarity, mechanisms[0].gravity)
@@ -221,7 +226,7 @@ def _member(
 ) -> Member:
     block = _equivalence(mechanism)[direction]
     own = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
-    shaken = mechanism if eta is None else mechanism.model_copy(update={"restitution": eta})
+    shaken = mechanism if eta is None else with_restitution(mechanism, eta)
     try:
         history = follow(build_model(shaken, "nonlinear"), own.sampled().scaled(polarity), tail=_tail(own, block.p))
     except MechanismError as error:

@@ -176,7 +176,7 @@ def neighbours(
     if release is None and motion is not None and not can_lift(model, motion, 1 + around.amplitude):
         return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False)
     factors = np.concatenate([[1.0], around.factors()])
-    etas = np.concatenate([[model.eta], around.etas(model)])
+    etas = np.concatenate([np.full((1, 2), np.nan), around.etas(model)])  # itself, with its own
     runs, tilts = Runs.of(0, 0, scale=factors, eta=etas), None if release is None else release * factors
     found = follow([model], [motion], runs, release=tilts, rtol=rtol, threads=threads)
     itself, others = found.overturned[0], found.overturned[1:]

@@ -46,8 +46,8 @@ class Sizes:
             return self.mechanism.enlarged(scale)
         except ValidationError as error:
             first = error.errors()[0]
-            field = ".".join(str(part) for part in first["loc"])
-            message = f"{self._named(scale)} cannot be built: {field}: {first['msg']}"
+            place = [*first["loc"], *([first["ctx"]["field"]] if first["type"] == "geometry" else [])]
+            message = f"{self._named(scale)} cannot be built: {'.'.join(map(str, place))}: {first['msg']}"
             raise InputError(Problem(message, hint="ask for other sizes")) from None
 
     def equivalence(self, scale: float) -> Equivalence:

@@ -12,7 +12,7 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName
-from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.dynamics.prepared import Prepared, with_restitution
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.sizes import Sizes
@@ -85,7 +85,7 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, f
     """
     # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
     found = pulsed_model(Prepared(mechanism, file), model, parse_shape("sine"), eta=eta)
-    given = mechanism if eta is None else Prepared(mechanism, file).with_eta(eta).mechanism
+    given = mechanism if eta is None else with_restitution(mechanism, eta)
     sizes = Sizes(given, model, found.direction)
     return Shape(found, own=None if sizes.are_alike() else sizes, hung=bool(mechanism.attached))
 

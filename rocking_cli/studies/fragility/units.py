@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName, build_model
+from rocking_cli.dynamics.prepared import with_restitution
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import FAILED, Rows
-from rocking_cli.studies.fragility.study import RESTITUTION, Sample
+from rocking_cli.studies.fragility.study import Sample
 
 Integers = NDArray[np.int64]
 
@@ -170,6 +171,6 @@ class _Models:
             if len(self._kept) == self.KEPT:
                 del self._kept[next(iter(self._kept))]
             # With a restitution that every run replaces, so that none is asked of the kinematics, which may have none.
-            given = {} if self._eta is None else {RESTITUTION: self._eta}
-            self._kept[key] = build_model(sample.mechanism.model_copy(update=given), self._name)
+            given = sample.mechanism if self._eta is None else with_restitution(sample.mechanism, self._eta)
+            self._kept[key] = build_model(given, self._name)
         return self._kept[key]

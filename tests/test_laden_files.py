@@ -1,0 +1,145 @@
+"""Files in which loads, ties and supports are wrong: each gets one message, with its line and its field."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from rocking_cli import Registry, load_structure
+from rocking_cli.errors import InputError
+from tests.conftest import EXAMPLES
+from tests.test_cli import run
+
+BARE = "mechanism: block\nwidth: 1\nheight: 5\n"  # line 3
+HEAVY = BARE + "density: 2000\ndepth: 1\n"  # line 5
+FRAME = "mechanism: symmetric_frame\ncolumn_width: 1\ncolumn_height: 6\nmass_ratio: 1.5\nmass: 6e4\n"
+UNEQUAL = (EXAMPLES / "frame.yaml").read_text(encoding="utf-8")
+BAR = "from: {ground: [-3, 1]}, to: {at: [-0.5, 4]}"
+
+
+def load(fields, of=HEAVY):
+    return f"{of}loads:\n  - {{name: a, {fields}}}\n"  # line 7
+
+
+def tie(fields, of=HEAVY):
+    return f"{of}ties:\n  - {{name: t, {fields}}}\n"  # line 7
+
+
+CASES = [
+    # places
+    (load("mass: 5, at: [0.6, 1]"), 7, "loads[1].at", r"\[0.6, 1\] lies outside block, whose corners are from x"),
+    (load("mass: 5, at: [0.1, 1], body: colums", FRAME), 7, "loads[1].body", "no body 'colums': did you mean columns"),
+    (load("mass: 5, at: [0.1, 1]", FRAME), 7, "loads[1].body", "is missing: say which body, of columns, beam"),
+    (tie("from: {ground: [-3, 1]}, to: {at: [0, 9]}, stiffness: 1"), 7, "ties[1].to.at", "lies outside block"),
+    (tie("path: [{ground: [0, 0]}, {at: [0, 9]}], stiffness: 1"), 7, "ties[1].path[2].at", "lies outside block"),
+    (tie("bed: {from: [-0.5, 0], to: [0.7, 0]}, modulus: 1"), 7, "ties[1].bed.to", "lies outside block"),
+    # what nothing stretches
+    (tie("from: {at: [0, 1]}, to: {at: [0, 4]}, stiffness: 1"), 7, "ties[1].name", "nothing stretches 't'"),
+    (tie("from: {ground: [0, 1]}, to: {ground: [0, 4]}, stiffness: 1"), 7, "ties[1].from", "both ends are on the gr"),
+    (tie("from: {ground: [0.5, 0]}, to: {at: [0.5, 0]}, stiffness: 1", HEAVY + "one_sided: positive\n"), 8,
+     "ties[1].name", "no motion of the structure changes its length"),
+    (tie(f"{BAR}, stiffness: 1, only: tension", HEAVY + "one_sided: negative\n"), 8, "ties[1].name",
+     "nothing stretches 't' in tension"),
+    # masses
+    (load("mass: 5, at: [0, 1]", BARE), 5, "loads", "the structure has no masses: give density and depth, or its mass"),
+    (tie(f"{BAR}, stiffness: 1", BARE), 5, "ties", "the structure has no masses"),
+    (HEAVY + "mass: 5\n", 6, "mass", "give mass, or density and depth: one of them"),
+    (BARE + "density: 5\n", 1, "depth", "is missing: density needs the size out of plane"),
+    (load("at: [0, 1]"), 7, "loads[1].mass", "give a mass or a force: one of them"),
+    (load("mass: 5, force: [1, 1], at: [0, 1]"), 7, "loads[1].mass", "give a mass or a force: one of them"),
+    # what cannot stand
+    (load("force: [1e6, 0], at: [0, 1]"), 7, "loads", "in the positive direction with 9.51e.05 N m more"),
+    (load("force: [-1e6, 0], at: [0, 1]"), 7, "loads", "cannot stand under them: .* in the negative direction"),
+    (tie(f"{BAR}, stiffness: 1, prestress: 1e6"), 7, "ties", "cannot stand under them: .* in the negative direction"),
+    # shares, rebound, restitution
+    (load("mass: 5, at: [0, 1], weight: 1.5"), 7, "loads[1].weight", "must be at most 1, got 1.5"),
+    (load("mass: 5, at: [0, 1], horizontal: -0.5"), 7, "loads[1].horizontal", "must be at least 0, got -0.5"),
+    (load("force: [1, 1], at: [0, 1], weight: 0.5"), 7, "loads[1].weight", "a force has no mass to share"),
+    (load("mass: 5, at: [0, 1], weight: 1, floor: borne"), 7, "loads[1].weight", "floor: borne sets it already"),
+    (BARE + "one_sided: positive\nrebound: 1\n", 5, "rebound", "must be less than 1, got 1"),
+    (BARE + "one_sided: positive\nrebound: -0.1\n", 5, "rebound", "must be at least 0, got -0.1"),
+    (BARE + "rebound: 0.1\n", 4, "rebound", "goes with one_sided"),
+    (BARE + "one_sided: positive\nrestitution: 0.9\n", 5, "restitution", "it gives rebound instead"),
+    (BARE + "one_sided: left\n", 4, "one_sided", "must be positive or negative, got the text left"),
+    (load("mass: 5, at: [0, 1]", HEAVY + "one_sided: positive\n"), 1, "rebound", "give a number in .0, 1."),
+    (UNEQUAL + "restitution: 1\n", 1 + UNEQUAL.count("\n"), "restitution", "at most 0.99.*: .* an impact adds energy"),
+    (UNEQUAL + "restitution: {positive_to_negative: 1.2, negative_to_positive: 0.5}\n", 1 + UNEQUAL.count("\n"),
+     "restitution.positive_to_negative", "an impact adds energy"),
+    # what is to come
+    (tie(f"{BAR}, stiffness: 1, yield: 5"), 7, "ties[1].yield", "a yield force .* is not in this version"),
+    (tie(f"{BAR}, stiffness: 1, break: 5"), 7, "ties[1].break", "an elongation at which it breaks"),
+    (tie(f"{BAR}, stiffness: 1, damper: 5"), 7, "ties[1].damper", "a damper .* is not in this version"),
+    (tie(f"{BAR}, stiffness: 1, inerter: 5"), 7, "ties[1].inerter", "an inerter .* is not in this version"),
+    (HEAVY + "dampers:\n  - {name: t}\n", 7, "dampers", "a damper is not in this version"),
+    (HEAVY + "inerters:\n  - {name: t}\n", 7, "inerters", "an inerter is not in this version"),
+    # names
+    (load("mass: 5, at: [0, 1]") + "  - {name: a, mass: 5, at: [0, 1]}\n", 8, "loads[2].name", "'a' is there already"),
+    (load("mass: 5, at: [0, 1]") + f"ties:\n  - {{name: a, {BAR}, stiffness: 1}}\n", 9, "ties[1].name", "'a' is there"),
+    (HEAVY + "loads:\n  - &one {name: a, mass: 5, at: [0, 1]}\n  - *one\n", 7, "loads[2].name", "'a' is there already"),
+    (HEAVY + 'loads:\n  - {name: "a\\x1b[31mred", mass: 5, at: [0, 1]}\n', 7, "loads[1].name", "printable characters"),
+    (load('body: "a\\x1b[31mred", mass: 5, at: [0, 1]'), 7, "loads[1].body", "printable characters"),
+    # stiffness and path
+    (tie(f"{BAR}, stiffness: 1, area: 1, modulus: 1"), 7, "ties[1].stiffness", "give stiffness, or area and modulus"),
+    (tie(BAR), 7, "ties[1].stiffness", "give stiffness, or area and modulus: one of them"),
+    (tie(f"{BAR}, area: 1"), 7, "ties[1].stiffness", "give stiffness, or area and modulus: one of them"),
+    (tie(f"{BAR}, stiffness: 1, length: 1"), 7, "ties[1].length", "a stiffness needs no length"),
+    (tie("from: {ground: [0, 0]}, to: {at: [0, 0]}, area: 1, modulus: 1"), 7, "ties[1].length", "together at rest"),
+    (tie("path: [{ground: [0, 0]}], stiffness: 1"), 7, "ties[1].path", "must have at least 2 entries, has 1"),
+    (tie(f"path: [{{ground: [0, 0]}}, {{at: [0, 0]}}], {BAR}, stiffness: 1"), 7, "ties[1].from", "one of them"),
+    (tie("from: {ground: [0, 0]}, stiffness: 1"), 7, "ties[1].from", "give from and to, or a path of points, or a bed"),
+    (tie(f"{BAR}, stiffness: 1, only: tension, prestress: -5"), 7, "ties[1].prestress", "acts in tension only"),
+    (tie("bed: {from: [-0.5, 0], to: [0.5, 0]}, stiffness: 5"), 7, "ties[1].stiffness", "a bed has a modulus"),
+    (tie("bed: {from: [-0.5, 0], to: [0.5, 0]}"), 7, "ties[1].modulus", "a bed needs its modulus"),
+    (tie("bed: {from: [0.5, 0], to: [0.5, 0]}, modulus: 1"), 7, "ties[1].bed", "its face has no length"),
+    # numbers that are none, or far too large
+    (load("mass: .nan, at: [0, 1]"), 7, "loads[1].mass", "must be a finite number, got nan"),
+    (load("mass: 5, at: [.nan, 1]"), 7, "loads[1].at[1]", "must be a finite number, got nan"),
+    (load("mass: 1e308, at: [0, 1]"), 7, "loads[1].mass", "at most 1e.12 kg, got 1e.308"),
+    (load("force: [1e308, 0], at: [0, 1]"), 7, "loads[1].force[1]", "at most 1e.12, got 1e.308"),
+    (tie("from: {ground: [.inf, 1]}, to: {at: [0, 4]}, stiffness: 1"), 7, "ties[1].from.ground[1]", "finite"),
+    (tie("from: {ground: [1e308, 1]}, to: {at: [0, 4]}, stiffness: 1"), 7, "ties[1].from.ground[1]", "at most 1e.06"),
+    (HEAVY + "loads:\n" + "".join(f"  - {{name: a{k}, mass: 5, at: [0, 1]}}\n" for k in range(1100)), 7, "loads",
+     "must have at most 1000 entries, has 1100"),
+    (HEAVY + "loads: &all\n  - *all\n", 6, None, "nested too deep"),
+    (HEAVY + "loads: 5\n", 6, "loads", "must be a list, got 5"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "line", "field", "said"), CASES)
+def test_a_wrong_file_gets_one_message_at_its_place(text, line, field, said, tmp_path):
+    file = tmp_path / "s.yaml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        load_structure(file)
+    (problem,) = error.value.problems
+    assert (problem.line, problem.field) == (line, field) and problem.file == str(file)
+    assert re.search(said, problem.message), problem.message
+    assert "\x1b" not in str(error.value)
+
+
+def test_the_command_line_says_the_same(tmp_path):
+    file = tmp_path / "s.yaml"
+    file.write_text(load("mass: 5, at: [0.6, 1]"), encoding="utf-8")
+    for command in (("equiv",), ("respond", "--release", "1deg"), ("draw",)):
+        assert f"{file}:7:28: loads[1].at" in run(*command, file, code=2).stderr.replace("\n", "")
+
+
+def test_in_python_the_argument_is_named():
+    with pytest.raises(InputError, match=r"loads\[1\]\.at: \[0\.6, 1\] lies outside block"):
+        Registry()["block"](
+            width=1.0, height=5.0, mass=1.0, restitution=0.9, loads=[{"name": "a", "mass": 5.0, "at": [0.6, 1.0]}]
+        )
+
+
+def test_none_of_them_is_bare():
+    assert not Registry()["block"].from_fields({"width": 1.0, "height": 5.0, "loads": [], "ties": None}).attached
+
+
+def test_hundreds_of_each_stand(tmp_path):
+    loads = "".join(f"  - {{name: a{k}, mass: 5, at: [0, {1 + k / 300}]}}\n" for k in range(300))
+    ties = "".join(f"  - {{name: t{k}, {BAR}, stiffness: 1, only: tension}}\n" for k in range(300))
+    file = tmp_path / "s.yaml"
+    file.write_text(f"{HEAVY}loads:\n{loads}ties:\n{ties}", encoding="utf-8")
+    structure = load_structure(file)
+    assert len(structure.attached) == 600
