@@ -30,6 +30,7 @@ from rocking_cli import (
     measure,
     respond,
 )
+from rocking_cli.core.reactions import reactions
 from rocking_cli.studies.linearisation import linearisation
 
 DOCS = Path(__file__).resolve().parent
@@ -264,9 +265,59 @@ def pulses() -> Iterator[Check]:
                 2 * pi / high, "test_exact_pulse.py")  # fmt: skip
 
 
+def as_they_stand() -> Iterator[Check]:
+    """Loads, ties, supports, and forces at joints."""
+    test, weight = "test_loads_and_ties.py", 5000 * G  # of a block 1 m x 5 m
+
+    def tied(prestress: float, stiffness: float) -> Mechanism:
+        path = [{"ground": [0.0, 0.0]}, {"at": [0.0, 0.0]}]
+        tendon = {"name": "tendon", "path": path, "stiffness": stiffness, "prestress": prestress}
+        return make("block", width=1.0, height=5.0, density=1000.0, depth=1.0, ties=[tendon])
+
+    found = equivalent_block(tied(0.2 * weight, 0.0)).positive
+    expected = (0.5 * weight + 0.5 * 0.2 * weight) / (2.5 * weight)
+    yield Check("block with a prestressed tendon: uplift over $g$", "moments about the corner", expected, found.lambda_,
+                test)  # fmt: skip
+    found = equivalent_block(tied(0.0, 20 * weight / 5)).positive
+    # 0.5 cos phi - 2.5 sin phi + (20/5) 0.5^2 sin phi vanishes
+    yield Check("with an elastic one: critical rotation [rad]", "root of its moment, by hand", float(np.arctan(1 / 3)),
+                found.phi_cr, test)  # fmt: skip
+    interlock = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 8.0}
+    size = {"width": 0.6, "height": 8.0, "depth": 5.0, "density": 18000 / G}
+    facade, crushed = make("block", **size, interlock=interlock), {"strength": 1e6, "depth": 5.0}
+    friction = 2 * 0.4 * 40 * 41 * 0.577 * 0.2**2 * 0.5 * 18000  # of two walls, at a third of the height
+    yield Check("facade between crossing walls: uplift over $g$", "Circolare C8.7.1.2 and moments about its foot",
+                (432e3 * 0.3 + friction * 8 / 3) / (432e3 * 4), facade.uplift(Direction.POSITIVE), test)  # fmt: skip
+    yield Check("facade that crushes its foot: uplift over $g$", r"pivot moved by $N/(2 \sigma d)$",
+                (0.3 - 432e3 / (2 * 1e6 * 5)) / 4,
+                make("block", **size, crushing=crushed).uplift(Direction.POSITIVE), "test_crushing.py")  # fmt: skip
+    rho, xi = 1.0, 1 / (1 + sqrt(0.25))
+    wall = make("spanning_wall", thickness=0.3, height=3.0, hinge="weakest", density=1800.0, depth=1.0,
+                overburden=rho * 1800 * 0.9 * G)  # fmt: skip
+    yield Check("wall between floors, load in the middle: uplift over $g$ at its weakest hinge",
+                r"$\frac{2t}{\xi h} [1 + \rho (1 + \frac{k \xi}{1 - \xi})]$",
+                0.2 / xi * (1 + rho * (1 + 0.5 * xi / (1 - xi))), wall.uplift(Direction.POSITIVE),
+                "test_spanning_wall.py")  # fmt: skip
+    b, h = 0.35, 1.4
+    R, alpha = sqrt(b * b + h * h), float(np.arctan2(b, h))
+    yield Check("block 0.7 m x 2.8 m: velocity step that overturns it [m/s]",
+                r"$\sqrt{8 g R (1 - \cos \alpha)/3}/\cos \alpha$", sqrt(8 * G * R * (1 - cos(alpha)) / 3) / cos(alpha),
+                equivalent_block(make("block", width=0.7, height=2.8)).positive.v_imp, test)  # fmt: skip
+    block = make("block", width=1.0, height=5.0)
+    at = reactions(block, Direction.POSITIVE, np.array([0.05]), np.array([0.2]), np.array([-0.3 * G + 0j]))
+    I, turned = 4 / 3 * (0.25 + 6.25), complex(-0.5, 2.5) * complex(cos(0.05), -sin(0.05))  # noqa: E741
+    bend = (0.3 * G * turned.imag + G * turned.real) / I  # phi.. about the corner
+    z = -1j * turned * bend - turned * 0.2**2 + complex(-0.3 * G, G)
+    yield Check("block 1 m x 5 m in motion: horizontal force over the weight", "Newton and Euler by hand", z.real / G,
+                float(at.force[0, 0].real) / G, "test_reactions.py")  # fmt: skip
+    yield Check("and its normal force", "likewise", z.imag / G, float(at.force[0, 0].imag) / G,
+                "test_reactions.py")  # fmt: skip
+
+
 SECTIONS: dict[str, Callable[[], Iterator[Check]]] = {
     "One rigid body": one_body,
     "Walls, frames and arches": more_bodies,
+    "Loads, ties and supports": as_they_stand,
     "Histories": histories,
     "Ground motions": records,
     "The error of the equivalence": errors,
