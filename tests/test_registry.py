@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
+from math import atan
 
 import pytest
 
@@ -53,6 +54,30 @@ def test_an_installed_plugin_works_in_every_command(installed_plugin, tmp_path):
     assert equiv["directions"]["positive"]["lambda"] == pytest.approx(0.3, rel=1e-12)
     respond = json.loads(rocking(installed_plugin, "respond", str(file), "--release", "0.5", "--json").stdout)
     assert respond["responses"]["nonlinear"]["peak_ratio"] == pytest.approx(0.5)
+
+
+def test_an_installed_plugin_carries_loads_ties_and_side_walls(installed_plugin, tmp_path):
+    """Its author wrote no line for them: a mass in place of its cap does what the cap does."""
+    text = "mechanism: capped_block\nwidth: 0.8\nheight: 2\nmass: 1000\n"
+    more = {
+        "load": "cap_mass: 0\nloads:\n  - {name: cap, body: block, mass: 500, at: [0, 2]}\n",
+        "cap": "cap_mass: 0.5\n",
+        "tie": "cap_mass: 0\nties:\n"
+        "  - {name: t, from: {ground: [0, 0]}, to: {body: block, at: [0, 0]}, stiffness: 5e3}\n",
+        "side": "cap_mass: 0.5\none_sided: negative\nrebound: 0.4\n",
+    }
+    found, velocity = {}, {}
+    for name, lines in more.items():
+        file = tmp_path / f"{name}.yaml"
+        file.write_text(text + lines, encoding="utf-8")
+        given = json.loads(rocking(installed_plugin, "equiv", str(file), "--json").stdout)
+        found[name] = given["directions"]["negative"]
+        answer = rocking(installed_plugin, "respond", str(file), "--release", "-2deg", "--neighbours", "0", "--json")
+        velocity[name] = json.loads(answer.stdout)["responses"]["nonlinear"]["impact_velocity"]
+    for key in ("lambda", "phi_cr", "p", "eta"):
+        assert found["load"][key] == pytest.approx(found["cap"][key], rel=1e-9)
+    assert velocity["cap"] == pytest.approx(velocity["load"], rel=1e-9) == velocity["side"]
+    assert found["tie"]["phi_cr"] > atan(0.4) and found["side"]["eta"] == 0.4
 
 
 def test_the_installed_plugin_keeps_the_contract(installed_plugin):

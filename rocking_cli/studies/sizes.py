@@ -46,7 +46,7 @@ class Sizes:
             return self.mechanism.enlarged(scale)
         except ValidationError as error:
             first = error.errors()[0]
-            place = [*first["loc"], *([first["ctx"]["field"]] if first["type"] == "geometry" else [])]
+            place = [*first["loc"], *(first["ctx"]["field"] if first["type"] == "geometry" else ())]
             message = f"{self._named(scale)} cannot be built: {'.'.join(map(str, place))}: {first['msg']}"
             raise InputError(Problem(message, hint="ask for other sizes")) from None
 
