@@ -133,6 +133,16 @@ class TestPicture:
         assert [tie.name for tie in shown.ties] == ["tendon", "", ""]
         assert [(load.point, load.text) for load in shown.loads] == [(foot + 3j, "20 kg") for foot in feet]
 
+    def test_friction_turns_with_the_motion_and_a_thrust_does_not(self):
+        """The crossing walls hold it back: to the left while it rocks to the right, and the other way."""
+        courses = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 1, "height": 8.0}
+        shown = picture(Block(**FACADE, interlock=courses, loads=[THRUST]))
+        pushes = {}
+        for turn in (0.01, -0.01):
+            forces = dict(zip([load.name for load in shown.loads], hung.symbols(shown, turn, 1.0).forces, strict=True))
+            pushes[turn] = {name: np.sign((tip - tail).real) for name, (tail, tip) in forces.items()}
+        assert pushes == {0.01: {"thrust": 1, "interlock": -1}, -0.01: {"thrust": 1, "interlock": 1}}
+
     def test_a_page_has_every_end_where_the_picture_has_it(self):
         shown = picture(Block(**FACADE, loads=[FLOOR], ties=[BAR]))
         data = shown.as_dict()

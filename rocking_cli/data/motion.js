@@ -108,13 +108,13 @@ function structureStage(svg, picture, colours, low, high) {
         : shape(before, "path", {class: "force",
             d: `M${-ARROW * u},${-ARROW * v}L${-9 * u},${-9 * v}M0,0L${-11 * u - 5 * v},${-11 * v + 5 * u}L${-11 * u + 5 * v},${-11 * v - 5 * u}Z`});
       const name = shape(before, "text", {class: "hung"}, load.name && `${short(load.name)}, ${load.text}`);
-      steps.push(places => {
-        const [x, y] = at(load, places);
-        mark.setAttribute("transform", `translate(${x},${y})`);
-        write(name, load.force === null ? [x, y] : [x - ARROW * u, y - ARROW * v]);
+      steps.push((places, k, side) => {
+        const [x, y] = at(load, places), turn = load.friction && side !== first ? -1 : 1;  // friction is against the motion
+        mark.setAttribute("transform", `translate(${x},${y}) scale(${turn},1)`);
+        write(name, load.force === null ? [x, y] : [x - turn * ARROW * u, y - ARROW * v]);
       });
     }
-    return (places, k) => { for (const step of steps) step(places, k); };
+    return (places, k, side) => { for (const step of steps) step(places, k, side); };
   }
   function build(width, tallest) {
     svg.replaceChildren();
@@ -153,7 +153,7 @@ function structureStage(svg, picture, colours, low, high) {
   }
   function show(rotation) {
     const side = sideOf(rotation), places = picture.parts.map(part => placed(part, rotation));
-    moveHung(places, nearest(picture.rotation, rotation));
+    moveHung(places, nearest(picture.rotation, rotation), side);
     moving.forEach((group, k) => {
       group.setAttribute("transform", `translate(${places[k].x},${places[k].y}) rotate(${places[k].psi * 180 / Math.PI})`);
       group.setAttribute("fill", colours[side][k]); // of its link in this direction

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from rocking_cli.plotting import style
 from rocking_cli.plotting.labels import MARK, Labels
 from rocking_cli.plotting.panels import Panel
-from rocking_cli.studies.hung import Carried
 from rocking_cli.studies.picture import Picture
 
 Points = NDArray[np.complex128]
@@ -65,11 +64,12 @@ def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
             held = [at for at, each in ((start, piece.start), (end, piece.end)) if each.part is None]
             anchors += [(at, tie.is_bed) for at in held]
     weights, forces = [], []
+    first = picture.side(rotation) is picture.directions[0]
     for load, place in zip(picture.loads, places.tolist(), strict=True):
         if load.force is None:
             weights.append(place + OUTLINE * WEIGHT / scale)
         elif load.force:
-            forces.append((_tail(load, place, scale), place))
+            forces.append((_tail(load.acting(first=first), place, scale), place))
     return Symbols(lines, anchors, weights, forces)
 
 
@@ -110,7 +110,7 @@ def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
             continue
         text, size = _fitted(load.name, f", {load.text}")
         if load.force:
-            out = _tail(load, place, panel.scale)
+            out = _tail(load.force, place, panel.scale)
             labels.write(text, labels.around(out, out - place, 0.02, size), color=style.CURSOR, **look)
         else:
             labels.write(text, labels.around(place, 1 + 0.5j, WEIGHT, size, turning=0.6), color=style.INK, **look)
@@ -142,17 +142,17 @@ def beside(picture: Picture) -> tuple[float, float, float, float]:
 def margins(picture: Picture) -> tuple[float, float, float, float]:
     """What arrows need to the left, right, below and above of where they act [inches]."""
     left = right = below = above = 0.0
-    for load in picture.loads:
-        if load.force:
-            way = -load.force / abs(load.force) * (ARROW + 0.03)
+    for force in (load.acting(first=first) for load in picture.loads for first in (True, False)):
+        if force:
+            way = -force / abs(force) * (ARROW + 0.03)
             left, right = max(left, -way.real), max(right, way.real)
             below, above = max(below, -way.imag), max(above, way.imag)
     return left, right, below, above
 
 
-def _tail(load: Carried, place: complex, scale: float) -> complex:
+def _tail(force: complex, place: complex, scale: float) -> complex:
     """Where the arrow of a force begins: its point is where it acts."""
-    return place - (load.force or 0j) / abs(load.force or 1.0) * ARROW / scale
+    return place - force / abs(force) * ARROW / scale
 
 
 def _drawn(start: complex, end: complex, kind: str, scale: float) -> Points:

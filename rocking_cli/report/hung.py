@@ -78,7 +78,8 @@ def _mass(load: PointMass) -> list[str]:
 
 
 def _force(load: ConstantForce) -> list[str]:
-    return [load.name, *_place(load.spot), _kilo(load.force.real), _kilo(load.force.imag)]
+    name = f"{load.name} (friction, against the motion; clockwise)" if load.friction else load.name
+    return [name, *_place(load.spot), _kilo(load.force.real), _kilo(load.force.imag)]
 
 
 def _tie(tie: Spring | SpringBed) -> list[str]:

@@ -53,7 +53,9 @@ class Carried:
     mass : float or None
         [kg]; None of a force.
     force : complex or None
-        [N], to the right and up; None of a mass.
+        [N], to the right and up, in the first direction that the structure can rock in; None of a mass.
+    friction : bool
+        Whether it is against the motion in either direction.
     """
 
     name: str
@@ -62,6 +64,12 @@ class Carried:
     point: complex
     mass: float | None = None
     force: complex | None = None
+    friction: bool = False
+
+    def acting(self, *, first: bool) -> complex:
+        """The force while it rocks in the first direction or in the other [N]; 0 of a mass."""
+        force = self.force or 0j
+        return force if first or not self.friction else complex(-force.real, force.imag)
 
 
 @dataclass(frozen=True)
@@ -117,7 +125,8 @@ def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
                 yield Carried(name, _mass(mass), part, point, mass=mass)
             else:
                 force = load.in_direction(mechanism.directions[0]) / count
-                yield Carried(name, f"{three_digits(abs(force) / 1000)} kN" if force else "0", part, point, force=force)
+                text = f"{three_digits(abs(force) / 1000)} kN" if force else "0"
+                yield Carried(name, text, part, point, force=force, friction=load.friction)
 
 
 def strands(mechanism: Mechanism, copies: Copies, centroids: Sequence[complex]) -> Iterator[Strand]:

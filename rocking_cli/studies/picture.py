@@ -321,6 +321,7 @@ class Picture:
                     "text": each.text,
                     "mass": each.mass,
                     "force": None if each.force is None else _pairs([each.force])[0],
+                    "friction": each.friction,
                     **self._end(End(each.part, each.point)),
                 }
                 for each in self.loads
