@@ -25,7 +25,7 @@ LARGEST = 1_000_000  # bytes of a file
 
 EVERYWHERE = (
     "units", "dt", "channel", "neighbours", "within-amplitude", "within-restitution", "tail", "rtol", "points",
-    "fractiles", "fps", "speed", "jobs", "format", "project", "place", "author",
+    "fractiles", "fps", "speed", "jobs", "format", "project", "place", "author", "logo",
 )  # fmt: skip
 """Options that mean the same in every command that has them. Those that say what is asked, read or written are none."""
 IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")

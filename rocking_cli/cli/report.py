@@ -27,13 +27,19 @@ class Head:
     project: str | None
     place: str | None
     author: str | None
+    logo: Path | None
 
     def block(self, command: str) -> TitleBlock:
         """With the command and the day."""
         from rocking_cli.studies.assessment import TitleBlock
 
         today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
-        return TitleBlock(command, today, self.project, self.place, self.author)
+        picture = None
+        if self.logo is not None:
+            from rocking_cli.report.logo import embedded
+
+            picture = embedded(self.logo)
+        return TitleBlock(command, today, self.project, self.place, self.author, picture)
 
 
 @click.command(short_help="A document to hand over: one page with all that there is to say.")
@@ -45,6 +51,7 @@ class Head:
 @click.option("--project", metavar="TEXT", help="Of the report: its head names it.")
 @click.option("--place", metavar="TEXT", help="Where the structure stands.")
 @click.option("--author", metavar="TEXT", help="Who hands it over.")
+@click.option("--logo", type=click.Path(path_type=Path), metavar="FILE", help="Their logo (.png, .jpg or .svg).")
 @options.around
 @options.as_json
 @click.pass_context
@@ -85,7 +92,8 @@ def command(
         out = Path(f"{structures.stem(files[0] if files else None)}.html")
         check_writable(out)
     paths, bad = motion_files.find(asked.records)
-    keep_apart([("--out", out)], [*files, *(str(path) for path in paths)])
+    keep_apart([("--out", out)], [*files, *(str(path) for path in paths), *([str(head.logo)] if head.logo else [])])
+    title = head.block(_command_line(ctx))
     structure = inputs.structure(files, asked.records)
     several = len(paths) + bad + len(asked.pulses) > 1
     given: list[Scaled] = []
@@ -99,7 +107,7 @@ def command(
     with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
             structure, _file(structure, files), given, asked.signs, around=near.around,
-            title=head.block(_command_line(ctx)), progress=advance,
+            title=title, progress=advance,
         )  # fmt: skip
     if out is not None:
         from rocking_cli.report.page import render

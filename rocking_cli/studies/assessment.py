@@ -72,6 +72,8 @@ class TitleBlock:
         What wrote it, and when.
     project, place, author : str, optional
         As the reader knows them.
+    logo : str, optional
+        The address of a picture to show at the head.
     """
 
     command: str
@@ -79,6 +81,7 @@ class TitleBlock:
     project: str | None = None
     place: str | None = None
     author: str | None = None
+    logo: str | None = None
 
     @property
     def known(self) -> dict[str, str]:

@@ -1,0 +1,34 @@
+"""A logo at the head of a report: a picture within the page, which needs no other file."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.files import read_bytes
+
+LARGEST = 1_000_000  # bytes: the page is mailed
+KINDS = {"image/png": b"\x89PNG\r\n\x1a\n", "image/jpeg": b"\xff\xd8\xff"}  # and how their files begin
+
+
+def embedded(path: Path) -> str:
+    """The address of a picture that holds the picture itself.
+
+    Parameters
+    ----------
+    path : Path
+        A PNG, JPEG or SVG file; what it is, is seen from its content.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, is too large, or is none of these.
+    """
+    data = read_bytes(path, "logo", LARGEST)
+    kind = next((kind for kind, begin in KINDS.items() if data.startswith(begin)), None)
+    if kind is None and b"<svg" in data[:4096]:
+        kind = "image/svg+xml"
+    if kind is None:
+        raise InputError(Problem("is no PNG, JPEG or SVG picture", str(path), hint="convert the logo to one of them"))
+    return f"data:{kind};base64,{base64.b64encode(data).decode()}"
