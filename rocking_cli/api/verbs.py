@@ -17,6 +17,7 @@ from rocking_cli.dynamics.history import RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
 from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.dynamics.release import Release
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures
@@ -222,7 +223,7 @@ def respond(
     *,
     models: str | Sequence[str] | None = None,
     scale: float = 1.0,
-    release: float | None = None,
+    release: float | str | None = None,
     tail: float = TAIL,
     rtol: float = RTOL,
 ) -> MappingAnswer[ModelName, History]:
@@ -238,8 +239,9 @@ def respond(
         Of "nonlinear", "linear1" and "linear2"; all, unless given.
     scale : float
         Factor on the motion; a negative one reverses it.
-    release : float, optional
-        Start at rest from this fraction of phi_cr, between -1 and 1.
+    release : float or str, optional
+        Start at rest from this fraction of phi_cr, between -1 and 1, or from an angle such as "0.05rad"; negative:
+        anticlockwise.
     tail : float
         How long the samples go on after the record [s].
     rtol : float
@@ -279,7 +281,8 @@ def respond(
     ready = _structure(structure)
     shaking = _motion(motion).scaled(scale) if motion is not None else None
     chosen = _models(models) if models is not None else ready.default_models
-    found = histories.respond(ready.mechanism, shaking, models=chosen, release=release, tail=tail, rtol=rtol)
+    tilt = Release.of(release).ratio(ready) if release is not None else None
+    found = histories.respond(ready.mechanism, shaking, models=chosen, release=tilt, tail=tail, rtol=rtol)
     title = heading(ready.mechanism) + (f", {shaking.name}" if shaking is not None else "")
     nonlinear = found.get("nonlinear")
     contacts = {1: Contacts(ready.mechanism).check(nonlinear, shaking)} if nonlinear is not None else {}

@@ -13,12 +13,12 @@ from click.core import ParameterSource
 from rocking_cli.cli import terminal
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.pictures import write_picture
-from rocking_cli.cli.quantities import Release
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.dynamics.release import Release
     from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.io.tables import Columns
     from rocking_cli.studies.neighbours import Around

@@ -6,15 +6,12 @@ A number with its unit. Where the help says which unit a bare number has, the un
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, pi
-from typing import TYPE_CHECKING, Any
+from math import inf
+from typing import Any
 
 import click
 
 from rocking_cli.units import UnitError, read, split
-
-if TYPE_CHECKING:
-    from rocking_cli.dynamics.prepared import Prepared
 
 # The names of units stand here again so that `--help` needs no numpy; a test holds them together.
 UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
@@ -152,69 +149,23 @@ def _acceleration(number: float, spelling: str) -> float:
     return number if unit == "g" else number * units.UNITS[unit] / STANDARD_GRAVITY
 
 
-@dataclass(frozen=True)
-class Release:
-    """A tilt to start from: a fraction of the critical rotation, or an angle [rad]; negative ones are anticlockwise.
-
-    Parameters
-    ----------
-    text : str
-        As it was typed.
-    fraction, angle : float or None
-        One of them.
-    """
-
-    text: str
-    fraction: float | None
-    angle: float | None
-
-    def ratio(self, structure: Prepared) -> float:
-        """The fraction of what rotations of the structure are over: phi_cr, or the limit where there is none."""
-        from rocking_cli.core import Direction
-        from rocking_cli.errors import InputError, Problem
-
-        way = Direction.NEGATIVE if (self.fraction or self.angle or 0.0) < 0 else Direction.POSITIVE
-        if way not in structure.mechanism.directions:
-            side = structure.mechanism.one_sided
-            raise InputError(Problem(f"it rocks in the {side} direction only, got {self.text}", field="release"))
-        side_of = structure.statics[0 if way > 0 else 1]
-        if self.fraction is not None:
-            if side_of.phi_cr is None:
-                why = "there is no critical rotation that it could be a fraction of"
-                raise InputError(Problem(f"{self.text}: {why}", field="release", hint="give an angle, such as 0.05rad"))
-            return self.fraction
-        assert self.angle is not None
-        if not abs(self.angle) < side_of.reference:
-            end = "its kinematic limit" if side_of.phi_cr is None else "its critical rotation"
-            raise InputError(Problem(f"{self.text} is beyond {end}, {side_of.reference:.4g} rad", field="release"))
-        return self.angle / side_of.reference
-
-
 class Tilt(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
     """A tilt: a fraction of the critical rotation between -1 and 1, or an angle with its unit; not zero."""
 
     name = "tilt"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Release:
-        """Turn a text into the tilt, or fail naming the option and what would be right."""
-        text = str(value).strip()
-        parts = split(text)
-        if parts is None:
-            self.fail(
-                f"{text!r} is no tilt: give a fraction of phi_cr such as 0.5, or an angle such as 0.05rad.", param, ctx
-            )
-        if parts[1]:
-            try:
-                angle = read(text, "rad")
-            except UnitError as error:
-                self.fail(f"{error.message}: give an angle such as 0.05rad or 3deg.", param, ctx)
-            if not 0 < abs(angle) < pi:
-                self.fail(f"{text!r} is no angle between 0 and half a turn.", param, ctx)
-            return Release(text, None, angle)
-        fraction = float(parts[0])
-        if not 0 < abs(fraction) < 1:
-            self.fail(f"{text} is not a fraction of phi_cr between 0 and 1 (or 0 and -1).", param, ctx)
-        return Release(text, fraction, None)
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Turn a text into a `Release`, or fail naming the option and what would be right."""
+        if not isinstance(value, str):
+            return value
+        from rocking_cli.dynamics.release import Release
+        from rocking_cli.errors import InputError
+
+        try:
+            return Release.of(value)
+        except InputError as error:
+            (problem,) = error.problems
+            self.fail(f"{problem.message}{f': {problem.hint}' if problem.hint else ''}.", param, ctx)
 
 
 class Share(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only

@@ -42,16 +42,11 @@ def _place(spot: Spot) -> dict[str, Any]:
 
 def _words(thing: Attached) -> str:
     if isinstance(thing, PointMass):
-        shares = [
-            f"{share:.3g} {what}"
-            for share, what in (
-                (thing.horizontal, "of it moves sideways"),
-                (thing.vertical, "up"),
-                (thing.weight, "is borne"),
-            )
-            if share != 1
-        ]
-        return f"{thing.mass:.4g} kg{', ' if shares else ''}{', '.join(shares)}"
+        shares = thing.horizontal, thing.vertical, thing.weight
+        if shares == (1, 1, 1):
+            return f"{thing.mass:.4g} kg"
+        sideways, up, borne = (f"{share:.3g}" for share in shares)
+        return f"{thing.mass:.4g} kg, of which {sideways} moves sideways, {up} up, and {borne} is borne"
     if isinstance(thing, ConstantForce):
         if thing.friction:
             return f"friction of {abs(thing.force) / 1000:.4g} kN against the motion at y = {thing.spot.at.imag:.4g} m"

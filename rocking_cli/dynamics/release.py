@@ -1,0 +1,77 @@
+"""A tilt that a motion starts from: a fraction of the critical rotation, or an angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import Self
+
+from rocking_cli.core import Direction
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.units import UnitError, read, split
+
+EXAMPLE = "give a fraction of phi_cr such as 0.5, or an angle such as 0.05rad"
+
+
+@dataclass(frozen=True)
+class Release:
+    """A tilt at rest; negative ones are anticlockwise.
+
+    Parameters
+    ----------
+    text : str
+        As it was written.
+    size : float
+        A fraction of the critical rotation, or an angle [rad].
+    is_angle : bool
+        Which of them.
+    """
+
+    text: str
+    size: float
+    is_angle: bool
+
+    @classmethod
+    def of(cls, given: float | str) -> Self:
+        """A fraction between -1 and 1, or a text such as `0.5`, `0.05rad` or `3 deg`. Raises `InputError`."""
+        text = given.strip() if isinstance(given, str) else f"{given:g}"
+        parts = split(given) if isinstance(given, str) else (repr(float(given)), "")
+        if parts is None:
+            raise InputError(Problem(f"{text!r} is no tilt: {EXAMPLE}", field="release"))
+        if not parts[1]:
+            fraction = float(parts[0])
+            if not 0 < abs(fraction) < 1:
+                said = f"must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {text}"
+                raise InputError(Problem(said, field="release"))
+            return cls(text, fraction, is_angle=False)
+        try:
+            angle = read(text, "rad")
+        except UnitError as error:
+            raise InputError(Problem(error.message, field="release", hint=EXAMPLE)) from None
+        if not 0 < abs(angle) < pi:
+            raise InputError(Problem(f"{text!r} is no angle between 0 and half a turn", field="release"))
+        return cls(text, angle, is_angle=True)
+
+    def ratio(self, structure: Prepared) -> float:
+        """The fraction of what rotations of a structure are over: phi_cr, or the limit where there is none.
+
+        Raises
+        ------
+        InputError
+            If the structure does not rock that way, the tilt is beyond that, or a fraction is of nothing.
+        """
+        way = Direction.NEGATIVE if self.size < 0 else Direction.POSITIVE
+        if way not in structure.mechanism.directions:
+            side = structure.mechanism.one_sided
+            raise InputError(Problem(f"it rocks in the {side} direction only, got {self.text}", field="release"))
+        statics = structure.statics[0 if way > 0 else 1]
+        if not self.is_angle:
+            if statics.phi_cr is None:
+                why = "there is no critical rotation that it could be a fraction of"
+                raise InputError(Problem(f"{self.text}: {why}", field="release", hint="give an angle, such as 0.05rad"))
+            return self.size
+        if not abs(self.size) < statics.reference:
+            end = "its kinematic limit" if statics.phi_cr is None else "its critical rotation"
+            raise InputError(Problem(f"{self.text} is beyond {end}, {statics.reference:.4g} rad", field="release"))
+        return self.size / statics.reference
