@@ -158,10 +158,11 @@ def follow(
     tail: float = TAIL,
     rtol: float = RTOL,
     most_kept: int = MOST_IMPACTS,
+    eta: float = float("nan"),
 ) -> History:
     """The history of one model; `respond` says what the arguments are.
 
-    `most_kept` is how many impacts are kept.
+    `most_kept` is how many impacts are kept; `eta` the restitution of both directions, NaN: that of the model.
     """
     from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
 
@@ -176,7 +177,7 @@ def follow(
     phi, rate, impacts = np.empty(samples), np.empty(samples), np.empty((most_kept, 3))
     runs, marks = np.zeros((1, kernels.RUN_COLUMNS)), np.empty((1, kernels.MARKS))
     runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE]] = 1.0
-    runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = np.nan
+    runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = eta
     runs[0, kernels.START] = model.q(release)
     run_deck(lay_out([model], [motion]), runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
     found = read_marks(marks, np.array([model.phi_cr]))

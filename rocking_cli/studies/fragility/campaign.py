@@ -14,7 +14,7 @@ from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equival
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.studies.fragility.definition import Definition
+from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
 from rocking_cli.studies.fragility.sources import KeptMotions
@@ -145,9 +145,10 @@ def run(prepared: Prepared, store: Store, engine: Engine, progress: Progress | N
     progress : callable, optional
         See `Progress`.
     """
-    study, plan = prepared.study, prepared.plan
+    study, plan, given = prepared.study, prepared.plan, prepared.study.definition
     size = unit_size(plan.total - prepared.finished, engine.workers)
-    to_do = units(plan, study.samples, prepared.motions, study.definition.model, store.finished, size)
+    checked = SLIDING in given.limit_states
+    to_do = units(plan, study.samples, prepared.motions, given.model, store.finished, size, checked=checked)
     for rows in engine.map(carry_out, to_do):
         store.add(rows)
         if progress is not None:

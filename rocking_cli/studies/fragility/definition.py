@@ -21,7 +21,7 @@ from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.fragility.together import Part, Sound, between_fields
 from rocking_cli.studies.fragility.varied import in_units_of_fields
 
-UPLIFT, OVERTURNING = "uplift", "overturning"
+UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
 SCALE = "scale"
 MOST = 100_000  # levels or samples: more is a slip of the keyboard
 
@@ -38,9 +38,9 @@ def _limit(value: object) -> object:
     """A limit state: a word, or a ratio of rotations."""
     if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < float("inf"):
         return float(value)
-    if value in (UPLIFT, OVERTURNING):
+    if value in (UPLIFT, OVERTURNING, SLIDING):
         return value
-    raise ValueError(f"must be uplift, overturning or a positive number, got {value!r}")
+    raise ValueError(f"must be uplift, overturning, sliding or a positive number, got {value!r}")
 
 
 def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
@@ -215,7 +215,7 @@ class Definition(Sampling):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """Levels must suit the method, and samples what varies."""
+        """Levels must suit the method, samples what varies, and the model what is asked."""
         method, levels, structures = (given.get(name) for name in ("method", "levels", "structures"))
         scaled = isinstance(levels, dict) and sound("levels", "measure") and _measure(levels["measure"]) != SCALE
         if method == "cloud" and scaled:
@@ -231,6 +231,8 @@ class Definition(Sampling):
             yield ("samples",), "nothing varies: give a structure a `vary`"
         if given.get("eta") is not None and "restitution" in varied:
             yield ("eta",), "a structure varies its restitution: give one of the two"
+        if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
+            yield ("limit_states",), "sliding needs `model: nonlinear`: linear motions do not say the forces at joints"
         for name in ("polarities", "eta", "limit_states", "measures", "bivariate"):
             yield from _twice(given, name, sound)
 
@@ -252,6 +254,12 @@ class Definition(Sampling):
     def hazard_measure(self) -> str | None:
         """What the hazard curve is of."""
         return self.hazard.measure if self.hazard is not None else None
+
+
+def checks_sliding(given: dict[str, Any]) -> bool:
+    """Whether what a study file gives asks for sliding, so that every run is checked for it."""
+    asked = given.get("limit_states")
+    return isinstance(asked, list) and SLIDING in asked
 
 
 HINT = "docs/fragility.md shows one to start from"

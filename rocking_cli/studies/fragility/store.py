@@ -23,7 +23,7 @@ from pydantic import TypeAdapter
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.json_text import json_text
-from rocking_cli.studies.fragility.definition import Definition
+from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.plan import Plan, Trial
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.fragility.store_file import (
@@ -31,6 +31,7 @@ from rocking_cli.studies.fragility.store_file import (
     CHECKED,
     MARK,
     VERSION,
+    WITHOUT_SLIDING,
     damaged,
     exchange,
     header,
@@ -52,6 +53,7 @@ STANDS, FAILED = 0, 2  # outcomes; 1 and -1 for overturning in the positive and 
 OUTCOMES = (STANDS, FAILED, 1, -1)
 SEAL = "seal"  # the name in the table `study` of the checksum of all but the runs
 NAMED = 5  # damaged runs named one by one
+SLIDE = "slide_time"  # the column of runs that only studies have which ask for sliding
 
 TABLES = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -68,7 +70,7 @@ CREATE TABLE level (id INTEGER PRIMARY KEY, value REAL NOT NULL);
 CREATE TABLE polarity (id INTEGER PRIMARY KEY, value INTEGER NOT NULL);
 CREATE TABLE run (
     id INTEGER PRIMARY KEY, scale REAL NOT NULL, eta REAL, outcome INTEGER NOT NULL,
-    peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL,
+    peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL{slides},
     checksum INTEGER NOT NULL
 );
 """
@@ -81,7 +83,7 @@ CREATE VIEW runs AS SELECT
     CASE WHEN run.outcome = 2 THEN 'failed' WHEN run.outcome != 0 THEN 'overturns'
         WHEN run.uplift_time IS NULL THEN 'does not uplift' ELSE 'rocks' END AS outcome,
     CASE WHEN run.outcome IN (1, -1) THEN run.outcome ELSE 0 END AS fell_to,
-    run.peak_ratio, run.peak_positive, run.peak_negative, run.uplift_time, run.overturning_time
+    run.peak_ratio, run.peak_positive, run.peak_negative, run.uplift_time, run.overturning_time{slides}
 FROM run
 JOIN sample ON sample.id = run.id / {sample}
 JOIN record ON record.id = run.id / {record} % {records}
@@ -113,6 +115,8 @@ class Rows:
         Largest rotation in either direction [rad]; NaN in that in which it overturned.
     uplift_time, overturning_time : ndarray
         When it first uplifted, and when it passed the critical rotation for good [s]; NaN if never.
+    slide_time : ndarray, optional
+        When a joint first needed more friction than there is [s]; NaN if never. None where no run was checked for it.
     """
 
     id: Integers
@@ -124,6 +128,7 @@ class Rows:
     peak_negative: Reals
     uplift_time: Reals
     overturning_time: Reals
+    slide_time: Reals | None = None
 
     def __len__(self) -> int:
         return len(self.id)
@@ -135,32 +140,38 @@ class Rows:
 
     def select(self, which: NDArray[np.bool_]) -> Rows:
         """Some of them."""
-        return Rows(*(getattr(self, name)[which] for name in COLUMNS))
+        return Rows(*(getattr(self, name)[which] for name in self.columns))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of those that are there."""
+        return COLUMNS if self.slide_time is None else (*COLUMNS, SLIDE)
 
     def checksums(self, salt: int) -> Integers:
         """CRC-32 of each: of its columns as doubles, the lowest byte first, begun with that of the study."""
-        columns = np.stack([getattr(self, name) for name in COLUMNS], axis=1).astype("<f8")
+        columns = np.stack([getattr(self, name) for name in self.columns], axis=1).astype("<f8")
         columns = np.where(np.isnan(columns), np.nan, columns) + 0.0  # SQLite keeps neither NaNs nor zeros apart
-        row = 8 * len(COLUMNS)
+        row = 8 * len(self.columns)
         data = memoryview(columns.tobytes())
         return np.array([crc32(data[k : k + row], salt) for k in range(0, len(data), row)], dtype=np.int64)
 
 
-COLUMNS = tuple(each.name for each in fields(Rows))
+COLUMNS = tuple(each.name for each in fields(Rows) if each.name != SLIDE)
 
 
 @dataclass(frozen=True, eq=False)
 class Endings:
-    """What fragility asks of finished runs, one a place: some of the columns of `Rows`, and whether they uplift."""
+    """What fragility asks of finished runs, one a place: columns of `Rows`, and whether they uplift and slide."""
 
     id: Integers
     outcome: Integers
     peak_ratio: Reals
     uplifts: NDArray[np.bool_]
+    slides: NDArray[np.bool_]
 
     def select(self, which: NDArray[np.bool_]) -> Endings:
         """Some of them."""
-        return Endings(self.id[which], self.outcome[which], self.peak_ratio[which], self.uplifts[which])
+        return Endings(*(getattr(self, each.name)[which] for each in fields(self)))
 
 
 class Store:
@@ -181,6 +192,8 @@ class Store:
         Whether pages of the file are damaged, so that runs may be missing.
     checked : bool
         Whether its runs have checksums: those of the first versions have none.
+    columns : tuple of str
+        Those of its runs.
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
@@ -188,6 +201,7 @@ class Store:
         self.damaged: list[int] = []
         self.unreadable = False
         self.checked = True
+        self.columns = COLUMNS
         self._connection = connection
         self._replaced: sqlite3.Connection | None = None  # the store whose place this one takes as it begins
         self._there = False
@@ -303,7 +317,7 @@ class Store:
         for each in self.doubts():
             self._say(f"{self.path}: {each}")
         old = Store(self.path, self._connection)
-        old.checked, old._salt = self.checked, self._salt
+        old.checked, old.columns, old._salt = self.checked, self.columns, self._salt
 
         def fill(connection: sqlite3.Connection) -> None:
             new = Store(self.path, connection)
@@ -360,7 +374,9 @@ class Store:
         self._name_who_is_at_work()
 
     def _fill(self, plan: Plan, facts: Mapping[str, Any]) -> None:
-        for statement in TABLES.split(";"):
+        self.columns = _columns(facts["description"])
+        slides = SLIDE in self.columns
+        for statement in TABLES.format(slides=f", {SLIDE} REAL" if slides else "").split(";"):
             self._connection.execute(statement)
         levels, polarities = plan.shape[3:]
         self._connection.execute(
@@ -371,10 +387,11 @@ class Store:
                 level=polarities,
                 levels=levels,
                 polarities=polarities,
+                slides=f", run.{SLIDE}" if slides else "",
             )
         )
         self._connection.execute(f"PRAGMA application_id = {MARK}")
-        self._connection.execute(f"PRAGMA user_version = {VERSION}")
+        self._connection.execute(f"PRAGMA user_version = {VERSION if slides else WITHOUT_SLIDING}")
         self._insert("sample", [_as_row(each) for each in plan.trials])
         self._insert("record", [tuple(asdict(each).values()) for each in plan.records])
         self._insert("eta", [(None if eta != eta else eta,) for eta in plan.etas])
@@ -421,10 +438,13 @@ class Store:
                     raise damaged(self.path, "what its runs are runs of does not agree with its checksum")
             try:
                 self._salt = _salt(self._facts()["hash"])
+                self.columns = _columns(self.fact("description"))
                 Definition.model_validate(self.fact("definition"))
                 plan = self.plan()
             except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError) as error:
                 raise damaged(self.path, "what its runs are runs of cannot be read") from error
+            if not names.issuperset(self.columns):
+                raise damaged(self.path, "its tables are not those of a store")
             if not plan.size:
                 raise damaged(self.path, "it has lost what its runs are runs of")
         finally:
@@ -520,7 +540,7 @@ class Store:
             self.commit()
 
     def _insert_runs(self, rows: Rows) -> None:
-        columns = [*(getattr(rows, name).tolist() for name in COLUMNS), rows.checksums(self._salt).tolist()]
+        columns = [*(getattr(rows, name).tolist() for name in self.columns), rows.checksums(self._salt).tolist()]
         marks = ", ".join("?" * len(columns))
         self._connection.executemany(f"INSERT INTO run VALUES ({marks})", zip(*columns, strict=True))
 
@@ -532,8 +552,8 @@ class Store:
 
     def runs(self, first: int, stop: int) -> Rows:
         """The finished runs with numbers from `first` to before `stop`, without those that are damaged."""
-        blocks = list(self._blocks(first, stop)) or [_rows([])]
-        return Rows(*(np.concatenate([getattr(each, name) for each in blocks]) for name in COLUMNS))
+        blocks = list(self._blocks(first, stop)) or [_rows([], self.columns)]
+        return Rows(*(np.concatenate([getattr(each, name) for each in blocks]) for name in self.columns))
 
     def endings(
         self, first: int, stop: int, counted: Callable[[int], None] = lambda numbers: None
@@ -547,17 +567,20 @@ class Store:
         counted : callable, optional
             Called with how many numbers have been looked at since the last call.
         """
-        query = "SELECT id, outcome, peak_ratio, uplift_time FROM run WHERE id >= ? AND id < ?"
+        slides = SLIDE in self.columns
+        names = ("id", "outcome", "peak_ratio", "uplift_time", *([SLIDE] if slides else []))
+        query = f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?"
         for start in range(first, stop, READ):
             end = min(start + READ, stop)
             if self.damaged or self.unreadable:
                 rows = self._read(start, end)[0]
-                yield Endings(rows.id, rows.outcome, rows.peak_ratio, np.isfinite(rows.uplift_time))
+                table = np.stack([getattr(rows, name) for name in names])
             else:  # all have been held against their checksums
                 found = self._connection.execute(query, (start, end)).fetchall()
-                table = np.array(found, dtype=np.float64).reshape(-1, 4).T
-                whole = table[:2].astype(np.int64)
-                yield Endings(whole[0], whole[1], table[2], np.isfinite(table[3]))
+                table = np.array(found, dtype=np.float64).reshape(-1, len(names)).T
+            whole, happens = table[:2].astype(np.int64), np.isfinite(table[3:])
+            slide = happens[1] if slides else np.zeros(happens.shape[1], dtype=bool)
+            yield Endings(whole[0], whole[1], table[2], happens[0], slide)
             counted(end - start)
 
     def _blocks(self, first: int, stop: int) -> Iterator[Rows]:
@@ -566,10 +589,10 @@ class Store:
 
     def _read(self, first: int, stop: int) -> tuple[Rows, list[int]]:
         """The sound runs with numbers from `first` to before `stop`, and the numbers of the damaged ones."""
-        names = (*COLUMNS, "checksum") if self.checked else COLUMNS
+        names = (*self.columns, "checksum") if self.checked else self.columns
         found = self._fetch(f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?", first, stop)
         table, bad = _numbers(found, len(names))
-        rows = _rows(table[:, : len(COLUMNS)])
+        rows = _rows(table[:, : len(self.columns)], self.columns)
         sound = np.isin(table[:, COLUMNS.index("outcome")], OUTCOMES) & np.isfinite(rows.scale)
         # Where pages are damaged one may be met twice, or out of its place.
         sound &= (rows.id >= first) & (rows.id < stop) & (np.diff(rows.id, prepend=first - 1) > 0)
@@ -594,11 +617,14 @@ def _nothing() -> sqlite3.Connection:
     return sqlite3.connect(":memory:", isolation_level=None)
 
 
-def _rows(table: Any) -> Rows:
+def _columns(description: Mapping[str, Any]) -> tuple[str, ...]:
+    """The columns of the runs of a study."""
+    return (*COLUMNS, SLIDE) if SLIDING in description else COLUMNS
+
+
+def _rows(table: Any, names: tuple[str, ...]) -> Rows:
     """Runs from a table of numbers, a column each."""
-    columns: dict[str, Any] = dict(
-        zip(COLUMNS, np.array(table, dtype=np.float64).reshape(-1, len(COLUMNS)).T, strict=True)
-    )
+    columns: dict[str, Any] = dict(zip(names, np.array(table, dtype=np.float64).reshape(-1, len(names)).T, strict=True))
     for name in ("id", "outcome"):  # what is no whole number is no number of a run, and no outcome
         columns[name] = np.where(np.abs(columns[name]) < 2.0**53, columns[name], -2).astype(np.int64)
     return Rows(**columns)

@@ -21,11 +21,13 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import Document, Place
 from rocking_cli.structure import load_structure
 from rocking_cli.studies.fragility.definition import (
+    SLIDING,
     Definition,
     Hazard,
     RecordEntry,
     Sampling,
     StructureEntry,
+    checks_sliding,
     read_definition,
     usable_entries,
     usable_part,
@@ -121,6 +123,7 @@ class Study:
             "samples": given.samples,
             "sampling": given.sampling,
             "seed": given.seed,
+            **({SLIDING: "checked in every run"} if SLIDING in given.limit_states else {}),
         }
 
 
@@ -157,6 +160,10 @@ def load_study(path: str | Path) -> Study:
         document, "records", [source.path.resolve().as_posix() if source.path else source.name for source in sources]
     )
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
+    if checks_sliding(document.data):
+        for (_, entry), structure in zip(entries, structures, strict=True):
+            if structure is not None and structure.friction is None and "friction" not in entry.vary:
+                document.problems.append(_without_friction(path.parent / entry.file))
     hazard = _hazard(document, path.parent)
     sampling = usable_part(Sampling, {key: document.data[key] for key in Sampling.model_fields if key in document.data})
     samples: list[Sample] = []
@@ -195,6 +202,11 @@ def _of_file(document: Document, place: Place, name: str, file: Path, error: Inp
         else document.at(place, f"{name}: {each.field + ' ' if each.field else ''}{each.message}", each.hint)
         for each in error.problems
     ]
+
+
+def _without_friction(file: Path) -> Problem:
+    what = "is missing: the limit state sliding is whether joints need more friction than there is"
+    return Problem(what, str(file), field="friction", hint="give that of its joints, such as `friction: 0.6`")
 
 
 def _varied(document: Document, place: Place) -> list[str]:

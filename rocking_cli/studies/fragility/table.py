@@ -58,6 +58,7 @@ def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
         "phi negative [rad]": rows.peak_negative.tolist(),
         "uplift [s]": rows.uplift_time.tolist(),
         "overturning [s]": rows.overturning_time.tolist(),
+        **({"sliding [s]": rows.slide_time.tolist()} if rows.slide_time is not None else {}),
     }
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.studies.fragility.definition import OVERTURNING, Limit
+from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, Limit
 from rocking_cli.studies.fragility.intensity import intensity, of_the_motion, proportional
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
@@ -204,6 +204,8 @@ def count(
 def exceeds(found: Endings, limit: Limit) -> Bools:
     """Which runs exceed a limit state."""
     overturned: Bools = found.outcome != STANDS
+    if limit == SLIDING:
+        return found.slides
     if isinstance(limit, str):
         return overturned if limit == OVERTURNING else found.uplifts
     with np.errstate(invalid="ignore"):

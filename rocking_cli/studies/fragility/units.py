@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, isnan
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model, ModelName, build_model
+from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.prepared import with_restitution
+from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import FAILED, Rows
@@ -21,6 +26,7 @@ from rocking_cli.studies.fragility.study import Sample
 Integers = NDArray[np.int64]
 
 SMALLEST, LARGEST = 64, 4096  # runs of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
+CHECKED = 256  # of a unit whose runs are checked for sliding: each takes some ms
 SHARE = 16  # units for each worker at least, so that all end together
 SAMPLES = 4_000_000  # of the records of a unit, at most: 64 megabytes
 MODELS = 16  # of a unit, at most: some 30 megabytes, of arches 120
@@ -38,17 +44,24 @@ class Unit:
         What they are; their models and records are places in the tuples below.
     models : tuple of Model
     motions : tuple of GroundMotion
+    checked : tuple of Mechanism
+        The structures of the models, where runs are checked for sliding; else empty.
     """
 
     id: Integers
     runs: Runs
     models: tuple[Model, ...]
     motions: tuple[GroundMotion, ...]
+    checked: tuple[Mechanism, ...] = ()
 
 
 def carry_out(unit: Unit) -> Rows:
     """Run a unit on one processor; the same to the last bit wherever and with whatever else it is run."""
     found = respond_many(unit.models, unit.motions, unit.runs, threads=1, only_peaks=True)
+    slides = None
+    if unit.checked:
+        slides, lost = _slide_times(unit, found)
+        found = replace(found, failed=found.failed | lost)
 
     def known(values: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.where(found.failed, np.nan, values)
@@ -63,7 +76,33 @@ def carry_out(unit: Unit) -> Rows:
         peak_negative=known(found.peak_negative),
         uplift_time=known(found.uplift_time),
         overturning_time=known(found.overturning_time),
+        slide_time=slides,
     )
+
+
+def _slide_times(unit: Unit, found: Outcomes) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """When runs first slide, followed once more with their samples, and which cannot be followed to their rest."""
+    runs = unit.runs
+    times, lost = np.full(len(runs), np.nan), np.zeros(len(runs), dtype=bool)
+    checks: dict[tuple[int, float | None], Contacts] = {}
+    for k in np.flatnonzero(np.isfinite(found.uplift_time) & ~found.failed):  # at rest there is nothing to check
+        model, eta = int(runs.model[k]), float(runs.eta[k])
+        own = None if isnan(eta) else eta
+        if (model, own) not in checks:
+            checks[model, own] = Contacts(_with_restitution(unit.checked[model], own))
+        motion = unit.motions[runs.record[k]].scaled(float(runs.scale[k] * runs.polarity[k]))
+        try:
+            history = follow(unit.models[model], motion, eta=eta)
+        except SolverError:
+            lost[k] = True
+        else:
+            times[k] = checks[model, own].check(history, motion).slides
+    return times, lost
+
+
+def _with_restitution(mechanism: Mechanism, eta: float | None) -> Mechanism:
+    """A structure with a restitution of both impacts; None: its own."""
+    return mechanism if eta in (None, mechanism.restitution) else mechanism.model_copy(update={RESTITUTION: eta})
 
 
 def units(
@@ -73,6 +112,8 @@ def units(
     model: ModelName,
     finished: Callable[[int, int], Integers],
     size: int,
+    *,
+    checked: bool = False,
 ) -> Iterator[Unit]:
     """The runs that are still to do, in units made one at a time.
 
@@ -90,8 +131,11 @@ def units(
         Gives the numbers of the finished runs from one to before another.
     size : int
         Runs of a unit, at most.
+    checked : bool
+        Whether they are checked for sliding.
     """
     models = _Models(samples, plan.etas, model)
+    size = min(size, CHECKED) if checked else size
     waiting: list[Integers] = []
     trials: set[int] = set()
     records: set[int] = set()
@@ -99,7 +143,7 @@ def units(
     for sample, record, part in _parts(plan, finished, size):
         more = plan.records[record].npts if record not in records else 0
         if waiting and (held + len(part) > size or len(trials | {sample}) > MODELS or npts + more > SAMPLES):
-            yield _unit(plan, np.concatenate(waiting), models, motions)
+            yield _unit(plan, np.concatenate(waiting), models, motions, checked=checked)
             waiting, trials, records, held, npts = [], set(), set(), 0, 0
             more = plan.records[record].npts
         waiting.append(part)
@@ -107,7 +151,7 @@ def units(
         records.add(record)
         held, npts = held + len(part), npts + more
     if waiting:
-        yield _unit(plan, np.concatenate(waiting), models, motions)
+        yield _unit(plan, np.concatenate(waiting), models, motions, checked=checked)
 
 
 def _parts(
@@ -133,7 +177,7 @@ def unit_size(runs: int, workers: int) -> int:
     return min(max(ceil(runs / (SHARE * workers)), SMALLEST), LARGEST)
 
 
-def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions) -> Unit:
+def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, checked: bool) -> Unit:
     sample, record, eta, level, polarity = plan.places(runs)
     trials, model = np.unique(sample, return_inverse=True)
     records, motion = np.unique(record, return_inverse=True)
@@ -150,6 +194,7 @@ def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions) -> 
         ),
         tuple(models[int(k)] for k in trials),
         tuple(motions[int(k)] for k in records),
+        tuple(models.samples[k].mechanism for k in trials) if checked else (),
     )
 
 
