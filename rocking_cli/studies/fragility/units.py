@@ -89,7 +89,8 @@ def _slide_times(unit: Unit, found: Outcomes) -> tuple[NDArray[np.float64], NDAr
         model, eta = int(runs.model[k]), float(runs.eta[k])
         own = None if isnan(eta) else eta
         if (model, own) not in checks:
-            checks[model, own] = Contacts(_with_restitution(unit.checked[model], own))
+            checked = unit.checked[model]
+            checks[model, own] = Contacts(checked if own is None else with_restitution(checked, own))
         motion = unit.motions[runs.record[k]].scaled(float(runs.scale[k] * runs.polarity[k]))
         try:
             history = follow(unit.models[model], motion, eta=eta)
@@ -98,11 +99,6 @@ def _slide_times(unit: Unit, found: Outcomes) -> tuple[NDArray[np.float64], NDAr
         else:
             times[k] = checks[model, own].check(history, motion).slides
     return times, lost
-
-
-def _with_restitution(mechanism: Mechanism, eta: float | None) -> Mechanism:
-    """A structure with a restitution of both impacts; None: its own."""
-    return mechanism if eta in (None, mechanism.restitution) else mechanism.model_copy(update={RESTITUTION: eta})
 
 
 def units(
