@@ -137,7 +137,7 @@ def test_every_command_is_explained(name, made):
 
 def test_the_reference_has_every_option(made):
     text = made.make_reference.command_line()
-    for option in ("--release RATIO", "--with-pulse [best|sine|ricker|mavroeidis]", "-h, --help"):
+    for option in ("--release TILT", "--with-pulse [best|sine|ricker|mavroeidis]", "-h, --help"):
         assert f"- `{option}`: " in text
     assert "    rocking respond arch.yaml --release 0.5\n" in text
 
