@@ -19,7 +19,7 @@ from rocking_cli.core.statics import Statics
 Reals = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Integers = NDArray[np.int64]
-TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, of arches and walls with short links to 1e-10
+TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, those of short links to 1e-10
 FEWEST, MOST = 2048, 16384  # cells from rest to the kinematic limit
 END = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at the limit itself
 
