@@ -251,7 +251,7 @@ class TestRespond:
         assert list(rows[0]) == [
             "t [s]", "a_g [g]", "nonlinear phi [rad]", "nonlinear phi_dot [rad/s]", "nonlinear phi/limit",
             *(f"nonlinear {name} u_{way} [m]" for name in ("top", "floor", "thrust", "bar") for way in "xy"),
-            "nonlinear bar elongation [m]", "nonlinear bar force [N]",
+            "nonlinear bar elongation [m]", "nonlinear bar force [N]", "nonlinear base shear [N]",
         ]  # fmt: skip
         phi, u, e, n = (
             np.array([float(row[f"nonlinear {name}"]) for row in rows])

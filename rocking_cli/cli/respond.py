@@ -298,6 +298,7 @@ def _write(
 
     In a table those of the second polarity, or to the pulse alone, stand last, under names that say so.
     """
+    from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.movements import Watched
 
     first, *others = found.runs.values()
@@ -309,7 +310,9 @@ def _write(
         columns: dict[str, dynamics.History] = dict(first.items())
         columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
         columns |= {f"pulse {name}": run for name, run in (found.to_pulse or {}).items()}
-        return history_table.blocks(columns, found.first, watched=watched)
+        contacts = Contacts(structure.mechanism)
+        shear = {"nonlinear": contacts.base_shear(first["nonlinear"], found.first)} if "nonlinear" in first else {}
+        return history_table.blocks(columns, found.first, watched=watched, base_shear=shear)
 
     def draw() -> Figure:
         from rocking_cli.plotting.history import draw_history

@@ -64,6 +64,9 @@ class Contact:
     duration : float
         The longest time on end for which it needs more than `friction` [s]; without that, for which, around its peak,
         it needs more than 90 % of `friction_needed`.
+    base_shear : float
+        The largest horizontal force of the ground on the structure while it rocks, in either sense [N], per unit mass
+        of a structure without masses; of guides that hold it sideways nothing.
     least_normal : float
         The smallest N of any joint while it rocks [N], per unit mass of a structure without masses.
     impact_friction : float
@@ -90,6 +93,7 @@ class Contact:
     joint: str
     time: float
     duration: float
+    base_shear: float
     least_normal: float
     impact_friction: float
     lost: float
@@ -136,16 +140,32 @@ class Contacts:
         most = np.full((3, states.time.size), -np.inf)
         most[DEMAND] = 0.0
         joint = np.zeros(most.shape, np.int64)
+        shear = 0.0
         for direction in self.mechanism.directions:
             mine = np.flatnonzero(states.rocks & (states.sign == direction))
             for start in range(0, mine.size, BLOCK):
                 part = mine[start : start + BLOCK]
-                most[:, part], joint[:, part] = self._worst(direction, states, part)
-        return self._summed_up(history, states, most, joint)
+                found = self._forces(direction, states, part)
+                most[:, part], joint[:, part] = self._worst(direction, found)
+                shear = max(shear, float(np.abs(_base(found)).max()))
+        return self._summed_up(history, states, most, joint, shear)
 
-    def _worst(self, direction: Direction, states: _States, part: Places) -> tuple[Reals, Places]:
+    def base_shear(self, history: History, motion: GroundMotion | None) -> Reals:
+        """The horizontal force of the ground on the structure at each sample, to the right [N]; NaN at rest."""
+        states = _samples(self.mechanism, history, motion)
+        shear = np.full(states.time.size, np.nan)
+        for direction in self.mechanism.directions:
+            mine = np.flatnonzero(states.rocks & (states.sign == direction))
+            for start in range(0, mine.size, BLOCK):
+                part = mine[start : start + BLOCK]
+                shear[part] = _base(self._forces(direction, states, part))
+        return np.concatenate([shear, np.full(history.time.size - shear.size, np.nan)])
+
+    def _forces(self, direction: Direction, states: _States, part: Places) -> Reactions:
+        return reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
+
+    def _worst(self, direction: Direction, found: Reactions) -> tuple[Reals, Places]:
         """The three quantities of some states, each of the joint where it is largest, and the places of these."""
-        found = reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
         rest = self._at_uplift[direction]
         bears = np.maximum(BEARS * rest.normal, 0.0)
         normal = np.where(np.abs(found.force) > IDLE * np.abs(rest.force).max(), found.normal, np.nan)
@@ -156,14 +176,14 @@ class Contacts:
         joint = each.argmax(axis=1)
         return np.take_along_axis(each, joint[:, None], axis=1)[:, 0], joint
 
-    def _summed_up(self, history: History, states: _States, most: Reals, joint: Places) -> Contact:
+    def _summed_up(self, history: History, states: _States, most: Reals, joint: Places, shear: float) -> Contact:
         friction, time = self.mechanism.friction, states.time
         thrown = {direction: self._impulses[direction] for direction in _ended(history)}
         hits = [found for found in thrown.values() if found is not None]
         lost, lost_joint = self._lost(history, states, most[PULL], joint[PULL])
         if not states.rocks.any():
             return Contact(
-                NONE, "", NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, "", None, time, most[DEMAND]
+                NONE, "", NONE, NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, "", None, time, most[DEMAND]
             )  # fmt: skip
         peak = int(most[DEMAND].argmax())
         needed = float(most[DEMAND, peak])
@@ -178,6 +198,7 @@ class Contacts:
             joint=self._letter(states, joint[DEMAND], peak),
             time=float(time[peak]),
             duration=float((ends - starts).max(initial=0.0)),
+            base_shear=shear,
             least_normal=-float(most[PULL].max()),
             impact_friction=max((_ratio(found) for found in hits), default=NONE) if len(hits) == len(thrown) else NONE,
             lost=lost,
@@ -239,20 +260,28 @@ class _States(NamedTuple):
     rocks: NDArray[np.bool_]
 
 
-def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:
-    """The samples of a history until it overturns, its first uplift, and both sides of its impacts."""
+def _samples(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:
+    """The samples of a history until it overturns."""
     end = history.overturning_time if history.overturned else np.inf
     kept = np.isfinite(history.phi) & (history.time <= end)
     time, phi, rate = history.time[kept], history.phi[kept], history.rate[kept]
     sign = np.where(phi != 0, np.sign(phi), np.sign(rate))
-    impact = history.impacts[history.impacts[:, 0] <= end]
-    after = -impact[:, 1]
-    eta = np.where(impact[:, 1] > 0, mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1]))
     if not mechanism.rocks_both_ways:
-        sign, after = np.full(sign.size, float(mechanism.directions[0])), impact[:, 1]
+        sign = np.full(sign.size, float(mechanism.directions[0]))
+    rocks = ((phi != 0) | (rate != 0)) & (sign != 0)
+    return _States(time, sign, np.abs(phi), sign * rate, _ground(time, motion), rocks)
+
+
+def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:
+    """The samples of a history until it overturns, its first uplift, and both sides of its impacts."""
+    end = history.overturning_time if history.overturned else np.inf
+    samples = _samples(mechanism, history, motion)
+    impact = history.impacts[history.impacts[:, 0] <= end]
+    after = -impact[:, 1] if mechanism.rocks_both_ways else impact[:, 1]
+    eta = np.where(impact[:, 1] > 0, mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1]))
     still = np.zeros(len(impact))
     rows = [
-        np.stack([time, sign, np.abs(phi), sign * rate, (phi != 0) | (rate != 0)]),
+        np.stack([samples.time, samples.sign, samples.phi, samples.rate, samples.rocks]),
         # Two rows an impact, one after the other: phi = 0 with the rate before, and with that after.
         np.stack([impact[:, 0], impact[:, 1], still, -impact[:, 2], still + 1]).repeat(2, axis=1),
     ]
@@ -266,6 +295,12 @@ def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None)
     table = table[:, np.argsort(table[0], kind="stable")]
     rocks = (table[4] > 0) & (table[1] != 0)
     return _States(table[0], table[1], table[2], table[3], _ground(table[0], motion), rocks)
+
+
+def _base(found: Reactions) -> Reals:
+    """The horizontal force of the ground, without what guides hold, shape (n,)."""
+    grounded = np.array([found.is_whole or (len(joint.bodies) == 1 and not joint.is_guide) for joint in found.joints])
+    return np.asarray(found.force[grounded].real.sum(axis=0))
 
 
 def _ground(time: Reals, motion: GroundMotion | None) -> NDArray[np.complex128]:

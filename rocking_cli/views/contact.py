@@ -20,6 +20,7 @@ def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
         "joint": found.joint or None,
         "time": found.time,
         "duration": found.duration,
+        "base_shear": found.base_shear,
         "least_normal": found.least_normal,
         "impact_friction": found.impact_friction,
         "lost": found.lost,
@@ -35,7 +36,16 @@ def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-COLUMNS = ("friction needed", "at joint", "at [s]", "for [s]", "at impacts", "least normal force", "contact lost")
+COLUMNS = (
+    "friction needed",
+    "at joint",
+    "at [s]",
+    "for [s]",
+    "at impacts",
+    "base shear",
+    "least normal force",
+    "contact lost",
+)
 """Headings of the rows of `contact_row`."""
 
 
@@ -45,7 +55,8 @@ def contact_row(found: Contact, mechanism: Mechanism) -> list[str]:
     numbers = [number(each, 3) for each in (found.time, found.duration, found.impact_friction)]
     least = f"{number(found.least_normal, 4)} {unit}" if not isnan(found.least_normal) else number(NONE)
     lost = f"at {number(found.lost, 4)} s" if not isnan(found.lost) else "never"
-    return [number(found.friction_needed, 3), found.joint or "-", *numbers, least, lost]
+    shear = f"{number(found.base_shear, 4)} {unit}" if not isnan(found.base_shear) else number(NONE)
+    return [number(found.friction_needed, 3), found.joint or "-", *numbers, shear, least, lost]
 
 
 def contact_words(found: Contact, mechanism: Mechanism) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,7 @@ def blocks(
     motion: GroundMotion | None,
     rows: int = ROWS,
     watched: Watched | None = None,
+    base_shear: Mapping[str, Reals] = MappingProxyType({}),
 ) -> Iterator[dict[str, Reals]]:
     """Columns by their headings, a block of samples at a time.
 
@@ -47,7 +49,9 @@ def blocks(
     rows : int
         Samples in a block, at most.
     watched : Watched, optional
-        Points and ties: with them, the last columns are displacements, elongations and forces in each history.
+        Points and ties: with them, further columns are displacements, elongations and forces in each history.
+    base_shear : mapping of str to ndarray, optional
+        The horizontal force of the ground at each sample of some histories [N], as last columns; NaN at rest.
 
     Yields
     ------
@@ -72,6 +76,7 @@ def blocks(
             for name, run in histories.items():
                 phi = _padded(run.phi, part, np.nan if run.overturned else 0.0)
                 found |= {f"{name} {what}": values for what, values in watched.columns(phi)}
+        found |= {f"{name} base shear [N]": _padded(values, part, np.nan) for name, values in base_shear.items()}
         yield found
 
 

@@ -24,7 +24,7 @@ from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Answer, Histories, Question, Runs
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.view import Table, View, in_degrees, number
+from rocking_cli.views.view import ABSENT, Table, View, in_degrees, number
 
 FIRST = 12  # impacts of a model in its table; the data have all
 
@@ -288,7 +288,7 @@ def _tables(
     parts: list[Table | str] = []
     for polarity, histories in runs.items():
         heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
-        parts += [_table(heading, histories, shown.watched), verdict(histories)]
+        parts += [_table(heading, histories, shown, polarity), verdict(histories)]
         parts += [str(near[polarity])] if polarity in near else []
         parts += shown.contact_words(polarity)
         if shown.etas is not None:
@@ -298,7 +298,7 @@ def _tables(
     return [*parts, governs(runs)[1]] if len(runs) > 1 else parts
 
 
-def _table(title: str, histories: Histories, watched: Watched | None) -> Table:
+def _table(title: str, histories: Histories, shown: Shown, polarity: int) -> Table:
     runs = list(histories.values())
     free = runs[0].ends_at_limit
     over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"
@@ -311,8 +311,12 @@ def _table(title: str, histories: Histories, watched: Watched | None) -> Table:
         ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
         ["impacts", *(str(run.impact_count) for run in runs), ""],
     ]
-    if watched is not None:
-        rows += _movement_rows([watched.peaks(run) for run in runs])
+    if shown.watched is not None:
+        rows += _movement_rows([shown.watched.peaks(run) for run in runs])
+    if polarity in shown.contacts and shown.mechanism is not None:
+        per, unit = (1000, "kN") if shown.mechanism.has_mass else (1, "N/kg")
+        shear = number(shown.contacts[polarity].base_shear / per, 4)
+        rows.append(["base shear", *(shear if run.model == "nonlinear" else ABSENT for run in runs), unit])
     return Table(title, ["", *(run.model for run in runs), "unit"], rows, numbers=range(1, len(runs) + 1))
 
 
