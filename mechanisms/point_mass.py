@@ -48,4 +48,8 @@ class PointMass(SingleBody):
         return Length("2b", left, right), Length("h", edge, edge + 1j * self.height)
 
     def sketch(self) -> Sketch:
-        return replace(super().sketch(), notes=["the mass is a point, strut and base have none: not to scale"])
+        return replace(
+            super().sketch(),
+            notes=["the mass is a point, strut and base have none: not to scale"],
+            at_will=["mass"],
+        )

@@ -112,5 +112,6 @@ class SymmetricFrame(Mechanism):
                 Length("R", right, columns.centroid, Direction.POSITIVE),
             ],
             angles=[Angle("α", right, right + 1j, columns.centroid, Direction.POSITIVE)],
+            at_will=[beam.name],
             notes=[f"spacing and depth of the beam are not to scale: they are not given and change nothing{few}"],
         )

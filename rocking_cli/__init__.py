@@ -47,6 +47,7 @@ _HOME = {
     "dynamics.outcome": ["Outcome"],
     "dynamics.pulse_response": ["closed_form", "exact_pulse"],
     "errors": ["InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
+    "core.equivalence": ["NoEquivalentBlock"],
     "excitation.base": ["GroundMotion"],
     "excitation.measures": ["Measures", "measure"],
     "excitation.pulse_fit": ["PulseFit", "fit_pulse"],

@@ -32,6 +32,7 @@ from rocking_cli.core import EquivalentBlock as EquivalentBlock
 from rocking_cli.core import Mechanism as Mechanism
 from rocking_cli.core import RigidMotion as RigidMotion
 from rocking_cli.core import equivalent_block as equivalent_block
+from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock
 from rocking_cli.core.registry import Registry as Registry
 from rocking_cli.dynamics.batch import Runs as Runs
 from rocking_cli.dynamics.batch import respond_many as respond_many

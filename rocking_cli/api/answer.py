@@ -52,6 +52,8 @@ class Answer(Generic[R]):
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "result":
             raise AttributeError(name)
+        if self.result is None:
+            raise AttributeError(f"there is no {name}: {self.sentences[0]}")
         return getattr(self.result, name)
 
     @property

@@ -352,6 +352,8 @@ def respond_each(
     factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
     shape = len(ready), len(shaking), factors.size
     chosen = _models(models)
+    if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
+        chosen = ("nonlinear",)
     found: dict[ModelName, Outcomes] = {}
     for name in chosen:
         runs = Runs.every(len(ready), len(shaking), scales=factors.tolist())

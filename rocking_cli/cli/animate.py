@@ -111,7 +111,7 @@ def command(
     read = [*files, *(str(path) for path in paths)]
     keep_apart([("--out", out)], read)
     structure = inputs.structure(files, asked.records)
-    given, refused = inputs.gather(paths, asked, structure.p, several=several)
+    given, refused = inputs.gather(paths, asked, structure.growth, several=several)
     if not given:
         ctx.exit(InputError.exit_code)
     places = motion_files.separate(out, given, several=several)

@@ -73,6 +73,7 @@ def command(
     if len(files) < 2:
         raise click.UsageError("Equivalent to what? Give two FILEs or more; the pulse is for the first.")
     from rocking_cli.cli import structures, waiting
+    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.equivalent import equivalent, judge
     from rocking_cli.views.equivalent import table, title, view
@@ -91,6 +92,8 @@ def command(
 
         return draw_equivalent(found, title(found))
 
+    for each, file in zip(mechanisms, good, strict=True):
+        structures.warn_misleading(Prepared(each, file), "linear")
     output.write(lambda: [table(found)], draw)
     verdict = terminal.as_typed(" ".join(judge(found)))
     terminal.show(view(found, verdict), as_json=output.as_json)

@@ -65,12 +65,13 @@ def command(
 
     keep_apart([("--plot", plot)], [file])
     structure = structures.prepared([file] if file else [])
+    blocks = structure.equivalence
     try:
-        curves, asked = compare(structure.mechanism, structure.equivalence, amplitudes, accelerations)
+        curves, asked = compare(structure.mechanism, blocks, amplitudes, accelerations)
     except RockingError as error:
         raise type(error)(f"{structure.name}: {error}") from error
     if plot is not None:
         from rocking_cli.plotting.linearisation import draw_linearisation
 
         write_picture(plot, draw_linearisation(curves, asked, heading(structure.mechanism)))
-    terminal.show(view(structure.mechanism, structure.equivalence, curves, asked), as_json=as_json)
+    terminal.show(view(structure.mechanism, blocks, curves, asked), as_json=as_json)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from importlib.resources import files
 from typing import Any
 
@@ -38,7 +39,7 @@ def command(name: str, as_json: bool) -> None:
         _print({"study": STUDY, "yaml": TEMPLATE}, as_json=as_json)
         return
     from rocking_cli.core.registry import Registry
-    from rocking_cli.errors import RockingError
+    from rocking_cli.errors import InputError, Problem, RockingError
     from rocking_cli.structure import parse_structure
 
     registry = Registry()
@@ -46,6 +47,8 @@ def command(name: str, as_json: bool) -> None:
         text = (files("rocking_cli") / "data" / "starters" / f"{name}.yaml").read_text(encoding="utf-8")
         _print({"starter": name, "yaml": text}, as_json=as_json)
         return
+    if name not in registry and (near := get_close_matches(name, STARTERS, n=1)):
+        raise InputError(Problem(f"there is no mechanism {name!r}", hint=f"did you mean {near[0]}?"))
     text = template(registry[name])
     try:
         parse_structure(text, f"rocking new {name}", name, registry)

@@ -122,10 +122,10 @@ def command(
     if compare and len(loaded) < 2:
         raise InputError("only one of the FILEs can be used: --compare needs two or more")
     mechanisms = structures.told_apart(loaded, good)
-    subjects = [
-        pulsed_model(Prepared(each, file), cast("ModelName", model), shape, pulses.signs, pulses.eta)
-        for each, file in zip(mechanisms, good, strict=True)
-    ]
+    ready = [Prepared(each, file) for each, file in zip(mechanisms, good, strict=True)]
+    subjects = [pulsed_model(each, cast("ModelName", model), shape, pulses.signs, pulses.eta) for each in ready]
+    for each in ready:
+        structures.warn_misleading(each, model)
     exact = model != "nonlinear" and bool(shape.segments())
     if compare:
         _compare(subjects, mechanisms, shape, pulses.signs, plane, output, exact=exact)

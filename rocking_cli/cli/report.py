@@ -99,7 +99,7 @@ def command(
     given: list[Scaled] = []
     refused = 0
     if paths or asked.pulses:
-        given, refused = inputs.gather(paths, asked, structure.p, several=several)
+        given, refused = inputs.gather(paths, asked, structure.growth, several=several)
     bad += refused
     if bad and not given:
         ctx.exit(InputError.exit_code)

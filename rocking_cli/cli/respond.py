@@ -162,7 +162,7 @@ def command(
     chosen: Sequence[Scaled | None] = [None]  # a free release
     refused = 0
     if asked:
-        chosen, refused = inputs.gather(paths, asked, structure.p, vertical, several=several)
+        chosen, refused = inputs.gather(paths, asked, structure.growth, vertical, several=several)
         if not chosen:
             ctx.exit(InputError.exit_code)
     outs, plots = (motion_files.separate(path, chosen, several=several) for path in (output.out, output.plot))

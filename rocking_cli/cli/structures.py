@@ -54,6 +54,12 @@ def warn(mechanism: Mechanism) -> None:
         terminal.warning(doubt)
 
 
+def warn_misleading(structure: Prepared, model: str) -> None:
+    """Say of a linear model that was asked for that it misleads, where it does."""
+    if model != "nonlinear" and structure.misleading is not None:
+        terminal.warning(f"{structure.name}: {structure.misleading}")
+
+
 def doubts(mechanism: Mechanism) -> list[str]:
     """What is doubtful about the sizes that were read."""
     doubt = doubtful_size(mechanism)

@@ -242,11 +242,12 @@ class Spring:
         return self.prestress + self.stiffness * e
 
     def _energy(self, e: Reals) -> Reals:
-        """The integral of N from rest [J]."""
-        if self.only is None or self.stiffness == 0:
-            return self.prestress * e + self.stiffness * e**2 / 2
-        before, now = (self.force(at) ** 2 / (2 * self.stiffness) for at in (np.zeros_like(e), e))
-        return now - before
+        """The integral of N from rest [J]; what goes slack on the way stores no more."""
+        if self.only is not None and self.stiffness > 0:
+            with np.errstate(over="ignore"):
+                slack = -np.float64(self.prestress) / self.stiffness  # the elongation at which it goes slack
+            e = np.maximum(e, slack) if self.only == "tension" else np.minimum(e, slack)
+        return self.prestress * e + self.stiffness * e**2 / 2
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from rocking_cli.core.ties import Tie
 from rocking_cli.text import did_you_mean
 
 OUTSIDE = 1e-6  # of the size of a body: how far outside it a point may be by rounding
+RESERVED = ("top", "centroid", "interlock", "overburden")  # what answers call points and forces of their own
 LOOKED_AT = 129  # rotations at which it is seen whether a tie stretches
 STRETCHED = 1e-9  # of the length of its path, or of a metre: what counts as stretching
 
@@ -127,6 +128,8 @@ def attach(carrier: Carrier, loads: Sequence[Load], ties: Sequence[Tie]) -> Iter
 
 
 def _own_name(name: str, names: set[str], loc: Loc) -> None:
+    if name in RESERVED:
+        raise Refused(loc, "name", f"{name!r} is what the tool itself calls something: give it another name")
     if name in names:
         raise Refused(loc, "name", f"{name!r} is there already: give each load and tie its own name")
     names.add(name)

@@ -16,12 +16,13 @@ class Interlock(Described):
     """Friction between the courses of a facade and of the walls that cross it [Circolare 7/2019, C8.7.1.2].
 
     F = 0.4 n (n + 1) (h_b/l) mu l^2 t_s w of each crossing wall, at a third of the height above the foot: constant,
-    against the motion in either direction, and without inertia. What the crossing walls carry themselves is left out.
+    against the motion in either direction, and without inertia. What the crossing walls carry themselves is left out;
+    so is that blocks come apart once they have slid by their overlap, which no history may be trusted beyond.
     """
 
     courses: int = quantity("number of courses in the height", symbol="n", example=40, ge=1, le=10_000)
-    overlap: float = length("length by which blocks overlap", symbol="l", example=0.2)
-    thickness: float = length("thickness of a crossing wall", symbol="t_s", example=0.5)
+    overlap: float = quantity("length by which blocks overlap", unit="m", symbol="l", example=0.2, gt=0, le=3)
+    thickness: float = quantity("thickness of a crossing wall", unit="m", symbol="t_s", example=0.5, gt=0, le=20)
     friction: float = quantity("coefficient of friction", symbol="mu", example=0.577, default=0.577, gt=0, le=2)
     walls: int = quantity("number of crossing walls", example=2, default=1, ge=1, le=100)
     height: float = length("height of the courses above the foot", symbol="h", example=8.0)

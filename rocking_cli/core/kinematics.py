@@ -30,7 +30,7 @@ class Direction(IntEnum):
 
     @property
     def prime(self) -> str:
-        """What a hinge of this direction has after its letter: A is that of the positive direction, A' of the other."""
+        """What a hinge of this direction has after its letter, as A' of the negative one beside A of the positive."""
         return "" if self > 0 else "'"
 
     @property

@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from rocking_cli.core import equilibrium
-from rocking_cli.core.attached import Attached, Follow, PointMass, Spring, springs_of
+from rocking_cli.core.attached import Attached, ConstantForce, Follow, PointMass, Spring, springs_of
 from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
@@ -171,7 +171,7 @@ class Mechanism(Described, ABC):
 
     @property
     def sides(self) -> tuple[Direction, Direction]:
-        """The directions that stand for positive and negative motion: where there is one only, for both."""
+        """The directions that stand for positive and negative motion; where there is one only, it does for both."""
         return self.directions[0], self.directions[-1]
 
     @property
@@ -295,6 +295,12 @@ class Mechanism(Described, ABC):
 
     def _check_stands(self) -> None:
         """Refuse loads and ties under which the structure does not stand though it stands by itself."""
+        lifted = sum(thing.force.imag for thing in self.attached if isinstance(thing, ConstantForce))
+        borne = sum(thing.mass * thing.weight for thing in self.attached if isinstance(thing, PointMass))
+        weight = self.gravity * (sum(body.mass for body in self.weighed()) + borne)
+        if lifted >= weight:
+            reason = f"forces lift it by {lifted:.4g} N, more than all of its weight, {weight:.4g} N"
+            raise Refused((), "loads", reason)
         for direction in self.directions:
             here = self.coefficients(np.zeros(1), direction)
             own = coefficients(np.zeros(1), direction, self.bodies(), self.motion(np.zeros(1), direction))
@@ -467,6 +473,8 @@ class Mechanism(Described, ABC):
                     ("interlock",), "density", "is missing: the weight of the crossing walls is their friction"
                 )
             foot = carrier.foot(self.interlock.body, ("interlock",))
+            top = foot.at + 1j * self.interlock.height
+            carrier.spot(foot.body, top, ("interlock",), "height")
             found.append((("interlock",), self.interlock.attached(foot, density, self.gravity)))
         return found
 
@@ -492,7 +500,7 @@ class Mechanism(Described, ABC):
 
     @property
     def bends(self) -> bool:
-        """Whether its restoring moment may have any shape: it is then seen whether linear models mislead."""
+        """Whether its restoring moment may have any shape, so that it is looked at whether linear models mislead."""
         return bool(self.attached)
 
     @property
@@ -502,7 +510,7 @@ class Mechanism(Described, ABC):
 
     @property
     def is_bare(self) -> bool:
-        """Whether it is the mechanism alone: without masses of the file, loads and ties."""
+        """Whether it is the mechanism alone, without masses of the file, loads and ties."""
         return self.total_mass() is None and not self._hung
 
     def followed(self, phi: Reals, direction: Direction) -> Follow:

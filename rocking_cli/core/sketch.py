@@ -120,6 +120,8 @@ class Sketch:
         What to show at rest.
     ground : sequence of sequence of complex
         Lines of the ground, which is on the right of someone who walks along them. Without any: level under the pivots.
+    at_will : sequence of str
+        Names of bodies whose outlines are drawn at will.
     notes : sequence of str
         What to know when looking at it, such as what is not to scale because its size is not given.
     """
@@ -133,6 +135,7 @@ class Sketch:
     lines: Sequence[Line] = ()
     ground: Sequence[Sequence[complex]] = ()
     notes: Sequence[str] = ()
+    at_will: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         kinds = {"lengths": Length, "angles": Angle, "lines": Line, "notes": str}

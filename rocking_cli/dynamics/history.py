@@ -63,7 +63,7 @@ class History(Outcome[bool, int, float]):
 
     @property
     def reference(self) -> str:
-        """What its largest ratio is over: the critical rotation, or the kinematic limit."""
+        """What its largest ratio is over, the critical rotation or the kinematic limit."""
         return "kinematic limit" if self.ends_at_limit[self._side] else "critical rotation"
 
     @property

@@ -115,6 +115,11 @@ class Prepared:
         return self.model("nonlinear").p
 
     @property
+    def growth(self) -> float:
+        """How fast a tilt near the critical one grows [1/s]; 0 where none is critical."""
+        return self.p if self.why_no_block is None else 0.0
+
+    @property
     def uplift(self) -> tuple[float, float]:
         """The ground acceleration that lifts it to the positive and the negative direction [standard gravity]."""
         unit = self.mechanism.gravity / STANDARD_GRAVITY

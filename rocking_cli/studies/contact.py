@@ -185,6 +185,7 @@ class Contacts:
             return Contact(
                 NONE, "", NONE, NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, "", None, time, most[DEMAND]
             )  # fmt: skip
+        most[DEMAND, time > lost] = 0.0  # what is needed beyond that is of no motion that there is
         peak = int(most[DEMAND].argmax())
         needed = float(most[DEMAND, peak])
         starts, ends = _stretches(time, most[DEMAND], NEAR_PEAK * needed if friction is None else friction)

@@ -33,7 +33,7 @@ class PointPeak:
 class TiePeak:
     """The force [N] and the elongation [m] of a tie where they are largest, with their signs; tension is positive.
 
-    NaN if the structure overturns.
+    Of a tie that acts in one sense only, the elongation is the largest in this sense.
     """
 
     name: str
@@ -75,7 +75,7 @@ class Watched:
     @cached_property
     def points(self) -> Mapping[str, Spot]:
         """The top, and where loads and ties are, by their names."""
-        return {"top": _top(self.mechanism)} | dict(_hung(self.mechanism))
+        return dict([_top(self.mechanism), *_where_it_bends(self.mechanism), *_hung(self.mechanism)])
 
     @cached_property
     def ties(self) -> Sequence[Spring | SpringBed]:
@@ -89,17 +89,18 @@ class Watched:
     def peaks(self, history: History) -> Movements:
         """The largest values of a history, also between its samples: a place depends on the rotation alone.
 
-        NaN of one that overturns, as its peak is, and of a linear one that goes further than the mechanism can; the
-        impacts before are none the less.
+        Points of one that overturns have no peak, nor of a linear one that goes further than the mechanism can. What
+        ties bear then is that up to where it is certain to overturn, and the impacts are those before.
         """
         reached = {
             direction: history.peak_positive if direction > 0 else history.peak_negative
             for direction in self.mechanism.directions
         }
         if history.overturned or any(not phi < self._limits[side] for side, phi in reached.items()):
+            before = {direction: self._before(history, direction) for direction in self.mechanism.directions}
             return Movements(
                 [PointPeak(name, spot.at, nan, nan) for name, spot in self.points.items()],
-                [TiePeak(tie.name, nan, nan) for tie in self.ties],
+                [self._tie(tie, before) for tie in self.ties],
                 self._impact_velocity(history),
             )
         return Movements(
@@ -122,6 +123,12 @@ class Watched:
             yield f"{tie.name} elongation [m]", both.real
             yield f"{tie.name} force [N]", both.imag
 
+    def _before(self, history: History, direction: Direction) -> float:
+        """The largest rotation of a history in a direction before it overturns, by its samples."""
+        end = history.overturning_time if history.overturned else np.inf
+        turned = direction * history.phi[np.isfinite(history.phi) & (history.time <= end)]
+        return float(np.clip(turned, 0.0, np.nextafter(self._limits[direction], 0.0)).max(initial=0.0))
+
     def _point(self, name: str, spot: Spot, reached: Mapping[Direction, float]) -> PointPeak:
         moved = np.concatenate([self._displacement(spot, _way(phi), side) for side, phi in reached.items()])
         return PointPeak(name, spot.at, float(np.abs(moved.real).max()), float(np.abs(moved.imag).max()))
@@ -129,7 +136,9 @@ class Watched:
     def _tie(self, tie: Spring | SpringBed, reached: Mapping[Direction, float]) -> TiePeak:
         both = np.concatenate([_strained(self.mechanism, tie, _way(phi), side) for side, phi in reached.items()])
         elongation, force = both.real, both.imag
-        return TiePeak(tie.name, float(force[np.abs(force).argmax()]), float(elongation[np.abs(elongation).argmax()]))
+        only = tie.only if isinstance(tie, Spring) else None
+        counts = elongation if only == "tension" else -elongation if only == "compression" else np.abs(elongation)
+        return TiePeak(tie.name, float(force[np.abs(force).argmax()]), float(elongation[counts.argmax()]))
 
     def _displacement(self, spot: Spot, phi: Reals, direction: Direction) -> NDArray[np.complex128]:
         return np.asarray(self.mechanism.followed(phi, direction)(spot).z - spot.at)
@@ -200,18 +209,28 @@ def _landing(mechanism: Mechanism, direction: Direction) -> float:
     return max(abs(complex(follow(foot).dz[0])) for foot in feet)
 
 
-def _top(mechanism: Mechanism) -> Spot:
-    """The middle of the highest corners of the highest body; its centroid where no shape is known."""
+def _top(mechanism: Mechanism) -> tuple[str, Spot]:
+    """The middle of the highest corners of the highest body; its centroid, called so, where no shape is known."""
     sketch = mechanism.sketch()
     corners = {}
     for body in mechanism.bodies():
-        known = sketch.outlines.get(body.name, ()) if sketch.uniform else ()
-        shapes = [body.outline] if body.outline else list(known)
+        drawn = sketch.outlines.get(body.name, ()) if body.name not in sketch.at_will else ()
+        shapes = [body.outline] if body.outline else list(drawn)
         corners[body.name] = np.concatenate([np.asarray(shape) for shape in shapes] or [np.array([body.centroid])])
     highest = max(corners, key=lambda name: float(corners[name].imag.max()))
     z = corners[highest]
     level = z[z.imag >= z.imag.max() - LEVEL * float(np.ptp(z.imag) + 1e-300)]
-    return Spot(highest, complex(level.real.min() + level.real.max(), 2 * level.imag.max()) / 2)
+    spot = Spot(highest, complex(level.real.min() + level.real.max(), 2 * level.imag.max()) / 2)
+    return "top" if len(z) > 1 else "centroid", spot
+
+
+def _where_it_bends(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:
+    """The hinges of a structure whose top is held sideways: there it moves most."""
+    joints = mechanism.joints(mechanism.directions[0])
+    if any(joint.is_guide for joint in joints):
+        for joint in joints:
+            if len(joint.bodies) == 2:
+                yield f"joint {joint.letter}", Spot(joint.bodies[0], joint.point)
 
 
 def _hung(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:

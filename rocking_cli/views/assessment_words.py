@@ -76,6 +76,8 @@ def in_a_sentence(content: Assessment) -> str:
     falls = [each for each in content.results if _overturns(each)]
     doubtful = any(each.close for each in content.results)
     close = " The result is a close one: read below what could change it." if doubtful else ""
+    if any(not contact.holds for each in content.results for contact in each.contacts.values()):
+        close += " But its joints do not hold: read below from when on the answer is none."
     if falls:
         under = _listed([each.given.motion.name for each in falls])
         of = f" ({len(falls)} of {len(content.results)} ground motions)" if len(content.results) > 1 else ""
@@ -162,11 +164,17 @@ def doubts(content: Assessment) -> list[str]:
         )
     if content.structure.misleading:
         said.append(f"{content.structure.misleading[0].upper()}{content.structure.misleading[1:]}: they are left out.")
+    edges = "without crushing at their edges" if content.mechanism.crushing is None else "on pivots moved inwards"
     said.append(
-        "The bodies are taken as rigid, on rigid ground, in one plane, without sliding and without crushing at their "
-        "edges; the section on joints says what that asks of them. The vertical motion of the ground is left out. Worn "
-        "edges and soft ground lower the resistance."
+        f"The bodies are taken as rigid, on rigid ground, in one plane, without sliding and {edges}; the section on "
+        "joints says what that asks of them. The vertical motion of the ground is left out. Worn edges and soft ground "
+        "lower the resistance."
     )
+    if content.mechanism.interlock is not None:
+        said.append(
+            f"The friction of crossing walls is taken as constant; blocks that have slid by their overlap of "
+            f"{1000 * content.mechanism.interlock.overlap:.0f} mm come apart, beyond which no answer holds."
+        )
     return said
 
 
@@ -299,6 +307,9 @@ def why_alone(content: Assessment) -> str:
 
 def _doubts(result: MotionResult) -> list[str]:
     said = [f"{each.text[0].upper()}{each.text[1:]}." for each in result.doubts]
+    contact = result.contacts.get(result.polarity)
+    if contact is not None and not contact.holds:
+        said.append("Its joints do not hold under this motion, see there: beyond that moment the answer is none.")
     if result.close:
         said.append("The result is close to the other outcome. Do not rest a decision on this one computation.")
     if any(run.still_rocking for run in result.histories.values()):

@@ -49,7 +49,8 @@ def _words(thing: Attached) -> str:
         return f"{thing.mass:.4g} kg, of which {sideways} moves sideways, {up} up, and {borne} is borne"
     if isinstance(thing, ConstantForce):
         if thing.friction:
-            return f"friction of {abs(thing.force) / 1000:.4g} kN against the motion at y = {thing.spot.at.imag:.4g} m"
+            at = f"at y = {thing.spot.at.imag:.4g} m"
+            return f"a constant friction of {abs(thing.force) / 1000:.4g} kN against the motion {at}"
         return f"a force of {thing.force.real / 1000:.4g} kN to the right and {thing.force.imag / 1000:.4g} kN up"
     if isinstance(thing, Spring):
         sense = f", {thing.only} only" if thing.only else ""

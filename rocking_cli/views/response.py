@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
@@ -271,8 +272,27 @@ def view(
     caution = [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
+    caution += [f"Caution: {text}" for text in _apart(shown, found.runs)]
     said = [*parts, *models_used(first), restitution_used(structure), *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
+
+
+def _apart(shown: Shown, runs: Runs) -> Iterator[str]:
+    """That blocks of crossing walls have slid out of one another, where they have."""
+    mechanism, watched = shown.mechanism, shown.watched
+    if mechanism is None or watched is None or mechanism.interlock is None:
+        return
+    overlap = mechanism.interlock.overlap
+    moved = [
+        next(point.horizontal for point in watched.peaks(run).points if point.name == INTERLOCK)
+        for histories in runs.values()
+        for run in histories.values()
+    ]
+    if not max(moved) <= overlap:  # of one that overturns it is not a number
+        yield (
+            f"where the crossing walls hold it, it moves by more than their overlap of {1000 * overlap:.0f} mm: by "
+            "then their blocks are apart, and the friction that this answer counts on is gone. The answer does not hold."
+        )
 
 
 def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, Contact]) -> View:
