@@ -291,7 +291,7 @@ def _apart(shown: Shown, runs: Runs) -> Iterator[str]:
     if not max(moved) <= overlap:  # of one that overturns it is not a number
         yield (
             f"where the crossing walls hold it, it moves by more than their overlap of {1000 * overlap:.0f} mm: by "
-            "then their blocks are apart, and the friction that this answer counts on is gone. The answer does not hold."
+            "then their blocks are apart, and the friction that this answer counts on is gone. It does not hold."
         )
 
 
