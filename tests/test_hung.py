@@ -365,14 +365,13 @@ class TestReport:
         page = frame_report[0].read_text("utf-8")
         assert "What hangs on it" not in page and "farthest the top moves sideways" in page
 
-    def test_a_fall_has_no_largest_force(self, leaning, tmp_path):
+    def test_a_fall_has_no_largest_movement(self, leaning, tmp_path):
         text = leaning.read_text().replace("stiffness: 100 kN/m", "stiffness: 1 N/m")
         leaning.write_text(text)
         out = tmp_path / "r.html"
         run("report", leaning, "--pulse", "sine:1g:1.5s", "--neighbours", 5, "-o", out)
         page = out.read_text("utf-8")
-        assert "it overturns, at least one way round: there is no largest movement or force" in page
-        assert "The largest force is" not in page
+        assert "it overturns, at least one way round: there is no largest movement" in page
 
 
 class TestStudies:

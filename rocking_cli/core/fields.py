@@ -111,7 +111,9 @@ class Described(BaseModel):
     @classmethod
     def _with_a_unit(cls, value: Any, info: ValidationInfo) -> Any:
         """Every field that has a unit takes texts with units; tuples and arrays are lists."""
-        value = value.tolist() if hasattr(value, "tolist") else list(value) if isinstance(value, tuple) else value
+        value = value.tolist() if hasattr(value, "tolist") else value
+        if isinstance(value, tuple) and "list[" in str(cls.model_fields[info.field_name or ""].annotation):
+            value = list(value)
         if not isinstance(value, str | list | tuple):
             return value
         extra = cls.model_fields[info.field_name or ""].json_schema_extra

@@ -125,6 +125,6 @@ def _said(found: Mapping[str, Movements]) -> Iterator[str]:
     falls = [name for name, moved in found.items() if any(isnan(point.horizontal) for point in moved.points)]
     if falls:
         yield (
-            f"Under {' and '.join(falls)} it overturns, at least one way round: there is no largest movement or force, "
-            "and the table has none."
+            f"Under {' and '.join(falls)} it overturns, at least one way round: there is no largest movement, and "
+            "forces are those before it falls."
         )
