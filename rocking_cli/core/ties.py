@@ -15,6 +15,8 @@ LATER = {
     "break": "an elongation at which it breaks",
     "damper": "a damper",
     "inerter": "an inerter",
+    "damping": "a damper",
+    "inertance": "an inerter",
     "exponent": "the exponent of a damper",
 }
 """What a tie will have one day, and is refused by name until then."""
