@@ -124,20 +124,15 @@ class ConstantForce:
         Fx + i Fy [N]; of friction, as it acts while the mechanism rocks in the positive direction.
     friction : bool
         Whether its horizontal part is against the motion in either direction.
-    only : Direction, optional
-        The direction of rocking in which it acts; None: in both.
     """
 
     name: str
     spot: Spot
     force: complex
     friction: bool = False
-    only: Direction | None = None
 
     def in_direction(self, direction: Direction) -> complex:
         """The force while the mechanism rocks in a direction [N]."""
-        if self.only is not None and direction is not self.only:
-            return 0j
         return complex(direction * self.force.real, self.force.imag) if self.friction else self.force
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:

@@ -494,9 +494,11 @@ class Mechanism(Described, ABC):
 
     def slackness(self, phi: Reals, direction: Direction) -> Reals:
         """For each tie that acts in one sense only: what is zero where it goes slack, shape (ties, n)."""
+        springs = [spring for spring in self.springs if spring.only is not None]
+        if not springs:
+            return np.zeros((0, np.size(phi)))
         follow = self.followed(np.asarray(phi, dtype=np.float64), direction)
-        rows = [each.slack_at(each.elongation(follow)[0]) for each in self.springs if each.only is not None]
-        return np.array(rows).reshape(len(rows), np.size(phi))
+        return np.array([spring.slack_at(spring.elongation(follow)[0]) for spring in springs])
 
     @property
     def bends(self) -> bool:

@@ -48,11 +48,6 @@ class Statics:
         """What rotations are compared with [rad]: the critical one, or the limit where there is none."""
         return self.limit if self.phi_cr is None else self.phi_cr
 
-    @property
-    def is_straight(self) -> bool:
-        """Whether the restoring moment is near enough to that of a block for its linear models."""
-        return self.departure <= STRAIGHT
-
 
 def statics(mechanism: Mechanism, direction: Direction) -> Statics:
     """The moments of a direction of rocking.

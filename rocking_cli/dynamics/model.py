@@ -147,7 +147,8 @@ def build_model(mechanism: Mechanism, name: ModelName) -> Model:
 def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) -> list[Model]:
     """Prepare several models of a structure; see `build_model`."""
     equivalence = equivalent_block(mechanism) if set(names) != {"nonlinear"} else None
-    return [build(mechanism, both_statics(mechanism), equivalence, name) for name in names]
+    statics = both_statics(mechanism)
+    return [build(mechanism, statics, equivalence, name) for name in names]
 
 
 def build(

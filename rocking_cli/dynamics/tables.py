@@ -21,6 +21,7 @@ Bools = NDArray[np.bool_]
 Integers = NDArray[np.int64]
 TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, those of short links to 1e-10
 FEWEST, MOST = 2048, 16384  # cells from rest to the kinematic limit
+FINEST = 65536  # cells to have a corner of the force next to rest at a node
 END = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at the limit itself
 
 
@@ -90,17 +91,28 @@ def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> 
     # A linkage may lock far beyond phi_cr, while its coefficients change within phi_cr.
     reach = max(each.limit / each.reference for each in statics or both_statics(mechanism))
     cells = int(min(max(TO_CRITICAL * reach, FEWEST), MOST))
-    bends = np.concatenate([_bends(mechanism, direction, cells) for direction in mechanism.directions])
-    if bends.size:
-        # Where a tie goes slack the force has a corner, which no cubic follows: as near to a node as can be had.
-        counts = np.arange(cells, 2 * cells)
-        place = counts[:, None] * bends
-        cells = int(counts[np.abs(place - np.round(place)).max(axis=1).argmin()])
+    if not mechanism.smooth:
+        corners = np.concatenate([_corners(mechanism, direction, cells) for direction in mechanism.directions])
+        cells = _cells_for(corners, cells)
     tables = [_one_direction(mechanism, direction, cells) for direction in mechanism.directions]
     return tables[0], tables[-1]
 
 
-def _bends(mechanism: Mechanism, direction: Direction, cells: int) -> Reals:
+def _cells_for(corners: Reals, cells: int) -> int:
+    """How many cells have corners of the force, at shares of their range, as near to nodes as can be had.
+
+    Where a tie goes slack the force has a corner, which no cubic follows. One next to rest asks for cells so fine that
+    it is not within the first of them.
+    """
+    if not corners.size:
+        return cells
+    fewest = int(max(cells, min(np.ceil(1 / corners.min()), FINEST)))
+    counts = np.arange(fewest, fewest + cells)
+    place = counts[:, None] * corners
+    return int(counts[np.abs(place - np.round(place)).max(axis=1).argmin()])
+
+
+def _corners(mechanism: Mechanism, direction: Direction, cells: int) -> Reals:
     """Where ties go slack or come into play, as shares of the range of q in a direction."""
     shares = []
     phi, _ = _even_steps(mechanism, direction, cells)
@@ -149,15 +161,17 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Ta
         enough = np.where(restoring < 0, -restoring / np.abs(at.B), -1.0)
         most_held = np.where(at.Q != 0, np.abs(at.Q) / (gravity * np.abs(at.B)), 0.0)
     certain = np.minimum.accumulate(enough[::-1])[::-1]
-    to_come = np.maximum.accumulate(most_held[::-1])[::-1]
-    held = np.column_stack([over_root(at.Q / gravity, at.dQ / gravity, at.U / gravity), to_come[:-1]])
+    held = np.zeros((0, 5))
+    if at.Q.any():
+        to_come = np.maximum.accumulate(most_held[::-1])[::-1]
+        held = np.column_stack([over_root(at.Q / gravity, at.dQ / gravity, at.U / gravity), to_come[:-1]])
     return Table(
         np.hstack(forces),
         np.hstack([_cubics(width, phi, c), _cubics(width, c, dc)]),
         certain[:-1],
         phi,
         width,
-        held if at.Q.any() else held[:0],
+        held,
         np.cumsum(np.concatenate([[False], bent[1:] | bent[:-1]])),
     )
 
