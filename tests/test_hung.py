@@ -372,6 +372,7 @@ class TestReport:
         run("report", leaning, "--pulse", "sine:1g:1.5s", "--neighbours", 5, "-o", out)
         page = out.read_text("utf-8")
         assert "it overturns, at least one way round: there is no largest movement" in page
+        assert "The largest force is that of bar: it pulls with" in page  # which it bore before
 
 
 class TestStudies:
