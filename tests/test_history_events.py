@@ -11,7 +11,6 @@ from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.core.equivalence import greatest_restitution
 from rocking_cli.dynamics.deck import MOST_IMPACTS
 from rocking_cli.dynamics.history import follow, respond
 from rocking_cli.dynamics.model import Model, build_models
@@ -622,7 +621,7 @@ def anything(seed):
     rng = np.random.default_rng(seed)
     name = ("block", "wall", "frame", "arch")[rng.integers(4)]
     eta = float(rng.choice([rng.uniform(0.02, 1.0), rng.uniform(0.7, 0.98), 0.99, 1.0], p=[0.4, 0.4, 0.12, 0.08]))
-    most = min(greatest_restitution(structures()[name], direction) for direction in Direction)
+    most = min(structures()[name].greatest_restitution(direction) for direction in Direction)
     mechanism = structures()[name].model_copy(update={"restitution": min(eta, most)})
     threshold = blocks(name)[Direction(rng.choice([1, -1]))].lambda_ * mechanism.gravity
     n, dt = int(rng.integers(2, 60)), float(rng.choice([0.005, 0.02, 0.1, 0.37]))

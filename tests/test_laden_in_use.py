@@ -13,7 +13,6 @@ from scipy.integrate import quad, solve_ivp
 
 from rocking_cli import Registry, build_models, equivalent_block, load_structure, respond_many
 from rocking_cli.core import Direction
-from rocking_cli.core.equivalence import greatest_restitution
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.prepared import Prepared
@@ -228,7 +227,7 @@ def test_models_whose_directions_differ_a_little_are_not_symmetric():
 @pytest.mark.parametrize("eta", [1.0, 0.999])
 def test_a_restitution_for_all_that_a_structure_cannot_have_is_refused(eta):
     frame = load_structure(EXAMPLES / "frame.yaml")
-    most = min(greatest_restitution(frame, direction) for direction in Direction)
+    most = min(frame.greatest_restitution(direction) for direction in Direction)
     assert most < 0.999
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
         Prepared(frame).with_eta(eta)

@@ -13,7 +13,6 @@ from rocking_cli.core.equivalence import EquivalentBlock as EquivalentBlock
 from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock
 from rocking_cli.core.equivalence import both_statics as both_statics
 from rocking_cli.core.equivalence import equivalent_block as equivalent_block
-from rocking_cli.core.equivalence import greatest_restitution as greatest_restitution
 from rocking_cli.core.equivalence import one_block as one_block
 from rocking_cli.core.extras import Extra as Extra
 from rocking_cli.core.fields import Vertex as Vertex

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -20,7 +20,7 @@ from rocking_cli.core.ties import Tie
 from rocking_cli.text import did_you_mean
 
 OUTSIDE = 1e-6  # of the size of a body: how far outside it a point may be by rounding
-RESERVED = ("top", "centroid", "interlock", "overburden")  # what answers call points and forces of their own
+POINTS = ("top", "centroid")  # what answers call points of the structure itself
 LOOKED_AT = 129  # rotations at which it is seen whether a tie stretches
 STRETCHED = 1e-9  # of the length of its path, or of a metre: what counts as stretching
 
@@ -109,17 +109,22 @@ class Carrier:
         return self.alike.get(body, 1) if each else 1
 
 
-def attach(carrier: Carrier, loads: Sequence[Load], ties: Sequence[Tie]) -> Iterator[tuple[Loc, Attached]]:
-    """What the equation of motion sees of loads and ties, each with its place among the fields. Raises `Refused`."""
-    names: set[str] = set()
+def attach(
+    carrier: Carrier, loads: Sequence[Load], ties: Sequence[Tie], taken: Collection[str] = ()
+) -> Iterator[tuple[Loc, Attached]]:
+    """What the equation of motion sees of loads and ties, each with its place among the fields.
+
+    Raises `Refused`, also of a name that is there already or is of `taken`.
+    """
+    own, names = {*POINTS, *taken}, set[str]()
     for k, load in enumerate(loads):
         loc: Loc = ("loads", k)
-        _own_name(load.name, names, loc)
+        _own_name(load.name, names, own, loc)
         body = carrier.spot(load.body, complex(*load.at), loc, "at").body or ""
         yield loc, load.attached(body, carrier.count(body, each=load.each))
     for k, tie in enumerate(ties):
         loc = ("ties", k)
-        _own_name(tie.name, names, loc)
+        _own_name(tie.name, names, own, loc)
         spots = list(_spots(carrier, tie, loc))
         bodies = [spot.body for spot in spots if spot.body is not None]
         if not bodies:
@@ -127,8 +132,8 @@ def attach(carrier: Carrier, loads: Sequence[Load], ties: Sequence[Tie]) -> Iter
         yield loc, tie.attached(spots, max(carrier.count(body, each=tie.each) for body in bodies))
 
 
-def _own_name(name: str, names: set[str], loc: Loc) -> None:
-    if name in RESERVED:
+def _own_name(name: str, names: set[str], own: Collection[str], loc: Loc) -> None:
+    if name in own:
         raise Refused(loc, "name", f"{name!r} is what the tool itself calls something: give it another name")
     if name in names:
         raise Refused(loc, "name", f"{name!r} is there already: give each load and tie its own name")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from math import isclose, isnan, sqrt
@@ -95,13 +95,15 @@ def _agree(one: float | str | None, other: float | str | None) -> bool:
     return (one is None) == (other is None)  # texts have numbers in them that differ by rounding
 
 
-def equivalent_block(mechanism: Mechanism) -> Equivalence:
+def equivalent_block(mechanism: Mechanism, known: Sequence[Statics] = ()) -> Equivalence:
     """The equivalent single rocking block of a mechanism, in both directions.
 
     Parameters
     ----------
     mechanism : Mechanism
         Any plugin.
+    known : sequence of Statics, optional
+        Its moments in both directions, where they are known already: see `both_statics`.
 
     Returns
     -------
@@ -119,14 +121,15 @@ def equivalent_block(mechanism: Mechanism) -> Equivalence:
     DeJong and Dimitrakopoulos (2014), Eqs. 9-20: local equivalence at the unstable equilibrium.
     """
     with _held_to_numbers(mechanism):
-        blocks = [_one_direction(mechanism, direction) for direction in mechanism.directions]
-        return Equivalence(blocks[0], blocks[-1])
+        moments = known or both_statics(mechanism)
+        blocks = [_one_direction(mechanism, *each) for each in zip(mechanism.sides, moments, strict=True)]
+        return Equivalence(blocks[0], blocks[1])
 
 
-def one_block(mechanism: Mechanism, direction: Direction) -> EquivalentBlock:
-    """The equivalent block of one direction. Raises as `equivalent_block`."""
+def one_block(mechanism: Mechanism, direction: Direction, known: Statics) -> EquivalentBlock:
+    """The equivalent block of one direction, whose moments are known. Raises as `equivalent_block`."""
     with _held_to_numbers(mechanism):
-        return _one_direction(mechanism, direction)
+        return _one_direction(mechanism, direction, known)
 
 
 def both_statics(mechanism: Mechanism) -> tuple[Statics, Statics]:
@@ -166,18 +169,7 @@ def _too_large(error: BaseException | None) -> bool:
     return isinstance(error, OverflowError) or (isinstance(error, FloatingPointError) and "overflow" in str(error))
 
 
-def greatest_restitution(mechanism: Mechanism, direction: Direction) -> float:
-    """The eta of an impact that ends motion in `direction` and keeps all energy.
-
-    The rates before and after are of phi on either side, where the inertia I(0) differs: the energy after an impact
-    over that before is eta^2 I_-s(0)/I_s(0), so the bound is sqrt(I_s(0)/I_-s(0)), 1 for a symmetric structure.
-    """
-    before, after = (float(mechanism.kinetic_inertia(np.zeros(1), s)[0]) for s in (direction, direction.opposite))
-    return sqrt(before / after)
-
-
-def _one_direction(mechanism: Mechanism, direction: Direction) -> EquivalentBlock:
-    found = statics(mechanism, direction)
+def _one_direction(mechanism: Mechanism, direction: Direction, found: Statics) -> EquivalentBlock:
     if found.phi_cr is None or found.why_no_block is not None:
         raise NoEquivalentBlock(
             f"no single block is equivalent to it in the {direction.label} direction: {found.why_no_block}"

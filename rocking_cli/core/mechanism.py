@@ -22,6 +22,7 @@ from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.crushing import Crushing, pressing
 from rocking_cli.core.extras import Extra
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
+from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
@@ -284,9 +285,9 @@ class Mechanism(Described, ABC):
         """Refuse a restitution with which an impact would add energy."""
         if self.restitution is None:
             return
-        I_plus, I_minus = (float(self.kinetic_inertia(np.zeros(1), direction)[0]) for direction in Direction)
-        for direction, most in zip(Direction, (sqrt(I_plus / I_minus), sqrt(I_minus / I_plus)), strict=True):
-            if (eta := self.eta(direction)) > most * (1 + ROUNDING):
+        for direction in Direction:
+            eta, most = self.eta(direction), self.greatest_restitution(direction)
+            if eta > most * (1 + ROUNDING):
                 field = "restitution"
                 if isinstance(self.restitution, DirectionalRestitution):
                     field = "positive_to_negative" if direction > 0 else "negative_to_positive"
@@ -465,7 +466,8 @@ class Mechanism(Described, ABC):
         if not self._is_laden:
             return own
         carrier = Carrier.of(self.bodies(), self.sketch(), self.alike())
-        found = [*own, *attach(carrier, self.loads or [], self.ties or [])]
+        taken = [*(thing.name for _, thing in own), *([INTERLOCK] if self.interlock is not None else [])]
+        found = [*own, *attach(carrier, self.loads or [], self.ties or [], taken)]
         if self.interlock is not None:
             density = self.interlock.density or self.density
             if density is None:
@@ -558,6 +560,16 @@ class Mechanism(Described, ABC):
         motions = self.motion(rest, direction), self.motion(rest, direction.opposite)
         masses = [thing for thing in self.attached if isinstance(thing, PointMass)]
         return kinematic_restitution(self.weighed(), *motions, masses)
+
+    def greatest_restitution(self, direction: Direction) -> float:
+        """The eta of an impact that ends motion in `direction` and keeps all energy.
+
+        The rates before and after are of phi on either side, where the inertia I(0) differs: the energy after an impact
+        over that before is eta^2 I_-s(0)/I_s(0), so the bound is sqrt(I_s(0)/I_-s(0)), 1 for a symmetric structure.
+        """
+        rest = np.zeros(1)
+        before, after = (float(self.kinetic_inertia(rest, s)[0]) for s in (direction, direction.opposite))
+        return sqrt(before / after)
 
     def rebound_from_impacts(self) -> float | None:
         """The rebound of its shape from a theory of impacts in sequence; by default there is none."""

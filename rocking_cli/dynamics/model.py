@@ -17,7 +17,6 @@ from rocking_cli.core import (
     Mechanism,
     both_statics,
     equivalent_block,
-    greatest_restitution,
 )
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.restitution import why_none
@@ -146,8 +145,8 @@ def build_model(mechanism: Mechanism, name: ModelName) -> Model:
 
 def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) -> list[Model]:
     """Prepare several models of a structure; see `build_model`."""
-    equivalence = equivalent_block(mechanism) if set(names) != {"nonlinear"} else None
     statics = both_statics(mechanism)
+    equivalence = equivalent_block(mechanism, statics) if set(names) != {"nonlinear"} else None
     return [build(mechanism, statics, equivalence, name) for name in names]
 
 
@@ -176,7 +175,7 @@ def build(
             model = _with_held(model, mechanism, (equivalence.positive, equivalence.negative))
     if not mechanism.rocks_both_ways:
         return _one_sided(model, mechanism.directions[0])
-    most_eta = greatest_restitution(mechanism, Direction.POSITIVE), greatest_restitution(mechanism, Direction.NEGATIVE)
+    most_eta = mechanism.greatest_restitution(Direction.POSITIVE), mechanism.greatest_restitution(Direction.NEGATIVE)
     return replace(model, most_eta=most_eta)
 
 

@@ -57,7 +57,7 @@ class Prepared:
     def equivalence(self) -> Equivalence:
         """Its equivalent blocks. Raises `MechanismError`, naming it, if it has none."""
         with self._named():
-            return equivalent_block(self.mechanism)
+            return equivalent_block(self.mechanism, self.statics)
 
     @cached_property
     def statics(self) -> tuple[Statics, Statics]:

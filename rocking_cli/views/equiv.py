@@ -82,7 +82,7 @@ def sides_of(structure: Prepared) -> list[Side]:
         statics = structure.statics[k]
         block = structure.equivalence[direction] if structure.why_no_block is None else None
         if block is None and statics.why_no_block is None:  # the other direction has none
-            block = one_block(structure.mechanism, direction)
+            block = one_block(structure.mechanism, direction, statics)
         sides.append(Side(direction, statics, block, structure.etas[k]))
     return sides
 
@@ -130,7 +130,7 @@ def sentence(side: Side) -> str:
     ends = (
         f"a motion ends, if at all, at the kinematic limit of {statics.limit:.4g} rad"
         if statics.phi_cr is None
-        else f"beyond {statics.phi_cr:.4g} rad it overturns"
+        else f"it first vanishes at {statics.phi_cr:.4g} rad"
     )
     return (
         f"no single block is equivalent to it: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} g; from "
