@@ -15,6 +15,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.movements import Watched
+from rocking_cli.views.response import runs_view
 from tests.test_cli import run
 
 TIME = 0.01 * np.arange(400)
@@ -75,6 +76,17 @@ def test_blocks_that_have_slid_apart_are_said(tmp_path):
     near = run("respond", file, "--pulse", "sine:0.6g:0.6s").stdout
     assert "more than their overlap of 200 mm" in " ".join(far.split())
     assert "overlap" not in near
+
+
+def test_one_history_that_tears_it_apart_is_enough_in_whatever_order():
+    courses = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 8.0}
+    watched = Watched(Block(**FACADE, interlock=courses))
+    model = build_model(watched.mechanism, "nonlinear")
+    weak, strong = follow(model, WEAK), follow(model, STRONG.scaled(8.0))
+    assert strong.overturned and watched.is_torn_apart(strong) and not watched.is_torn_apart(weak)
+    for runs in ({"nonlinear": weak, "linear1": strong}, {"nonlinear": strong, "linear1": weak}):
+        said = runs_view("facade", {1: runs}, watched.mechanism, {}).parts
+        assert any("more than their overlap" in str(part) for part in said)
 
 
 def test_a_tie_that_acts_in_tension_has_its_elongation_and_its_force_before_a_fall():

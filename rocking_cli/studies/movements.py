@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.attached import ConstantForce, PointMass, Spot, Spring, SpringBed
+from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.dynamics.history import History
 
 Reals = NDArray[np.float64]
@@ -108,6 +109,14 @@ class Watched:
             [self._tie(tie, reached) for tie in self.ties],
             self._impact_velocity(history),
         )
+
+    def is_torn_apart(self, history: History) -> bool:
+        """Whether courses of crossing walls slide by more than their overlap, beyond which they hold nothing."""
+        interlock = self.mechanism.interlock
+        if interlock is None:
+            return False
+        moved = next(point.horizontal for point in self.peaks(history).points if point.name == INTERLOCK)
+        return not moved <= interlock.overlap  # of one that overturns it is not a number
 
     def columns(self, phi: Reals) -> Iterator[tuple[str, Reals]]:
         """Displacements of the points [m], elongations [m] and forces [N] of the ties, over signed rotations (n,).

@@ -14,7 +14,7 @@ from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.views.hung import hung_data, hung_in_words
 from rocking_cli.views.parameters import PARAMETERS, values
-from rocking_cli.views.restitution import restitution_source
+from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.view import Table, View, heading, number
 
 
@@ -59,7 +59,7 @@ def view(structure: Prepared) -> View:
             "periods and overturning times, `rocking respond` motions."
         )
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
-    said += [*hung_in_words(mechanism), *_supported(mechanism)]
+    said += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     said += [f"P{mechanism.crushed[1:]}."] if mechanism.crushed else []
     said += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(data, [table, *said])
@@ -137,14 +137,6 @@ def sentence(side: Side) -> str:
         f"there its restoring moment {grows} by {abs(statics.stiffening):.4g} of itself per rad; {ends}. Nonlinear "
         "histories follow it; linear models, closed forms and maps in p do not."
     )
-
-
-def _supported(mechanism: Mechanism) -> Iterator[str]:
-    """A sentence on what it leans on, if it does."""
-    if mechanism.one_sided is not None:
-        r = mechanism.eta(mechanism.directions[0])
-        how = "as given" if mechanism.rebound is not None else "by Housner's impacts in sequence"
-        yield f"It rocks in the {mechanism.one_sided} direction only, and rebounds with {r:.4g} of its rate, {how}."
 
 
 def table(found: Sequence[Prepared]) -> dict[str, list[Any]]:

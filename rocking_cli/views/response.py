@@ -9,7 +9,6 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
@@ -279,26 +278,21 @@ def view(
 
 def _apart(shown: Shown, runs: Runs) -> Iterator[str]:
     """That blocks of crossing walls have slid out of one another, where they have."""
-    mechanism, watched = shown.mechanism, shown.watched
-    if mechanism is None or watched is None or mechanism.interlock is None:
-        return
-    overlap = mechanism.interlock.overlap
-    moved = [
-        next(point.horizontal for point in watched.peaks(run).points if point.name == INTERLOCK)
-        for histories in runs.values()
-        for run in histories.values()
-    ]
-    if not max(moved) <= overlap:  # of one that overturns it is not a number
+    interlock = shown.watched.mechanism.interlock if shown.watched is not None else None
+    every = [run for histories in runs.values() for run in histories.values()]
+    if shown.watched is not None and interlock is not None and any(map(shown.watched.is_torn_apart, every)):
         yield (
-            f"where the crossing walls hold it, it moves by more than their overlap of {1000 * overlap:.0f} mm: by "
-            "then their blocks are apart, and the friction that this answer counts on is gone. It does not hold."
+            "where the crossing walls hold it, it moves by more than their overlap of "
+            f"{1000 * interlock.overlap:.0f} mm: by then their blocks are apart, and the friction that this answer "
+            "counts on is gone. It does not hold."
         )
 
 
 def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, Contact]) -> View:
     """Responses alone, under one polarity or both."""
     shown = Shown(Watched(mechanism), contacts=contacts, mechanism=mechanism)
-    return View(lambda: runs_data(runs, {}, shown), _tables(title, runs, {}, shown))
+    caution = [f"Caution: {text}" for text in _apart(shown, runs)]
+    return View(lambda: runs_data(runs, {}, shown), [*_tables(title, runs, {}, shown), *caution])
 
 
 def _tables(
