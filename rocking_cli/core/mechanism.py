@@ -565,8 +565,8 @@ class Mechanism(Described, ABC):
         """The eta of an impact that ends motion in `direction` and keeps all energy.
 
         The rates before and after are of phi on either side, where the inertia I(0) differs: the energy after an impact
-        over that before is eta^2 I'(0)/I(0) with I' that of the other direction, so the bound is sqrt(I(0)/I'(0)), 1 for a
-        symmetric structure.
+        over that before is eta^2 I'(0)/I(0) with I' that of the other direction, so the bound is sqrt(I(0)/I'(0)), 1
+        for a symmetric structure.
         """
         rest = np.zeros(1)
         before, after = (float(self.kinetic_inertia(rest, s)[0]) for s in (direction, direction.opposite))

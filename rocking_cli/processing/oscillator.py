@@ -1,0 +1,198 @@
+"""The linear oscillator under a ground motion: exact for the straight lines between its samples.
+
+With x'' + 2 xi w x' + w^2 x = -u_g'' and the complex mu = -xi w + i w_d, w_d = w sqrt(1 - xi^2), the solution from rest
+is x = -Im(z)/w_d and x' = -Im(mu z)/w_d with z' = mu z + u_g'', z(0) = 0. Over an interval on which u_g'' is straight
+
+    z(t + dt) = e^m z(t) + dt [(phi_1 - phi_2) u_g''(t) + phi_2 u_g''(t + dt)],    m = mu dt
+
+    phi_1 = (e^m - 1)/m,    phi_2 = (e^m - 1 - m)/m^2
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, inf, isfinite, pi, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+
+Reals = NDArray[np.float64]
+PER_PERIOD = 24  # samples: between them a cubic is within 1e-5 of the peak
+FINEST = 64  # parts of an interval: an oscillator this much faster than the record follows it
+BLOCK = 64  # samples advanced at once
+SMALL = 0.5  # of |m|: below it phi_1 and phi_2 come from their series, without a difference of close numbers
+TERMS = 18
+DAMPING = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseSpectrum:
+    """The largest responses of linear oscillators to a ground motion.
+
+    Parameters
+    ----------
+    periods : ndarray, shape (n,)
+        Of the oscillators [s], positive.
+    damping : float
+        Their damping ratio.
+    sd : ndarray, shape (n,)
+        Largest displacement relative to the ground [m].
+    """
+
+    periods: Reals
+    damping: float
+    sd: Reals
+
+    @property
+    def sv(self) -> Reals:
+        """Pseudo-velocity, 2 pi/T times the displacement [m/s]."""
+        return 2 * pi / self.periods * self.sd
+
+    @property
+    def sa(self) -> Reals:
+        """Pseudo-acceleration, (2 pi/T)^2 times the displacement [standard gravity]."""
+        return (2 * pi / self.periods) ** 2 * self.sd / STANDARD_GRAVITY
+
+
+def relative_response(motion: GroundMotion, period: float, damping: float) -> tuple[Reals, Reals, int]:
+    """Displacement and velocity of an oscillator relative to the ground, from rest.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        Straight between its samples.
+    period : float
+        Undamped period of the oscillator [s].
+    damping : float
+        Damping ratio, from 0 to below 1.
+
+    Returns
+    -------
+    displacement, velocity : ndarray, shape (n (npts - 1) + 1,)
+        [m] and [m/s], at n equal parts of every interval.
+    parts : int
+        n: where the oscillator is fast there are several, so that its motion is seen between the samples.
+    """
+    check_oscillator(period, damping)
+    parts = min(max(ceil(PER_PERIOD * motion.dt / period - 1e-9), 1), FINEST)
+    ground = finer(motion.acceleration, parts)
+    dt = motion.dt / parts
+    w = 2 * pi / period
+    w_d = w * sqrt(1 - damping * damping)
+    mu = complex(-damping * w, w_d)
+    m = mu * dt
+    phi_1, phi_2 = _phi(m)
+    z = np.zeros(ground.size, dtype=np.complex128)
+    forcing = np.asarray(dt * ((phi_1 - phi_2) * ground[:-1] + phi_2 * ground[1:]), dtype=np.complex128)
+    z[1:] = _advance(complex(np.exp(m)), forcing)
+    return -z.imag / w_d, -(mu * z).imag / w_d, parts
+
+
+def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float = DAMPING) -> ResponseSpectrum:
+    """Spectrum of the responses of linear oscillators to a ground motion, while it lasts and after it.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        Straight between its samples.
+    periods : array_like, shape (n,)
+        Undamped periods [s], positive.
+    damping : float
+        Damping ratio, from 0 to below 1.
+
+    Returns
+    -------
+    ResponseSpectrum
+
+    Raises
+    ------
+    InputError
+        If a period is not positive, or the damping ratio is out of range.
+    """
+    asked = np.atleast_1d(np.asarray(periods, dtype=np.float64))
+    return ResponseSpectrum(asked, damping, np.array([_peak(motion, float(period), damping) for period in asked]))
+
+
+def check_oscillator(period: float, damping: float) -> None:
+    """Refuse what is no oscillator."""
+    if not 0 < period < inf:
+        raise InputError(Problem(f"the period of an oscillator is a positive number of seconds, got {period:g}"))
+    if not 0 <= damping < 1:
+        raise InputError(Problem(f"a damping ratio is from 0 to below 1, got {damping:g}", hint="5 % is 0.05"))
+
+
+def finer(values: Reals, parts: int) -> Reals:
+    """Samples of the same straight lines, so many to an interval."""
+    if parts == 1:
+        return values
+    places = np.arange((values.size - 1) * parts + 1)
+    return np.interp(places / parts, np.arange(values.size), values)
+
+
+def _phi(m: complex) -> tuple[complex, complex]:
+    """phi_1 and phi_2 of the exponential of m."""
+    if abs(m) > SMALL:
+        grown = np.exp(m)
+        return complex((grown - 1) / m), complex((grown - 1 - m) / (m * m))
+    term, phi_1, phi_2 = 1.0 + 0.0j, 0.0j, 0.0j
+    for k in range(1, TERMS):
+        phi_1 += term / k  # m^(k-1)/k!
+        phi_2 += term / (k * (k + 1))
+        term *= m / k
+    return phi_1, phi_2
+
+
+def _advance(growth: complex, forcing: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """z[k + 1] = growth z[k] + forcing[k] from zero, a block at a time: |growth| is at most 1, and no power large."""
+    blocks = -(-forcing.size // BLOCK)
+    padded = np.zeros(blocks * BLOCK, dtype=np.complex128)
+    padded[: forcing.size] = forcing
+    powers = growth ** np.arange(BLOCK + 1)
+    lag = np.subtract.outer(np.arange(BLOCK), np.arange(BLOCK))
+    within = padded.reshape(blocks, BLOCK) @ np.where(lag >= 0, powers[np.maximum(lag, 0)], 0.0).T
+    before = np.zeros(blocks, dtype=np.complex128)
+    for k in range(1, blocks):
+        before[k] = powers[BLOCK] * before[k - 1] + within[k - 1, -1]
+    return np.asarray((within + before[:, None] * powers[1:]).ravel()[: forcing.size])
+
+
+def _peak(motion: GroundMotion, period: float, damping: float) -> float:
+    """The largest displacement [m]: between samples that of the cubic with their values and slopes."""
+    x, v, parts = relative_response(motion, period, damping)
+    h = motion.dt / parts
+    seen = PER_PERIOD * h <= period * (1 + 1e-9)  # a motion faster than the parts is no cubic between them
+    k = np.flatnonzero(np.sign(v[:-1]) * np.sign(v[1:]) < 0) if seen else np.zeros(0, dtype=np.intp)
+    between = _turning_point(x[k], x[k + 1], h * v[k], h * v[k + 1])
+    after = _free_peak(float(x[-1]), float(v[-1]), period, damping)
+    found = max(float(np.abs(x).max()), float(np.abs(between).max(initial=0.0)), after)
+    if not isfinite(found):
+        raise InputError(f"{motion.name}: accelerations of {motion.pga:.3g} g are beyond the range of numbers")
+    return found
+
+
+def _turning_point(x0: Reals, x1: Reals, v0: Reals, v1: Reals) -> Reals:
+    """Extreme value of Hermite's cubics over [0, 1] whose slopes at the ends are of opposite signs."""
+    # The slope is v0 + 2 b s + 3 c s^2.
+    b, c = 3 * (x1 - x0) - 2 * v0 - v1, 2 * (x0 - x1) + v0 + v1
+    root = np.sqrt(np.maximum(b * b - 3 * c * v0, 0.0))
+    # Of the two roots the one between the ends, without a difference of close numbers.
+    s = np.clip(-v0 / (b - np.sign(v0) * root), 0.0, 1.0)
+    return np.asarray(x0 + s * (v0 + s * (b + s * c)))
+
+
+def _free_peak(x: float, v: float, period: float, damping: float) -> float:
+    """The first and largest turning point [m] of the free vibration that follows the motion."""
+    w = 2 * pi / period
+    w_d = w * sqrt(1 - damping * damping)
+    mu = complex(-damping * w, w_d)
+    # x(t) = Re(c e^(mu t)) with c = x - i (v + xi w x)/w_d; its rate vanishes where mu c e^(i w_d t) is imaginary.
+    c = complex(x, -(v + damping * w * x) / w_d)
+    if c == 0:
+        return 0.0
+    rate = mu * c
+    turn = (pi / 2 - float(np.angle(rate))) % pi
+    t = turn / w_d
+    return float(abs((c * np.exp(mu * t)).real))
