@@ -76,7 +76,7 @@ class Watched:
     @cached_property
     def points(self) -> Mapping[str, Spot]:
         """The top, and where loads and ties are, by their names."""
-        return dict([_top(self.mechanism), *_where_it_bends(self.mechanism), *_hung(self.mechanism)])
+        return dict([top(self.mechanism), *_where_it_bends(self.mechanism), *_hung(self.mechanism)])
 
     @cached_property
     def ties(self) -> Sequence[Spring | SpringBed]:
@@ -218,7 +218,7 @@ def _landing(mechanism: Mechanism, direction: Direction) -> float:
     return max(abs(complex(follow(foot).dz[0])) for foot in feet)
 
 
-def _top(mechanism: Mechanism) -> tuple[str, Spot]:
+def top(mechanism: Mechanism) -> tuple[str, Spot]:
     """The middle of the highest corners of the highest body; its centroid, called so, where no shape is known."""
     sketch = mechanism.sketch()
     corners = {}

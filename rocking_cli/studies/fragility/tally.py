@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, Limit
+from rocking_cli.studies.fragility.displacements import kept
 from rocking_cli.studies.fragility.intensity import intensity, of_the_motion, proportional
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
@@ -175,6 +176,7 @@ def count(
         Told how far it is.
     """
     samples = samples_of(plan, structure)
+    reach = {limit: table[samples.start : samples.stop] for limit, table in kept(store.fact, limits).items()}
     _, records, etas, levels, polarities = plan.shape
     apart = any(_differs_between_samples(plan, samples, measure) for measure in measures)
     shape = (len(samples) if apart else 1, records, levels)
@@ -194,18 +196,20 @@ def count(
             there.ravel()[found.id - start] = True
             ladder = np.ravel_multi_index((sample, record, eta, polarity), rungs)
         for limit in limits:
-            beyond = exceeds(found, limit)
+            beyond = exceeds(found, limit, reach[limit][sample] if limit in reach else None)
             _add(exceeding[limit], cell[beyond])
             if ladders:
                 np.minimum.at(first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
     return Tally(plan, samples, runs, exceeding, Ladders(first, there) if ladders else None)
 
 
-def exceeds(found: Endings, limit: Limit) -> Bools:
-    """Which runs exceed a limit state."""
+def exceeds(found: Endings, limit: Limit, reach: Reals | None = None) -> Bools:
+    """Which runs exceed a limit state; of a displacement `reach` has the rotations of each run, shape (n, 2)."""
     overturned: Bools = found.outcome != STANDS
     if limit == SLIDING:
         return found.slides
+    if reach is not None:
+        return np.asarray(overturned | (found.peaks > reach).any(axis=1))  # NaN, where it overturned, exceeds nothing
     if isinstance(limit, str):
         return overturned if limit == OVERTURNING else found.uplifts
     with np.errstate(invalid="ignore"):
