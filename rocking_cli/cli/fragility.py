@@ -54,6 +54,7 @@ class Running:
 @click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
 @click.option("--restart", is_flag=True, help="Begin anew; the present store is kept under another name.")
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@options.nrml
 @options.as_json
 @click.pass_context
 @options.grouped(running=Running)
@@ -63,6 +64,7 @@ def command(
     check: bool,
     running: Running,
     plot: str | None,
+    nrml: Path | None,
     as_json: bool,
 ) -> None:
     """Run a fragility study, and fit its curves.
@@ -81,7 +83,7 @@ def command(
       rocking results study.db --out runs.csv
     """
     from rocking_cli.cli import structures
-    from rocking_cli.cli.study_output import show_study
+    from rocking_cli.cli.study_output import Files, show_study
     from rocking_cli.io.files import check_writable, folder, keep_apart
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
@@ -93,15 +95,18 @@ def command(
         for each in first.values():
             structures.warn(each)
         place = Path(running.store) if running.store is not None else Path(file).with_suffix(".db")
-        keep_apart([("--store" if running.store is not None else "the store beside the study", place)], [file])
+        keep_apart(
+            [("--store" if running.store is not None else "the store beside the study", place), ("--nrml", nrml)],
+            [file],
+        )
         if check:
             complete = _check(study, as_json=as_json)
         else:
             check_writable(place)
-            pictures = folder(plot) if plot is not None else None
+            files = Files(nrml=nrml, pictures=folder(plot) if plot is not None else None)
             _bring_up_to_date(study, place, running)
             with Store.reading(place) as kept:
-                complete = show_study(kept, None, pictures, as_json=as_json)
+                complete = show_study(kept, files, as_json=as_json)
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(endings.exit_code(stopped))

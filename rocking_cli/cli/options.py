@@ -79,6 +79,16 @@ def plot(what: str, more: str = "") -> Decorator:
     )
 
 
+nrml: Decorator = click.option(
+    "--nrml",
+    callback=output_path(".xml"),
+    metavar="FILE.xml",
+    shell_complete=complete.files,
+    help="Write the lognormal curves for OpenQuake (NRML 0.5).",
+)
+"""Where fragility curves go that OpenQuake reads: `nrml`."""
+
+
 class Renamed(click.Command):
     """A command some of whose options had other names, which go on working with a word on the new one.
 

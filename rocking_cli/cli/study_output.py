@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,8 +17,28 @@ if TYPE_CHECKING:
     from rocking_cli.studies.fragility.store import Store
 
 
-def show_study(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool) -> bool:
-    """Show what a store holds, write its runs and draw its curves.
+@dataclass(frozen=True)
+class Files:
+    """Where what a store holds is written, besides being shown; None where it is not asked for.
+
+    Parameters
+    ----------
+    out, curves : Path or None
+        The table of runs, and that of curves.
+    nrml : Path or None
+        The curves for OpenQuake.
+    pictures : Path or None
+        The folder of pictures.
+    """
+
+    out: Path | None = None
+    curves: Path | None = None
+    nrml: Path | None = None
+    pictures: Path | None = None
+
+
+def show_study(store: Store, files: Files, *, as_json: bool) -> bool:
+    """Show what a store holds, write its runs and curves and draw them.
 
     Returns
     -------
@@ -36,13 +58,18 @@ def show_study(store: Store, out: Path | None, pictures: Path | None, *, as_json
         raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
     finished, failed = store.count()
     curves, surfaces = _fitted(store, plan, definition)
-    if out is not None:
-        _write(out, store, plan)
-    if pictures is not None:
+    if files.out is not None:
+        _write(files.out, store, plan)
+    if files.curves is not None:
+        _write_curves(files.curves, curves)
+    if files.pictures is not None:
         from rocking_cli.cli.study_pictures import draw_all
 
-        draw_all(pictures, store, definition, curves, surfaces)
-    terminal.show(view(store, plan, definition, finished, failed, curves, surfaces), as_json=as_json)
+        draw_all(files.pictures, store, definition, curves, surfaces)
+    shown = view(store, plan, definition, finished, failed, curves, surfaces)
+    terminal.show(shown, as_json=as_json)
+    if files.nrml is not None:  # last: whatever OpenQuake does not take has been shown
+        _write_nrml(files.nrml, store, str(shown.parts[0]), curves)
     if failed:
         terminal.error(f"{failed} runs could not be followed, and are left out of the curves")
     return finished == plan.total and not failed and not left_out(plan)
@@ -69,3 +96,33 @@ def _write(out: Path, store: Store, plan: Plan) -> None:
     from rocking_cli.studies.fragility.table import blocks
 
     table_files.write(out, blocks(store, plan))
+
+
+def _write_curves(out: Path, curves: Sequence[Fragility]) -> None:
+    from rocking_cli.cli import table_files
+    from rocking_cli.views.fragility import limit_name
+    from rocking_cli.views.fragility_table import blocks
+
+    for each in curves:
+        if each.curve.kind == "none":
+            terminal.warning(
+                f"{each.structure}, {limit_name(each.limit)} over {each.measure}: no curve: {each.curve.why}"
+            )
+    table_files.write(out, blocks(curves))
+
+
+def _write_nrml(out: Path, store: Store, said: str, curves: Sequence[Fragility]) -> None:
+    """Write the curves that OpenQuake takes, and name the others."""
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.studies.fragility.openquake import chosen
+    from rocking_cli.views.nrml import nrml
+
+    model = chosen(curves)
+    for each in model.left_out:
+        terminal.warning(f"not in {out}: {each}")
+    for each in model.doubts:
+        terminal.warning(each)
+    about = f"{said}; rocking-cli {store.fact('versions')['rocking-cli']}, study {store.fact('hash')[:12]}"
+    document = nrml(model, store.fact("name"), about)
+    write_whole(out, lambda stream: stream.write(document))
+    terminal.note(f"wrote {out}")
