@@ -174,7 +174,7 @@ def replace_name(found, name):
 
 
 def test_with_several_measures_each_function_has_a_name_of_its_own():
-    limits, found = read(nrml(chosen([*some(), *some(measure="PGV")]), "a", "b"))
+    _, found = read(nrml(chosen([*some(), *some(measure="PGV")]), "a", "b"))
     assert {name: each.imt for name, each in found.items()} == {"pedestal-PGA": "PGA", "pedestal-PGV": "PGV"}
 
 

@@ -55,6 +55,7 @@ class Running:
 @click.option("--restart", is_flag=True, help="Begin anew; the present store is kept under another name.")
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.nrml
+@options.quantiles
 @options.as_json
 @click.pass_context
 @options.grouped(running=Running)
@@ -65,6 +66,7 @@ def command(
     running: Running,
     plot: str | None,
     nrml: Path | None,
+    quantiles: bool,
     as_json: bool,
 ) -> None:
     """Run a fragility study, and fit its curves.
@@ -106,7 +108,7 @@ def command(
             files = Files(nrml=nrml, pictures=folder(plot) if plot is not None else None)
             _bring_up_to_date(study, place, running)
             with Store.reading(place) as kept:
-                complete = show_study(kept, files, as_json=as_json)
+                complete = show_study(kept, files, quantiles=quantiles, as_json=as_json)
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(endings.exit_code(stopped))

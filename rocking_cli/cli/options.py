@@ -89,6 +89,12 @@ nrml: Decorator = click.option(
 """Where fragility curves go that OpenQuake reads: `nrml`."""
 
 
+quantiles: Decorator = click.option(
+    "--quantiles", is_flag=True, help="Show how far structures rock at each intensity: 16, 50 and 84 % of the runs."
+)
+"""Whether quantiles of the peak rotation are shown: `quantiles`."""
+
+
 class Renamed(click.Command):
     """A command some of whose options had other names, which go on working with a word on the new one.
 

@@ -23,13 +23,20 @@ from rocking_cli.errors import INCOMPLETE
     help="Write the curves, a line for each intensity (.csv, .parquet).  - is standard output.",
 )
 @options.nrml
+@options.quantiles
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.as_json
 @click.pass_context
 def command(
-    ctx: click.Context, file: str, out: Path | None, curves: Path | None, nrml: Path | None, plot: str | None,
+    ctx: click.Context,
+    file: str,
+    out: Path | None,
+    curves: Path | None,
+    nrml: Path | None,
+    quantiles: bool,
+    plot: str | None,
     as_json: bool,
-) -> None:  # fmt: skip
+) -> None:
     """Fragility curves and runs of a study, from its store.
 
     It needs none of the study's other files, and can look at a study while it runs.
@@ -55,6 +62,6 @@ def command(
         harmed = bool(store.damaged) or store.unreadable
         if harmed:
             terminal.note("`rocking fragility STUDY.yaml` takes over what is sound, and runs the rest again")
-        complete = show_study(store, files, as_json=as_json) and not harmed
+        complete = show_study(store, files, quantiles=quantiles, as_json=as_json) and not harmed
     if not complete:
         ctx.exit(INCOMPLETE)

@@ -37,7 +37,7 @@ class Files:
     pictures: Path | None = None
 
 
-def show_study(store: Store, files: Files, *, as_json: bool) -> bool:
+def show_study(store: Store, files: Files, *, quantiles: bool, as_json: bool) -> bool:
     """Show what a store holds, write its runs and curves and draw them.
 
     Returns
@@ -48,7 +48,9 @@ def show_study(store: Store, files: Files, *, as_json: bool) -> bool:
     from pydantic import ValidationError
 
     from rocking_cli.studies.fragility.definition import Definition
+    from rocking_cli.studies.fragility.quantiles import all_quantiles
     from rocking_cli.views.fragility import left_out, view
+    from rocking_cli.views.quantiles import with_quantiles
 
     plan = store.plan()
     try:
@@ -62,11 +64,14 @@ def show_study(store: Store, files: Files, *, as_json: bool) -> bool:
         _write(files.out, store, plan)
     if files.curves is not None:
         _write_curves(files.curves, curves)
+    asked = quantiles or as_json or files.pictures is not None
+    spread = list(all_quantiles(store, plan, definition)) if asked else []
     if files.pictures is not None:
         from rocking_cli.cli.study_pictures import draw_all
 
-        draw_all(files.pictures, store, definition, curves, surfaces)
+        draw_all(files.pictures, store, definition, curves, surfaces, spread)
     shown = view(store, plan, definition, finished, failed, curves, surfaces)
+    shown = with_quantiles(shown, spread, in_words=quantiles)
     terminal.show(shown, as_json=as_json)
     if files.nrml is not None:  # last: whatever OpenQuake does not take has been shown
         _write_nrml(files.nrml, store, str(shown.parts[0]), curves)

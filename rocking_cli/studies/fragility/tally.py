@@ -219,18 +219,25 @@ def exceeds(found: Endings, limit: Limit, reach: Reals | None = None) -> Bools:
 
 def peaks(store: Store, plan: Plan, structure: str) -> Reals:
     """Peak phi/phi_cr of each ladder that is complete, shape (m, levels); NaN where it overturns."""
+    table = endings_of(store, plan, structure)
+    ladders = np.moveaxis(table, 3, -1).reshape(-1, table.shape[3])
+    complete = ladders[~np.isnan(ladders).any(axis=1)]
+    return np.where(np.isinf(complete), np.nan, complete)
+
+
+def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
+    """How the runs of a structure end, shape (samples, records, etas, levels, polarities).
+
+    The peak phi/phi_cr; 0 without uplift, infinite where it overturns, NaN where no run is that could be followed.
+    """
     samples = samples_of(plan, structure)
-    _, records, etas, levels, polarities = plan.shape
-    each = records * plan.block
-    table = np.full((len(samples), records, etas, levels, polarities), np.nan)
-    there = np.zeros(table.shape, dtype=bool)
-    for found in store.endings(samples.start * each, samples.stop * each):
+    table = np.full((len(samples), *plan.shape[1:]), np.nan)
+    start = samples.start * len(plan.records) * plan.block
+    for found in store.endings(start, start + table.size):
         found = found.select(found.outcome != FAILED)
-        place = found.id - samples.start * each
-        table.ravel()[place] = np.where(found.outcome == STANDS, found.peak_ratio, np.nan)
-        there.ravel()[place] = True
-    table, there = (np.moveaxis(of, 3, -1).reshape(-1, levels) for of in (table, there))
-    return np.asarray(table[there.all(axis=1)])
+        rocks = np.where(found.uplifts, np.maximum(found.peak_ratio, np.finfo(np.float64).tiny), 0.0)
+        table.ravel()[found.id - start] = np.where(found.outcome == STANDS, rocks, np.inf)
+    return table
 
 
 def _differs_between_samples(plan: Plan, samples: range, measure: str) -> bool:
