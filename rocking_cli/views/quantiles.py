@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import isinf, isnan
 from typing import Any
 
@@ -15,32 +15,36 @@ from rocking_cli.views.view import ABSENT, Table, View, number
 def with_quantiles(shown: View, found: Sequence[Quantiles], *, in_words: bool) -> View:
     """What was found of a study with the quantiles: as data always, and as tables if they are asked for."""
     assert isinstance(shown.data, Mapping)
-    tables: list[Table | str] = [part for each in found for part in ("", _table(each))] if in_words else []
+    tables = [part for each in found for part in _tables(each)] if in_words else []
     note = (
-        "Quantiles of the peak phi/phi_cr: 'rocking' of the runs that rock and stand, 'all' of all runs, those without "
-        f"uplift as 0 and those that overturn as the largest: '{OVERTURNS}' where the quantile is one."
+        "Quantiles are of the peak phi/phi_cr. Of all runs, those without uplift count as 0, those that overturn as "
+        f"the largest: '{OVERTURNS}' where the quantile is one."
     )
     parts = [*shown.parts, *tables, *([note] if tables else [])]
     return View({**shown.data, "quantiles": [_data(each) for each in found]}, parts)
 
 
-def _table(found: Quantiles) -> Table:
-    percents = [f"{100 * share:g} %" for share in SHARES]
-    names = [label(found.measure), "runs", "no\nuplift", "over-\nturned"]
-    names += [f"{of}\n{share}" for of in ("rocking", "all") for share in percents]
-    rows = [
+def _tables(found: Quantiles) -> Iterator[Table | str]:
+    """Those that rock and stand with the shares of the others, and all runs: in one they are wider than a terminal."""
+    over = f"over {label(found.measure)}{'' if found.stripes else ', in tenths'}"
+    shares = [f"{100 * share:g} %" for share in SHARES]
+    rocking = [
         [
             number(each.x, 4),
             f"{each.runs}",
             percent(each.no_uplift / each.runs),
             percent(each.overturned / each.runs),
             *(number(value, 3) for value in each.rocking),
-            *(_ratio(value) for value in each.every),
         ]
         for each in found.groups
     ]
-    title = f"{found.structure}: how far it rocks, over {label(found.measure)}"
-    return Table(title + ("" if found.stripes else ", in tenths"), names, rows, numbers=range(len(names)))
+    names = [label(found.measure), "runs", "no\nuplift", "over-\nturned", *(f"rocking\n{share}" for share in shares)]
+    yield ""
+    yield Table(f"{found.structure}: how far it rocks, {over}", names, rocking, numbers=range(len(names)))
+    every = [[number(each.x, 4), *(_ratio(value) for value in each.every)] for each in found.groups]
+    names = [label(found.measure), *shares]
+    yield ""
+    yield Table(f"{found.structure}: all runs, {over}", names, every, numbers=range(len(names)))
 
 
 def _ratio(value: float) -> str:
