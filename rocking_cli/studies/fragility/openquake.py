@@ -231,7 +231,7 @@ def _doubts(functions: Sequence[Function]) -> Iterable[str]:
     for function in functions:
         first = function.curves[0]
         if function.name != first.structure:
-            yield f"{first.structure} over {first.measure} is called {function.name}: OpenQuake's names are plain"
+            yield f"{first.structure} over {first.measure} is called {function.name} there"
         for each in function.curves:
             goodness = each.curve.goodness
             if each.curve.unbounded:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,16 +101,16 @@ def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str])
         One a measure; none if no run is finished.
     """
     table = np.moveaxis(endings_of(store, plan, structure), 2, 3)  # sample, record, level; restitution and polarity
-    there = ~np.isnan(table)
-    counted = Tally(plan, samples_of(plan, structure), there.sum(axis=(3, 4)), {}, None)
-    for measure in measures if there.any() else ():
+    runs: NDArray[Any] = (~np.isnan(table)).sum(axis=(3, 4), dtype=np.int32)  # of many samples there are many
+    counted = Tally(plan, samples_of(plan, structure), runs, {}, None)
+    for measure in measures if runs.any() else ():
         cells = counted.over(measure)
         x, level = cells.intensities(measure), cells.level if counted.decided_by_level(measure) else None
         seen = Observations.of(x, np.zeros(x.size), cells.record, level=level, runs=cells.runs)
         of_cell = seen.group_of(x, cells.record, level)
-        groups = np.full(counted.runs.sum(axis=0, keepdims=True).shape if cells.together else counted.runs.shape, -1)
+        groups = np.full((1, *runs.shape[1:]) if cells.together else runs.shape, -1, dtype=np.int16)
         groups[cells.place] = of_cell
-        whole = np.broadcast_to(groups, counted.runs.shape)
+        whole = np.broadcast_to(groups, runs.shape)
         parts = seen.parts(0.95)
         yield Quantiles(structure, measure, seen.stripes, [
             _group(table[whole == k], x[of_cell == k], float(parts.x[k]), int(parts.records[k]))
