@@ -202,6 +202,17 @@ def test_a_top_that_cannot_move_so_far_is_named(tmp_path):
         assert numbers[name, "9000 mm"] == numbers[name, "overturning"]
 
 
+def test_a_top_that_is_held_is_warned_of(tmp_path):
+    wall, frame = (str(EXAMPLES / f"{name}.yaml") for name in ("spanning_wall", "frame"))
+    for limits, warned in ((["10 mm", "uplift"], True), (["uplift", 0.2], False)):
+        found = command(
+            "fragility", write(tmp_path, structures=[wall, frame], samples=1, limit_states=limits), "--check"
+        )
+        said = " ".join(found.stderr.split())
+        assert found.exit_code == 0 and ("limits such as 10 mm are of the top" in said) == warned
+        assert "bridge: its top" not in said
+
+
 def test_damaged_runs_are_left_out_of_them_too(whole):
     _, prepared, place = whole
     with Store.reading(place) as store:

@@ -18,26 +18,23 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Files:
-    """Where what a store holds is written, besides being shown; None where it is not asked for.
+class Shown:
+    """How curves are shown besides as a table: drawn in a folder, for OpenQuake, and with quantiles."""
 
-    Parameters
-    ----------
-    out, curves : Path or None
-        The table of runs, and that of curves.
-    nrml : Path or None
-        The curves for OpenQuake.
-    pictures : Path or None
-        The folder of pictures.
-    """
+    plot: str | None
+    nrml: Path | None
+    quantiles: bool
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Where the tables of runs and of curves are written."""
 
     out: Path | None = None
     curves: Path | None = None
-    nrml: Path | None = None
-    pictures: Path | None = None
 
 
-def show_study(store: Store, files: Files, *, quantiles: bool, as_json: bool) -> bool:
+def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json: bool) -> bool:
     """Show what a store holds, write its runs and curves and draw them.
 
     Returns
@@ -45,39 +42,43 @@ def show_study(store: Store, files: Files, *, quantiles: bool, as_json: bool) ->
     bool
         Whether all records, samples and runs could be used, and all are there.
     """
-    from pydantic import ValidationError
-
-    from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.quantiles import all_quantiles
     from rocking_cli.views.fragility import left_out, view
     from rocking_cli.views.quantiles import with_quantiles
 
-    plan = store.plan()
-    try:
-        definition = Definition.model_validate(store.fact("definition"))
-    except ValidationError:
-        hint = "`rocking fragility STUDY.yaml` says what, and keeps the runs"
-        raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
+    plan, definition = store.plan(), _definition(store)
     finished, failed = store.count()
     curves, surfaces = _fitted(store, plan, definition)
-    if files.out is not None:
-        _write(files.out, store, plan)
-    if files.curves is not None:
-        _write_curves(files.curves, curves)
-    asked = quantiles or as_json or files.pictures is not None
+    if tables.out is not None:
+        _write(tables.out, store, plan)
+    if tables.curves is not None:
+        _write_curves(tables.curves, curves)
+    asked = shown.quantiles or as_json or shown.plot is not None
     spread = list(all_quantiles(store, plan, definition)) if asked else []
-    if files.pictures is not None:
+    if shown.plot is not None:
         from rocking_cli.cli.study_pictures import draw_all
 
-        draw_all(files.pictures, store, definition, curves, surfaces, spread)
-    shown = view(store, plan, definition, finished, failed, curves, surfaces)
-    shown = with_quantiles(shown, spread, in_words=quantiles)
-    terminal.show(shown, as_json=as_json)
-    if files.nrml is not None:  # last: whatever OpenQuake does not take has been shown
-        _write_nrml(files.nrml, store, str(shown.parts[0]), curves)
+        draw_all(Path(shown.plot), store, definition, curves, surfaces, spread)
+    result = view(store, plan, definition, finished, failed, curves, surfaces)
+    terminal.show(with_quantiles(result, spread, in_words=shown.quantiles), as_json=as_json)
+    if shown.nrml is not None:  # last: whatever OpenQuake does not take has been shown
+        _write_nrml(shown.nrml, store, str(result.parts[0]), curves)
     if failed:
         terminal.error(f"{failed} runs could not be followed, and are left out of the curves")
     return finished == plan.total and not failed and not left_out(plan)
+
+
+def _definition(store: Store) -> Definition:
+    """What the study of a store asks for."""
+    from pydantic import ValidationError
+
+    from rocking_cli.studies.fragility.definition import Definition
+
+    try:
+        return Definition.model_validate(store.fact("definition"))
+    except ValidationError:
+        hint = "`rocking fragility STUDY.yaml` says what, and keeps the runs"
+        raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
 
 
 def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Fragility], list[Bivariate]]:

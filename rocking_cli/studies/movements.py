@@ -235,11 +235,15 @@ def top(mechanism: Mechanism) -> tuple[str, Spot]:
 
 def _where_it_bends(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:
     """The hinges of a structure whose top is held sideways: there it moves most."""
-    joints = mechanism.joints(mechanism.directions[0])
-    if any(joint.is_guide for joint in joints):
-        for joint in joints:
+    if is_held(mechanism):
+        for joint in mechanism.joints(mechanism.directions[0]):
             if len(joint.bodies) == 2:
                 yield f"joint {joint.letter}", Spot(joint.bodies[0], joint.point)
+
+
+def is_held(mechanism: Mechanism) -> bool:
+    """Whether the top of a structure is held sideways, so that it moves most at a hinge below."""
+    return any(joint.is_guide for joint in mechanism.joints(mechanism.directions[0]))
 
 
 def _hung(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:

@@ -121,10 +121,11 @@ def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str])
 def _group(peaks: Reals, x: Reals, mean: float, records: int) -> Group:
     ranked = np.sort(peaks[~np.isnan(peaks)])
     rocking = ranked[(ranked > 0) & np.isfinite(ranked)]
+    low, high = float(x.min()), float(x.max())
     return Group(
-        mean,
-        float(x.min()),
-        float(x.max()),
+        min(max(mean, low), high),  # rounding aside it is between them
+        low,
+        high,
         ranked.size,
         records,
         int((ranked == 0).sum()),

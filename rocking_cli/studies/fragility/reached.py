@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.studies.fragility.displacements import metres
+from rocking_cli.studies.fragility.displacements import asked_for, metres
 from rocking_cli.studies.fragility.plan import Trial
-from rocking_cli.studies.fragility.study import Sample
-from rocking_cli.studies.movements import top
+from rocking_cli.studies.fragility.study import Sample, Study
+from rocking_cli.studies.movements import is_held, top
 
 Reals = NDArray[np.float64]
 Pair = tuple[float | None, float | None]
@@ -53,6 +53,17 @@ def rotations(
             found[key] = of_a_structure(sample.mechanism, wanted)
         table.append(found.get(key, [(None, None)] * len(wanted)))
     return {**known, **{limit: [row[k] for row in table] for k, limit in enumerate(missing)}}
+
+
+def held(study: Study) -> list[str]:
+    """A sentence on each structure whose top is held sideways, where limits ask for its displacement."""
+    limits = asked_for(study.definition.limit_states)
+    return [
+        f"{structure.name or structure.mechanism}: its top is held to the side and a hinge moves more, but limits such as "
+        f"{limits[0]} are of the top: ask for a ratio of rotations instead"
+        for structure in (study.structures if limits else ())
+        if is_held(structure)
+    ]
 
 
 def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list[Pair]:
