@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,7 +28,6 @@ def draw_all(
     spread: Sequence[Quantiles],
 ) -> None:
     """Draw the curves of each structure, the structures beside each other, what they are of, and surfaces."""
-    from rocking_cli.cli.pictures import save
     from rocking_cli.plotting import fragility as plotting
     from rocking_cli.plotting.quantiles import draw_quantiles
     from rocking_cli.studies.fragility.intensity import label
@@ -63,6 +62,13 @@ def draw_all(
         one, other = each.measures
         figure = plotting.draw_surface(each, (label(one), label(other)), name)
         add(f"{name} {one} {other}", figure)
+    _save(folder, drawn)
+
+
+def _save(folder: Path, drawn: Mapping[str, Figure]) -> None:
+    """Write pictures by their names."""
+    from rocking_cli.cli.pictures import save
+
     with terminal.progress(len(drawn), "pictures") as advance:
         for file, figure in drawn.items():
             save(folder / file, figure)
