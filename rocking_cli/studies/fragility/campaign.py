@@ -83,7 +83,7 @@ def prepare(study: Study, store: Store, examined: Examined | None = None) -> Pre
     facts = {"description": study.description(), "versions": versions(study), "hash": digest(study.description())}
     asked = {
         "name": study.name,
-        "definition": given.model_dump(mode="json", exclude_unset=True),
+        "definition": given.model_dump(mode="json", exclude_unset=True, by_alias=True),
         "hazard": _hazard(study),
     }
     if known is None:

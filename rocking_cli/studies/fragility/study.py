@@ -19,7 +19,7 @@ from rocking_cli.excitation.selection import select
 from rocking_cli.io.field_problems import say
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import Document, Place
-from rocking_cli.processing.entry import as_written
+from rocking_cli.processing.entry import Entry, as_written
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import is_list
 from rocking_cli.processing.record_list import read_list
@@ -261,6 +261,10 @@ def _of_file_or_list(
     reading = entry.reading(folder, common.reading)
     if not is_list(file):
         return [Source(_shown(file, folder), entry, reading, file, vertical)]
+    if vertical is not None:
+        what = "a vertical component belongs to one record, and this is a list of them: give each an entry of its own"
+        document.problems.append(document.at((*place, "vertical"), what))
+        return []
     try:
         listed = read_list(file)
     except InputError as error:
@@ -269,10 +273,19 @@ def _of_file_or_list(
     found = []
     for each in listed:
         assert each.entry is not None
-        said = {**as_written(entry), **as_written(each.entry), "file": str(entry.file)}
-        own = RecordEntry.model_validate(said)
+        own = RecordEntry.model_validate(_together(entry, each.entry))
         found.append(Source(_shown(each.path, folder), own, each.reading(reading), each.path))
     return found
+
+
+def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
+    """What the entry of a study and that of a list in it say of a record; their corrections come one after another."""
+    said = {**as_written(entry), **as_written(listed), "file": str(entry.file)}
+    steps = [*(listed.processing or []), *(entry.processing or [])]
+    if listed.factor is not None and (entry.processing or entry.factor is not None):
+        steps.insert(len(listed.processing or []), {"factor": listed.factor})
+        said["factor"] = entry.factor
+    return {**said, "processing": steps or None}
 
 
 def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:
