@@ -47,12 +47,13 @@ def respond(
     from rocking_cli.views.azimuths import columns, view
     from rocking_cli.views.view import heading
 
-    one, other = record.reading(asked.towards(0.0)).pair(record.path)
+    reading = record.reading(asked.towards(0.0))
+    one, other = reading.pair(record.path)
     for each in (one, other):
         inputs.introduce("component", each)
         inputs.warn(each, structure.growth)
     if vertical.vertical is not None:
-        one = replace(one, vertical=inputs.read_vertical(vertical, asked.towards(0.0)))
+        one = replace(one, vertical=inputs.read_vertical(vertical, reading))
     factor = motion_files.factor(one, measure(one.of_ground), *asked.scaling)
     if factor != 1:
         terminal.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga:.4g} g at 0 degrees")

@@ -82,13 +82,21 @@ def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
 def read(record: Listed, reading: Reading) -> GroundMotion:
     """Read a record; what of its reading is a default, and was not typed, holds only where the file does not say."""
     from rocking_cli.excitation.records.opening import allow_again
+    from rocking_cli.excitation.records.sensor import size_of
 
+    if from_default("units") and reading.units is not None:
+        read_as = record.reading(reading)
+        of = read_as.quantity or "acceleration"
+        if read_as.gain is not None or (read_as.units == reading.units and size_of(reading.units, of) is None):
+            reading = replace(reading, units=None)  # it says nothing of such a record
     given = record.reading(reading)
-    typed = replace(
-        given,
-        dt=None if from_default("dt") else given.dt,
-        units=None if from_default("units") else given.units,
-        channel=None if from_default("channel") else given.channel,
+    typed = record.reading(
+        replace(
+            reading,
+            dt=None if from_default("dt") else reading.dt,
+            units=None if from_default("units") else reading.units,
+            channel=None if from_default("channel") else reading.channel,
+        )
     )
     if typed != given:
         with suppress(InputError):
@@ -119,11 +127,14 @@ def find(places: Sequence[str]) -> tuple[list[Listed], int]:
         try:
             for path in select(place):
                 inside = _of_list(path) if is_list(path) else [Listed(path)]
-                found += [each for each in inside if each not in found]
+                found += inside
         except InputError as error:
             terminal.error(str(error))
             bad += 1
-    return found, bad
+    once: dict[object, Listed] = {}
+    for one in found:
+        once.setdefault((one.path, one.folder, repr(one.entry)), one)
+    return list(once.values()), bad
 
 
 def _of_list(path: Path) -> list[Listed]:

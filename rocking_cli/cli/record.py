@@ -194,6 +194,8 @@ class _Asked:
         from rocking_cli.processing.listed import Listed
 
         motion = motion_files.read(Listed(Path(file)), self.reading.reading)
+        if any(each.startswith("from ") for each in motion.processing):
+            terminal.note(f"{motion.name}{motion_files.done(motion)}")
         found = []
         for sign in self.scaling.signs:
             one, scaled = self._examine(name_of(file), motion, sign)
