@@ -11,7 +11,6 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -22,10 +21,11 @@ from rocking_cli import GroundMotion, equivalent_block, exact_response, load_str
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.studies.fragility import assess, curves, engines, sources, store, store_file, tally, units
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
-from rocking_cli.studies.fragility.definition import SCALE, LevelMeasure, Measure, RecordEntry
-from rocking_cli.studies.fragility.intensity import MEASURES, Reference, intensity, quantities
+from rocking_cli.studies.fragility.definition import RecordEntry
+from rocking_cli.studies.fragility.intensity import ALWAYS
 from rocking_cli.studies.fragility.observed import few_records
 from rocking_cli.studies.fragility.plan import Trial, weaker
 from rocking_cli.studies.fragility.sources import Source
@@ -575,9 +575,9 @@ def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
 def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
     with Store.reading(whole[2]) as kept:
         plan, limits = kept.plan(), ["uplift", "overturning"]
-        found = {name: tally.count(kept, plan, name, limits, MEASURES) for name in ("valley bridge", "uncertain")}
+        found = {name: tally.count(kept, plan, name, limits, ALWAYS) for name in ("valley bridge", "uncertain")}
         rows = kept.runs(0, plan.total)
-    over = {name: {each for each in MEASURES if found[name].decided_by_level(each)} for name in found}
+    over = {name: {each for each in ALWAYS if found[name].decided_by_level(each)} for name in found}
     assert over == {"valley bridge": {"PGA", "PGA/(g lambda)"}, "uncertain": {"PGA/(g lambda)"}}  # its lambda varies
     # Of the bridge one sample, of the other four: 3 records at 5 levels each, of both polarities.
     cells = {(name, each): found[name].over(each).runs for name in found for each in ("PGA", "PGA/(g lambda)")}
@@ -600,10 +600,10 @@ def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
 def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
     with Store.reading(whole[2]) as kept:
         plan, seen = kept.plan(), []
-        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], MEASURES, ladders=True, counted=seen.append)
+        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
         monkeypatch.setattr(store, "READ", 7)
         kept.damaged = [31]
-        piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], MEASURES, ladders=True, counted=seen.append)
+        piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
     assert sum(seen) == 2 * 120
     np.testing.assert_array_equal(piecewise.runs, once.runs)
     np.testing.assert_array_equal(piecewise.ladders.there, once.ladders.there)
@@ -640,7 +640,9 @@ def test_structures_of_like_names_have_a_picture_each(tmp_path):
 
 def test_intensities_are_those_of_their_definitions():
     scales = Reference(p=np.array([2.0]), lambda_=np.array([0.25]), gravity=np.array([4.903325]))
-    found = [float(intensity(name, {"pga": np.array([0.5]), "pgv": np.array([0.3])}, scales)[0]) for name in MEASURES]
+    values = {"PGA": np.array([0.5]), "PGV": np.array([0.3])}
+    measures = [parse_measure(each) for each in ALWAYS]
+    found = [float(each.relative(values[str(each.base)], scales)[0]) for each in measures]
     assert found == pytest.approx([0.5, 0.3, 0.5 * 9.80665 / (4.903325 * 0.25), 2.0 * 0.3 / (4.903325 * 0.25)])
 
 
@@ -649,7 +651,7 @@ def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
     motion = GroundMotion("pulse", 0.01, np.concatenate([np.zeros(5), np.sin(np.linspace(0, 6.28, 100)), np.zeros(5)]))
     lam = block.uplift(1)  # type: ignore[arg-type]
     scales = Reference(p=1.0, lambda_=lam, gravity=block.gravity)
-    unit = float(intensity("PGA/(g lambda)", {"pga": motion.pga}, scales))
+    unit = float(parse_measure("PGA/(g lambda)").relative(motion.pga, scales))
     for a, uplifts in ((0.999, False), (1.001, True)):
         history = respond(block, motion.scaled(a / unit), models=("linear2",))["linear2"]
         assert (history.peak_ratio != 0) == uplifts
@@ -668,13 +670,6 @@ def test_columns_of_a_table_are_the_fields_of_what_it_holds_in_their_order(whole
     names = [row[1] for row in connection.execute(f"PRAGMA table_info({table})")]
     connection.close()
     assert names == ["id", *kind.__dataclass_fields__]
-
-
-def test_a_study_may_name_every_measure_and_the_record_of_a_store_has_what_it_is_of():
-    (names, *_), (levels, *_) = get_args(Measure), get_args(LevelMeasure)
-    assert get_args(names) == tuple(MEASURES)
-    assert {name for each in get_args(levels) for name in get_args(each)} == {*MEASURES, SCALE}
-    assert set(quantities()) <= set(sources.Record.__dataclass_fields__)
 
 
 def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, monkeypatch):

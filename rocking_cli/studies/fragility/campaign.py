@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from math import isclose, nan
@@ -16,6 +16,7 @@ from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.engines import Engine
+from rocking_cli.studies.fragility.measuring import complete
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
@@ -55,7 +56,9 @@ class Prepared:
     mended: tuple[str, ...]
 
 
-def prepare(study: Study, store: Store, examined: Examined | None = None) -> Prepared:
+def prepare(
+    study: Study, store: Store, examined: Examined | None = None, measures: Sequence[str] = ()
+) -> Prepared:  # fmt: skip
     """Examine what a study runs, and begin its store or hold it against what the store was begun with.
 
     Parameters
@@ -66,6 +69,8 @@ def prepare(study: Study, store: Store, examined: Examined | None = None) -> Pre
         Open to write.
     examined : callable, optional
         Called with the number of records and structures examined since the last call.
+    measures : sequence of str
+        What to measure and keep besides what the study asks for.
 
     Raises
     ------
@@ -86,12 +91,16 @@ def prepare(study: Study, store: Store, examined: Examined | None = None) -> Pre
     }
     if known is None:
         _refuse_useless(plan)
-        store.begin(plan, {**facts, **asked, "libraries": libraries()})
     else:
         _refuse_changes(store, facts, known, plan)
+    plan = measured(study, plan, motions, [*given.asked_measures, *measures])
+    if known is None:
+        store.begin(plan, {**facts, **asked, "libraries": libraries()})
+    else:
         for k in mended:
             store.replace_record(k, records[k])
         store.note(asked)
+        store.keep(plan.measured)
         store.commit()
     finished, failed = store.count()
     return Prepared(study, plan, motions, finished, failed, tuple(records[k].name for k in mended))
@@ -128,7 +137,26 @@ def survey(study: Study, examined: Examined | None = None, known: Plan | None = 
         tell(1)
     given = study.definition
     etas = given.eta if given.eta is not None else [nan]
-    return Plan(trials, records, etas, given.levels.measure, given.levels.levels(), given.polarities), motions
+    plan = Plan(trials, records, etas, given.levels.measure, given.levels.levels(), given.polarities)
+    if known is not None and _of_one_kind(known, plan):
+        plan = replace(plan, measured=known.measured)
+    return measured(study, plan, motions, ()), motions
+
+
+def measured(study: Study, plan: Plan, motions: KeptMotions, measures: Sequence[str]) -> Plan:
+    """The plan with what its levels and some measures need."""
+    mechanisms = [sample.mechanism for sample in study.samples]
+    return complete(plan, mechanisms, study.definition.model, motions, measures)
+
+
+def _of_one_kind(one: Plan, other: Plan) -> bool:
+    """Whether what was measured for a plan holds for another: same records, samples and levels in their order."""
+    return (
+        [each.name for each in one.records] == [each.name for each in other.records]
+        and [(each.structure, each.number) for each in one.trials]
+        == [(each.structure, each.number) for each in other.trials]
+        and (one.measure, list(one.levels)) == (other.measure, list(other.levels))
+    )
 
 
 def run(prepared: Prepared, store: Store, engine: Engine, progress: Progress | None = None) -> None:
@@ -196,7 +224,7 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
     try:
         found = equivalent_block(mechanism)
     except NoEquivalentBlock as error:
-        needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else asked.measures_in_p
+        needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else asked.measures_of_a_block
         if needs:
             raise NoEquivalentBlock(f"{' and '.join(needs)} cannot be had of it: {error}") from error
         sides = both_statics(mechanism)
