@@ -34,6 +34,7 @@ _HOME = {
         "record",
         "respond",
         "respond_each",
+        "response_spectrum",
         "spectrum",
         "write_report",
     ],
@@ -53,6 +54,8 @@ _HOME = {
     "excitation.pulse_fit": ["PulseFit", "fit_pulse"],
     "excitation.pulses": ["Pulse", "parse_pulse"],
     "excitation.records": ["read_record"],
+    "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],
+    "processing.oscillator": ["ResponseSpectrum"],
     "structure": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}

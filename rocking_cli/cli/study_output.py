@@ -37,7 +37,7 @@ def show_study(store: Store, out: Path | None, pictures: Path | None, *, as_json
     finished, failed = store.count()
     curves, surfaces = _fitted(store, plan, definition)
     if out is not None:
-        _write(out, store, plan)
+        _write(out, store, plan, definition)
     if pictures is not None:
         from rocking_cli.cli.study_pictures import draw_all
 
@@ -64,8 +64,8 @@ def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Frag
         return assess.fitted(found, definition, hazard, advance)
 
 
-def _write(out: Path, store: Store, plan: Plan) -> None:
+def _write(out: Path, store: Store, plan: Plan, definition: Definition) -> None:
     from rocking_cli.cli import table_files
     from rocking_cli.studies.fragility.table import blocks
 
-    table_files.write(out, blocks(store, plan))
+    table_files.write(out, blocks(store, plan, definition.asked_measures))

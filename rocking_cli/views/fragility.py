@@ -134,6 +134,7 @@ def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidenc
     yield Table(f"{structure}, over {label(measure)}", columns, rows, numbers=range(2, len(columns)))
     for each in curves:
         yield f"{limit_name(each.limit)}: {each.curve.why}.{_in_years(each.rate)}"
+    yield from _left_out(measure, curves[0].left_out)
     yield from _warnings([each.curve for each in curves])
 
 
@@ -156,7 +157,14 @@ def _surfaces(
     )
     for each in surfaces:
         yield f"{limit_name(each.limit)}: {each.surface.why}."
+    yield from _left_out(" or ".join(measures), surfaces[0].left_out)
     yield from _warnings([each.surface for each in surfaces])
+
+
+def _left_out(measure: str, runs: int) -> Iterator[str]:
+    """How many runs are in no fit over a measure."""
+    if runs:
+        yield f"{runs:,} run{'s have' if runs > 1 else ' has'} no {measure} above zero, and no part in this."
 
 
 def _warnings(fitted: Sequence[Curve | Surface]) -> Iterator[str]:
@@ -201,6 +209,7 @@ def _curve_data(found: Fragility) -> dict[str, Any]:
         "aic": curve.aic,
         "runs": curve.runs,
         "exceedances": curve.exceedances,
+        "left_out": found.left_out,
         "distinct_records": curve.records,
         "warning": curve.warning or None,
         "annual_rate": None if found.rate is None else asdict(found.rate),
@@ -220,6 +229,7 @@ def _surface_data(found: Bivariate) -> dict[str, Any]:
         "p_values": surface.p_values,
         "runs": surface.runs,
         "exceedances": surface.exceedances,
+        "left_out": found.left_out,
         "distinct_records": surface.records,
         "warning": surface.warning or None,
     }

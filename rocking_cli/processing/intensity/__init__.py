@@ -23,6 +23,7 @@ __all__ = [
     "all_measures",
     "parse_measure",
     "parse_measures",
+    "power_of",
 ]
 
 GROUP = "rocking.measures"
@@ -117,6 +118,13 @@ def all_measures() -> list[Measure]:
     known = Measures()
     found = [parse_measure(spec) for name in known for spec in known[name].usually()]
     return sorted(found, key=lambda each: (each.is_relative, each.power is None))
+
+
+def power_of(cls: type[Measure]) -> float | None:
+    """The power of the factor on a motion that measures of a class go with; None where it is computed of every run."""
+    if issubclass(cls, RelativeMeasure):
+        return parse_measure(cls.to).power
+    return cls.power if isinstance(cls.power, int | float) else None
 
 
 def _plain(name: str) -> str:
