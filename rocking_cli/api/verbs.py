@@ -253,7 +253,7 @@ def response_spectrum(
     --------
     >>> import rocking_cli as rk
     >>> rk.response_spectrum("sine:0.2g:0.8s", [0.8]).sa.round(2).tolist()
-    [0.55]
+    [0.54]
     """
     from rocking_cli.processing.oscillator import response_spectrum as respond_linearly
     from rocking_cli.views import response_spectrum as views

@@ -30,6 +30,7 @@ class Running:
     scheduler: str | None
     store: str | None
     restart: bool
+    rank_measures: bool
 
     def __post_init__(self) -> None:
         if self.scheduler is not None and self.jobs is not None and not from_default("jobs"):
@@ -53,6 +54,7 @@ class Running:
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the dask.distributed cluster of this scheduler.")
 @click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
 @click.option("--restart", is_flag=True, help="Begin anew; the present store is kept under another name.")
+@click.option("--rank-measures", is_flag=True, help="Also say which of all measures serves: `rocking measures`.")
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.as_json
 @click.pass_context
@@ -76,7 +78,7 @@ def command(
     \b
     Example:
       rocking fragility study.yaml --check
-      rocking fragility study.yaml --plot pictures
+      rocking fragility study.yaml --plot pictures --rank-measures
       rocking fragility study.yaml --scheduler tcp://10.0.0.1:8786
       rocking results study.db --out runs.csv
     """
@@ -101,7 +103,7 @@ def command(
             pictures = folder(plot) if plot is not None else None
             _bring_up_to_date(study, place, running)
             with Store.reading(place) as kept:
-                complete = show_study(kept, None, pictures, as_json=as_json)
+                complete = show_study(kept, None, pictures, as_json=as_json, rank_measures=running.rank_measures)
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(endings.exit_code(stopped))
@@ -133,7 +135,7 @@ def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
         say = terminal.note if running.restart else terminal.warning
         store = stack.enter_context(Store.writing(place, anew=running.restart, say=say))
         with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
-            prepared = prepare(study, store, examined)
+            prepared = prepare(study, store, examined, rank_measures=running.rank_measures)
         _report(prepared)
         if prepared.finished == prepared.plan.total:
             return

@@ -50,9 +50,11 @@ class More:
     @property
     def prepared(self) -> Prepared | None:
         """The structure, made ready."""
+        if self.structure is None:
+            return None
         from rocking_cli.cli import structures
 
-        return structures.prepared([self.structure]) if self.structure is not None else None
+        return structures.prepared([self.structure])
 
 
 def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | None) -> None:

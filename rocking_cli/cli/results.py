@@ -16,9 +16,12 @@ from rocking_cli.errors import INCOMPLETE
 @click.argument("file", metavar="STORE.db", type=click.Path())
 @options.out(".csv", ".parquet", what="Write every run (.csv, .parquet).")
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@click.option("--rank-measures", is_flag=True, help="Also say which of the measures that it knows serves.")
 @options.as_json
 @click.pass_context
-def command(ctx: click.Context, file: str, out: Path | None, plot: str | None, as_json: bool) -> None:
+def command(
+    ctx: click.Context, file: str, out: Path | None, plot: str | None, rank_measures: bool, as_json: bool
+) -> None:
     """Fragility curves and runs of a study, from its store.
 
     It needs none of the study's other files, and can look at a study while it runs.
@@ -27,6 +30,7 @@ def command(ctx: click.Context, file: str, out: Path | None, plot: str | None, a
     Example:
       rocking results study.db
       rocking results study.db --out runs.parquet --plot pictures
+      rocking results study.db --rank-measures
     """
     from rocking_cli.cli.study_output import show_study
     from rocking_cli.io.files import folder, keep_apart
@@ -42,6 +46,7 @@ def command(ctx: click.Context, file: str, out: Path | None, plot: str | None, a
         harmed = bool(store.damaged) or store.unreadable
         if harmed:
             terminal.note("`rocking fragility STUDY.yaml` takes over what is sound, and runs the rest again")
-        complete = show_study(store, out, pictures, as_json=as_json) and not harmed
+        shown = show_study(store, out, pictures, as_json=as_json, rank_measures=rank_measures)
+        complete = shown and not harmed
     if not complete:
         ctx.exit(INCOMPLETE)

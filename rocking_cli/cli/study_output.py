@@ -13,9 +13,12 @@ if TYPE_CHECKING:
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store
+    from rocking_cli.views.view import View
 
 
-def show_study(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool) -> bool:
+def show_study(
+    store: Store, out: Path | None, pictures: Path | None, *, as_json: bool, rank_measures: bool = False
+) -> bool:  # fmt: skip
     """Show what a store holds, write its runs and draw its curves.
 
     Returns
@@ -42,10 +45,27 @@ def show_study(store: Store, out: Path | None, pictures: Path | None, *, as_json
         from rocking_cli.cli.study_pictures import draw_all
 
         draw_all(pictures, store, definition, curves, surfaces)
-    terminal.show(view(store, plan, definition, finished, failed, curves, surfaces), as_json=as_json)
+    shown = view(store, plan, definition, finished, failed, curves, surfaces)
+    if rank_measures:
+        shown = _with_ranking(shown, store, plan, definition, pictures)
+    terminal.show(shown, as_json=as_json)
     if failed:
         terminal.error(f"{failed} runs could not be followed, and are left out of the curves")
     return finished == plan.total and not failed and not left_out(plan)
+
+
+def _with_ranking(shown: View, store: Store, plan: Plan, definition: Definition, pictures: Path | None) -> View:
+    """What is shown, and which measures serve; drawn too if there are to be pictures."""
+    from rocking_cli.studies.fragility.ranking import rank
+    from rocking_cli.views.ranking import added
+
+    with terminal.progress(plan.size, "runs ranked") as counted:
+        rankings = rank(store, plan, definition, counted)
+    if pictures is not None:
+        from rocking_cli.cli.study_pictures import draw_rankings
+
+        draw_rankings(pictures, rankings)
+    return added(shown, rankings)
 
 
 def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Fragility], list[Bivariate]]:

@@ -14,6 +14,7 @@ from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equival
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.processing.intensity import all_measures
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.measuring import complete
@@ -57,7 +58,7 @@ class Prepared:
 
 
 def prepare(
-    study: Study, store: Store, examined: Examined | None = None, measures: Sequence[str] = ()
+    study: Study, store: Store, examined: Examined | None = None, *, rank_measures: bool = False
 ) -> Prepared:  # fmt: skip
     """Examine what a study runs, and begin its store or hold it against what the store was begun with.
 
@@ -69,8 +70,8 @@ def prepare(
         Open to write.
     examined : callable, optional
         Called with the number of records and structures examined since the last call.
-    measures : sequence of str
-        What to measure and keep besides what the study asks for.
+    rank_measures : bool
+        Whether to measure and keep all that the measures which are installed need, besides what the study asks for.
 
     Raises
     ------
@@ -93,7 +94,8 @@ def prepare(
         _refuse_useless(plan)
     else:
         _refuse_changes(store, facts, known, plan)
-    plan = measured(study, plan, motions, [*given.asked_measures, *measures])
+    every = [str(each) for each in all_measures()] if rank_measures else []
+    plan = measured(study, plan, motions, [*given.asked_measures, *every], origins=rank_measures)
     if known is None:
         store.begin(plan, {**facts, **asked, "libraries": libraries()})
     else:
@@ -143,10 +145,12 @@ def survey(study: Study, examined: Examined | None = None, known: Plan | None = 
     return measured(study, plan, motions, ()), motions
 
 
-def measured(study: Study, plan: Plan, motions: KeptMotions, measures: Sequence[str]) -> Plan:
-    """The plan with what its levels and some measures need."""
+def measured(
+    study: Study, plan: Plan, motions: KeptMotions, measures: Sequence[str], *, origins: bool = False
+) -> Plan:  # fmt: skip
+    """The plan with what its levels and some measures need, and with what records state of their earthquake."""
     mechanisms = [sample.mechanism for sample in study.samples]
-    return complete(plan, mechanisms, study.definition.model, motions, measures)
+    return complete(plan, mechanisms, study.definition.model, motions, measures, origins=origins)
 
 
 def _of_one_kind(one: Plan, other: Plan) -> bool:

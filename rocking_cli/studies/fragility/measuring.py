@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism, NoEquivalentBlock, equivalent_block
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import Measure, RunMeasure, parse_measure
 from rocking_cli.processing.intensity.base import Reference
 from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
@@ -20,6 +22,8 @@ from rocking_cli.studies.fragility.sources import KeptMotions
 Bools = NDArray[np.bool_]
 
 V_IMP = "v_imp"
+ORIGIN = ("magnitude", "distance")
+"""What records may state of their earthquake, kept beside measures so that these can be held against it."""
 Told = Callable[[int], None]
 """Called with how many records have been gone through since the last call."""
 
@@ -31,6 +35,8 @@ def complete(
     motions: KeptMotions,
     asked: Iterable[str],
     told: Told = lambda count: None,
+    *,
+    origins: bool = False,
 ) -> Plan:
     """A plan with all that some measures need, of which what is known already is not measured anew.
 
@@ -48,6 +54,8 @@ def complete(
         The measures; the plain factor is none of them.
     told : callable, optional
         See `Told`; it is called for every record.
+    origins : bool
+        Whether to keep what the records state of their earthquake, too.
 
     Raises
     ------
@@ -64,7 +72,8 @@ def complete(
         base = parse_measure(plan.measure).base
         assert base is not None
         bases[str(base)] = base
-    new = {name: _copied(plan.measured.of_record, name, len(plan.records)) for name in bases if name not in (PGA, PGV)}
+    names = [name for name in bases if name not in (PGA, PGV)] + list(ORIGIN if origins else ())
+    new = {name: _copied(plan.measured.of_record, name, len(plan.records)) for name in names}
     samples, records, _, levels, _ = plan.shape
     runs = {name: _copied(plan.measured.of_run, name, samples, records, levels) for name in of_run}
     usable = np.array([trial.reason is None for trial in plan.trials])
@@ -74,7 +83,7 @@ def complete(
             continue
         for name, values in new.items():
             if np.isnan(values[k]):
-                values[k] = bases[name].value(motions[k])
+                values[k] = bases[name].value(motions[k]) if name in bases else _stated(motions[k], name)
     plan = replace(plan, measured=replace(plan.measured, of_record={**plan.measured.of_record, **new}))
     plan = _without_unscalable(plan)
     for k, record in enumerate(plan.records):
@@ -83,6 +92,12 @@ def complete(
                 if np.isnan(values[usable, k]).any():
                     values[:, k] = _of_runs(plan, of_run[name], motions, k, usable)
     return replace(plan, measured=replace(plan.measured, of_run={**plan.measured.of_run, **runs}))
+
+
+def _stated(motion: GroundMotion, name: str) -> float:
+    """What a record states of its earthquake; NaN where it does not."""
+    found = getattr(getattr(motion, "origin", None), name, None)
+    return nan if found is None else float(found)
 
 
 def _copied(known: Mapping[str, Reals], name: str, *shape: int) -> Reals:
