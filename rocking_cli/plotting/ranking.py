@@ -26,13 +26,14 @@ def draw_ranking(ranking: Ranking) -> Figure:
     shown = ranking.measures
     figure = style.new_figure(1.4 + 0.26 * len(shown))
     panels = figure.subplots(1, 1 + bool(ranking.against), sharey=True, squeeze=False)[0]
-    style.heading(panels[0], f"{ranking.structure}: which measure serves")
+    filled = " (filled: its residuals show no trend)" if ranking.against else ""
+    style.heading(panels[0], f"{ranking.structure}: which measure serves{filled}")
     places = np.arange(len(shown))
     for place, each in zip(places, shown, strict=True):
         face = style.INK if each.sufficient else "white"
         panels[0].plot(each.efficiency, place, "o", color=style.INK, markerfacecolor=face, markersize=6)
     panels[0].set_xlim(left=0.0)
-    panels[0].set_xlabel("efficiency: scatter of ln(phi/phi_cr)", fontsize=style.LABEL)
+    panels[0].set_xlabel(r"efficiency: scatter of $\ln(\phi/\phi_{cr})$", fontsize=style.LABEL)
     panels[0].set_yticks(places, [each.measure for each in shown], parse_math=False)
     panels[0].invert_yaxis()
     if ranking.against:

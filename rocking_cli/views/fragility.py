@@ -94,6 +94,7 @@ def view(
         those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
         parts += _surfaces(structure, measures, those, confidence)
     parts += without_block(plan)
+    parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
         "store": str(store.path),
@@ -106,11 +107,23 @@ def view(
         "failed": failed,
         "left_out": left_out(plan),
         "without_block": without_block(plan),
+        "without_curve": nowhere,
         "records": [asdict(each) for each in plan.records],
         "curves": [_curve_data(each) for each in curves],
         "surfaces": [_surface_data(each) for each in surfaces],
     }
     return View(data, parts)
+
+
+def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) -> list[str]:
+    """A sentence on each measure that no run of a structure has above zero, so that there is no curve over it."""
+    known = {(each.structure, each.measure) for each in curves}
+    return [
+        f"{structure}: no run has a {measure} above zero, and there is no curve over it."
+        for structure in dict.fromkeys(each.structure for each in plan.trials if each.reason is None)
+        for measure in definition.fitted_measures
+        if (structure, measure) not in known
+    ]
 
 
 def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidence: float) -> Iterator[Table | str]:

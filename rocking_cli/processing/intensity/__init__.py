@@ -8,7 +8,7 @@ from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.plugins.errors import blame
-from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.installed import leave_out, origin
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity.base import Measure, MotionMeasure, Reference, RelativeMeasure, RunMeasure
 from rocking_cli.text import did_you_mean
@@ -114,9 +114,17 @@ def parse_measures(text: str) -> list[Measure]:
 
 
 def all_measures() -> list[Measure]:
-    """All that are installed, those of a motion alone first; of those with parameters the usual ones."""
+    """All that are installed, those of a motion alone first; of those with parameters the usual ones.
+
+    One that cannot be loaded is left out with a warning.
+    """
     known = Measures()
-    found = [parse_measure(spec) for name in known for spec in known[name].usually()]
+    found: list[Measure] = []
+    for name in known:
+        try:
+            found += [parse_measure(spec) for spec in known[name].usually()]
+        except MechanismError as error:
+            leave_out(error)
     return sorted(found, key=lambda each: (each.is_relative, each.power is None))
 
 

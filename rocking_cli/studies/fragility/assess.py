@@ -130,21 +130,20 @@ def fitted(
 def curves(
     tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None
 ) -> Iterator[Fragility]:  # fmt: skip
-    """The fragility curves of a structure: each limit state over each measure."""
+    """The fragility curves of a structure: each limit state over each measure that is above zero in any run."""
     confidence = definition.confidence
     for measure in definition.fitted_measures:
         cells = tally.over(measure)
         x = cells.intensities(measure)
         there = x > 0  # not of those that are not known, either
+        if not there.any():
+            continue
         x, record, runs = x[there], cells.record[there], cells.runs[there]
         level = cells.level[there] if tally.decided_by_level(measure) else None
         for limit in definition.limit_states:
             exceeding = cells.exceeding(limit) if tally.ladders is None else cells.of(tally.ladders.above(limit))
             seen = Observations.of(x, exceeding[there], record, level=level, runs=runs)
-            if not there.any():
-                why = f"no run has a {measure} above zero"
-                curve = Curve("none", why, confidence, 0, 0)
-            elif tally.ladders is None:
+            if tally.ladders is None:
                 curve = fit_curve(seen, confidence=confidence)
             elif parse_measure(measure).power == 0:
                 why = f"{measure} is the same at every level, so that no record has a capacity in it"

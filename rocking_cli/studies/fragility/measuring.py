@@ -125,13 +125,15 @@ def _without_unscalable(plan: Plan) -> Plan:
         return plan
     base = parse_measure(plan.measure).base
     values = plan.of_records(str(base))
+    why = f"its {base} is not above zero: it cannot be scaled to levels of {plan.measure}"
     records = [
-        record
-        if record.reason is not None or value > 0
-        else replace(record, reason=f"{record.name}: its {base} is not above zero: it cannot be scaled to levels of it")
+        record if record.reason is not None or value > 0 else replace(record, reason=f"{record.name}: {why}")
         for record, value in zip(plan.records, values, strict=True)
     ]
-    return replace(plan, records=records)
+    known = dict(plan.measured.of_record)
+    if str(base) in known:  # to be measured anew when it is put right
+        known[str(base)] = np.where(values > 0, values, nan)
+    return replace(plan, records=records, measured=replace(plan.measured, of_record=known))
 
 
 def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int, usable: Bools) -> Reals:

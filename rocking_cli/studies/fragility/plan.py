@@ -138,8 +138,8 @@ class Plan:
         """What the dimensionless measures refer to, for samples by their places."""
         columns = np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])[sample]
         p = np.where(columns[:, 0] > 0, columns[:, 0], np.nan)
-        steps = self.measured.of_sample.get("v_imp")
-        return Reference(p, columns[:, 1], columns[:, 2], nan if steps is None else steps[sample])
+        steps = self.measured.of_sample.get("v_imp", np.full(len(self.trials), nan))
+        return Reference(p, columns[:, 1], columns[:, 2], steps[sample])
 
     def of_records(self, measure: str) -> Reals:
         """A measure of the motions as they are, shape (records,); NaN of those of which it is not known."""
