@@ -15,7 +15,7 @@ from rocking_cli.errors import InputError, PluginError
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import (
-    Measures,
+    IntensityMeasures,
     MotionMeasure,
     Reference,
     RunMeasure,
@@ -95,9 +95,13 @@ class TestDefinitions:
             sd = displacement(NOISE, period, 0.02)
             assert value(f"Sd({period}, 2%)") == pytest.approx(sd, rel=2e-3)
             assert value(f"Sa({period}, 2%)") == pytest.approx((2 * pi / period) ** 2 * sd / G, rel=2e-3)
-        periods = 0.2 + 0.2 * np.arange(10)
-        sa = [(2 * pi / period) ** 2 * displacement(NOISE, period, 0.05) / G for period in periods]
-        assert value("Sa_avg(0.2:2.0)") == pytest.approx(np.prod(sa) ** 0.1, rel=2e-3)
+
+    def test_an_average_spectral_acceleration(self):
+        short = GroundMotion("short", 0.02, SINE.acceleration[::20])
+        periods = 0.2 + 0.3 * np.arange(100) / 99
+        sa = [(2 * pi / period) ** 2 * displacement(short, period, 0.05) / G for period in periods]
+        assert value("Sa_avg(0.2:0.5)", short) == pytest.approx(np.exp(np.mean(np.log(sa))), rel=2e-3)
+        assert value("Sa_avg(0.2:0.5)", short) != pytest.approx(np.mean(sa), rel=2e-3)
 
     def test_a_sine(self):
         assert value("PGA", SINE) == pytest.approx(A / G)
@@ -194,7 +198,7 @@ class TestNames:
         assert parse_measures("all") == all_measures()
 
     def test_the_list_of_all_holds_each_name(self):
-        known = Measures()
+        known = IntensityMeasures()
         assert {each.name for each in all_measures()} == set(known)
         powers = {name: power_of(known[name]) for name in known}
         assert {name for name, power in powers.items() if power is None} == {"Du"}

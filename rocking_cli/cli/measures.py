@@ -21,10 +21,10 @@ def command(as_json: bool) -> None:
       rocking record accel.csv --measures "Sa(1.0), Sa_avg(0.2:2), CAV"
     """
     from rocking_cli.errors import MechanismError
-    from rocking_cli.processing.intensity import Measures, MotionMeasure, power_of
+    from rocking_cli.processing.intensity import IntensityMeasures, MotionMeasure, power_of
     from rocking_cli.views.measures import Installed, view
 
-    known, found = Measures(), []
+    known, found = IntensityMeasures(), []
     for name in known:
         package = known.package_of(name)
         try:

@@ -16,7 +16,7 @@ from rocking_cli.errors import RockingError
 from rocking_cli.excitation.pulses import PulseShapes
 from rocking_cli.excitation.records.registry import Readers
 from rocking_cli.plugins.registry import Plugins
-from rocking_cli.processing.intensity import Measures
+from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.studies.compiling import CALLED
 
 OURS = "rocking-cli"
@@ -91,7 +91,7 @@ def examine() -> Installation:
             "mechanisms": _plugins(Registry()),
             "records": _plugins(Readers()),
             "pulses": _plugins(PulseShapes()),
-            "measures": _plugins(Measures()),
+            "measures": _plugins(IntensityMeasures()),
         },
         str(cache_folder()),
         unwritable(),

@@ -14,8 +14,8 @@ from rocking_cli.processing.intensity.base import Measure, MotionMeasure, Refere
 from rocking_cli.text import did_you_mean
 
 __all__ = [
+    "IntensityMeasures",
     "Measure",
-    "Measures",
     "MotionMeasure",
     "Reference",
     "RelativeMeasure",
@@ -31,8 +31,8 @@ ALL = "all"
 _FORM = re.compile(r"([^()]+)(?:\((.*)\))?", re.DOTALL)
 
 
-class Measures(Plugins[type[Measure]]):
-    """Measures by name. Listing names loads nothing; looking one up loads it.
+class IntensityMeasures(Plugins[type[Measure]]):
+    """Measures of intensity by name. Listing names loads nothing; looking one up loads it.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def parse_measure(text: str) -> Measure:
     >>> str(parse_measure("sa ( 1 )"))
     'Sa(1.0)'
     """
-    known = Measures()
+    known = IntensityMeasures()
     plain = {_plain(name): name for name in known}
     if _plain(text) in plain:
         return known[plain[_plain(text)]].read(())
@@ -118,7 +118,7 @@ def all_measures() -> list[Measure]:
 
     One that cannot be loaded is left out with a warning.
     """
-    known = Measures()
+    known = IntensityMeasures()
     found: list[Measure] = []
     for name in known:
         try:

@@ -22,7 +22,7 @@ SLOWEST, FASTEST = 0.25, 20.0  # Hz: between these frequencies the mean period i
 STEP = 0.05  # Hz between them, at most
 HOUSNER = (0.1, 2.5)  # s: between these periods his intensity is taken
 PERIODS = 241  # of that, one each 0.01 s
-AVERAGED = 10  # periods of an average
+AVERAGED = 100  # periods of an average
 
 
 class PeakAcceleration(MotionMeasure):
@@ -190,13 +190,13 @@ class SpectralDisplacement(_Spectral):
 
 @dataclass(frozen=True)
 class AverageSpectralAcceleration(MotionMeasure):
-    """The geometric mean of the pseudo-accelerations at ten periods, evenly spaced from the first to the last."""
+    """The geometric mean of the pseudo-accelerations at a hundred periods, evenly spaced from the first to the last."""
 
     low: float = field(metadata={"unit": "s"})
     high: float = field(metadata={"unit": "s", "after": ":"})
     damping: float = field(default=DAMPING, metadata={"unit": "%"})
 
-    name, title, unit, power = "Sa_avg", "geometric mean of Sa at ten periods", "g", 1.0
+    name, title, unit, power = "Sa_avg", "geometric mean of Sa over a range of periods", "g", 1.0
     usual = ("Sa_avg(0.2:2.0)",)
     source = "Eads, Miranda and Lignos (2015)"
 
