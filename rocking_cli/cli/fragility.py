@@ -30,7 +30,6 @@ class Running:
     scheduler: str | None
     store: str | None
     restart: bool
-    rank_measures: bool
 
     def __post_init__(self) -> None:
         if self.scheduler is not None and self.jobs is not None and not from_default("jobs"):
@@ -64,6 +63,7 @@ def command(
     file: str,
     check: bool,
     running: Running,
+    rank_measures: bool,
     plot: str | None,
     as_json: bool,
 ) -> None:
@@ -101,9 +101,9 @@ def command(
         else:
             check_writable(place)
             pictures = folder(plot) if plot is not None else None
-            _bring_up_to_date(study, place, running)
+            _bring_up_to_date(study, place, running, rank_measures=rank_measures)
             with Store.reading(place) as kept:
-                complete = show_study(kept, None, pictures, as_json=as_json, rank_measures=running.rank_measures)
+                complete = show_study(kept, None, pictures, as_json=as_json, rank_measures=rank_measures)
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(endings.exit_code(stopped))
@@ -123,7 +123,7 @@ def _check(study: Study, *, as_json: bool) -> bool:
     return not left_out(plan)
 
 
-def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
+def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measures: bool) -> None:
     """Run what the store does not hold; to begin anew all, and the old store is kept under another name."""
     from rocking_cli.cli import waiting
     from rocking_cli.studies.fragility.campaign import prepare, run
@@ -135,7 +135,7 @@ def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
         say = terminal.note if running.restart else terminal.warning
         store = stack.enter_context(Store.writing(place, anew=running.restart, say=say))
         with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
-            prepared = prepare(study, store, examined, rank_measures=running.rank_measures)
+            prepared = prepare(study, store, examined, rank_measures=rank_measures)
         _report(prepared)
         if prepared.finished == prepared.plan.total:
             return

@@ -49,8 +49,8 @@ def view(found: Sequence[Installed]) -> View:
         [
             Table("Measures of intensity", ["measure", "unit", "goes with", "what it is", "package"], rows),
             "What a measure goes with is a power of the factor on the record: levels of a study cannot be of one that "
-            "is the same whatever the factor, or is computed of every run. A measure relative to a structure is said "
-            "of it: `rocking record FILE --measures all --structure FILE.yaml`.",
+            "is the same whatever the factor, or is computed of every run. `rocking record` gives any of them with "
+            "`measures`, those that are relative to what is shaken with a `structure` too.",
         ],
     )
 
