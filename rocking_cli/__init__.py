@@ -34,6 +34,7 @@ _HOME = {
         "record",
         "respond",
         "respond_each",
+        "response_spectrum",
         "spectrum",
         "write_report",
     ],
@@ -56,6 +57,8 @@ _HOME = {
     "excitation.records": ["read_record"],
     "processing.components": ["turned"],
     "processing.floor": ["Floor"],
+    "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],
+    "processing.oscillator": ["ResponseSpectrum"],
     "structure": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}

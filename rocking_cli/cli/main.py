@@ -22,7 +22,8 @@ from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "respond", "margin", "animate", "pulse", "overturning", "spectrum",
-    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "new", "info", "warm", "completion",
+    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
+    "completion",
 )  # fmt: skip
 DO_WITHOUT = ("info",)
 """Commands that run whatever is wrong with the user's defaults."""

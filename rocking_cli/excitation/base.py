@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.errors import InputError
 
@@ -155,6 +155,24 @@ class GroundMotion:
         from rocking_cli import record  # by its public name: a motion knows nothing of pictures
 
         return record(self).plot(file)
+
+    def response_spectrum(self, periods: ArrayLike | None = None, damping: float = 0.05) -> Any:
+        """Its response spectrum, as `rocking_cli.response_spectrum` gives it.
+
+        Parameters
+        ----------
+        periods : array_like, shape (n,), optional
+            Of the oscillators [s]; 200 from 0.02 to 10 s at equal ratios, unless given.
+        damping : float
+            Their damping ratio.
+
+        Returns
+        -------
+        Answer of ResponseSpectrum
+        """
+        from rocking_cli import response_spectrum  # by its public name: a motion knows nothing of oscillators
+
+        return response_spectrum(self, periods, damping=damping)
 
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion with every acceleration multiplied by `factor`, named so.

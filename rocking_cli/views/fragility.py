@@ -112,6 +112,7 @@ def view(
         those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
         parts += _surfaces(structure, measures, those, confidence)
     parts += [*without_block(plan), *out_of_reach(store, plan, definition)]
+    parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
         "store": str(store.path),
@@ -125,11 +126,23 @@ def view(
         "left_out": left_out(plan),
         "without_block": without_block(plan),
         "out_of_reach": out_of_reach(store, plan, definition),
+        "without_curve": nowhere,
         "records": [asdict(each) for each in plan.records],
         "curves": [_curve_data(each) for each in curves],
         "surfaces": [_surface_data(each) for each in surfaces],
     }
     return View(data, parts)
+
+
+def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) -> list[str]:
+    """A sentence on each measure that no run of a structure has above zero, so that there is no curve over it."""
+    known = {(each.structure, each.measure) for each in curves}
+    return [
+        f"{structure}: no run has a {measure} above zero, and there is no curve over it."
+        for structure in dict.fromkeys(each.structure for each in plan.trials if each.reason is None)
+        for measure in definition.fitted_measures
+        if (structure, measure) not in known
+    ]
 
 
 def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidence: float) -> Iterator[Table | str]:
@@ -153,6 +166,7 @@ def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidenc
     yield Table(f"{structure}, over {label(measure)}", columns, rows, numbers=range(2, len(columns)))
     for each in curves:
         yield f"{limit_name(each.limit)}: {each.curve.why}.{_in_years(each.rate)}"
+    yield from _left_out(measure, curves[0].left_out)
     yield from _warnings([each.curve for each in curves])
 
 
@@ -175,7 +189,14 @@ def _surfaces(
     )
     for each in surfaces:
         yield f"{limit_name(each.limit)}: {each.surface.why}."
+    yield from _left_out(" or ".join(measures), surfaces[0].left_out)
     yield from _warnings([each.surface for each in surfaces])
+
+
+def _left_out(measure: str, runs: int) -> Iterator[str]:
+    """How many runs are in no fit over a measure."""
+    if runs:
+        yield f"{runs:,} run{'s have' if runs > 1 else ' has'} no {measure} above zero, and no part in this."
 
 
 def _warnings(fitted: Sequence[Curve | Surface]) -> Iterator[str]:
@@ -222,6 +243,7 @@ def _curve_data(found: Fragility) -> dict[str, Any]:
         "aic": curve.aic,
         "runs": curve.runs,
         "exceedances": curve.exceedances,
+        "left_out": found.left_out,
         "distinct_records": curve.records,
         "warning": curve.warning or None,
         "annual_rate": None if found.rate is None else asdict(found.rate),
@@ -241,6 +263,7 @@ def _surface_data(found: Bivariate) -> dict[str, Any]:
         "p_values": surface.p_values,
         "runs": surface.runs,
         "exceedances": surface.exceedances,
+        "left_out": found.left_out,
         "distinct_records": surface.records,
         "warning": surface.warning or None,
     }
