@@ -689,7 +689,7 @@ def margin(
     ready, around = _structure(structure), Around()
     shaking = [_motion(each) for each in _each(motions)]
     found = {each.name: study.margin(ready.model("nonlinear"), each, polarities, around=around) for each in shaking}
-    rows = [views.Row(each.name, 1.0, each.pga, found[each.name]) for each in shaking]
+    rows = [views.Row(each.name, 1.0, each.of_ground.pga, found[each.name]) for each in shaking]
     polarity = "both" if len(polarities) > 1 else str(polarities[0])
 
     def columns() -> Columns:
@@ -845,9 +845,11 @@ def fragility(
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.hazard import HazardCurve
     from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.studies.fragility.quantiles import all_quantiles
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
     from rocking_cli.views.fragility import limit_name, view
+    from rocking_cli.views.quantiles import with_quantiles
 
     if isinstance(study, Mapping):
         place = Path(store or "study.db")
@@ -866,6 +868,7 @@ def fragility(
         counted = assess.counted(kept, plan, definition, lambda count: None)
         curves, surfaces = assess.fitted(counted, definition, hazard, lambda count: None)
         shown = view(kept, plan, definition, *kept.count(), curves, surfaces)
+        shown = with_quantiles(shown, list(all_quantiles(kept, plan, definition)), in_words=False)
         blocks = list(table.blocks(kept, plan, definition.asked_measures))
 
     def columns() -> Columns:

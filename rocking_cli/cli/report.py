@@ -92,7 +92,9 @@ def command(
         out = Path(f"{structures.stem(files[0] if files else None)}.html")
         check_writable(out)
     paths, bad = motion_files.find(asked.records)
-    keep_apart([("--out", out)], [*files, *(str(path) for path in paths), *([str(head.logo)] if head.logo else [])])
+    keep_apart(
+        [("--out", out)], [*files, *(str(each.path) for each in paths), *([str(head.logo)] if head.logo else [])]
+    )
     title = head.block(_command_line(ctx))
     structure = inputs.structure(files, asked.records)
     several = len(paths) + bad + len(asked.pulses) > 1
@@ -131,13 +133,18 @@ def _file(structure: Prepared, files: tuple[str, ...]) -> File:
     return File(structure.file, original(files[0] if files else structure.file))
 
 
+def _place(value: object) -> int:
+    """Where an option stands among the others: corrections in their order, all else before them."""
+    return value.place if isinstance(value, options.Placed) else 0
+
+
 def _command_line(ctx: click.Context) -> str:
     """The command as it was given, for a POSIX shell, with the user's defaults, which hold nowhere else."""
     from click.core import ParameterSource
 
     said = ["rocking", "report"]
     taken = defaults.of_run(ctx)
-    for param in ctx.command.params:
+    for param in sorted(ctx.command.params, key=lambda each: _place(ctx.params.get(each.name or ""))):
         value = ctx.params.get(param.name or "")
         if default := taken.get(param.name or ""):
             said += [f"--{default.option}", default.value]

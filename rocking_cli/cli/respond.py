@@ -155,10 +155,17 @@ def command(
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.response import Question
 
-    read = [*files, *(str(path) for path in paths), vertical.vertical]
+    read = [*files, *(str(each.path) for each in paths), vertical.vertical]
     keep_apart([("--out", output.out), ("--plot", output.plot)], read)
     check_table(output.out)
     structure = inputs.structure(files, asked.records)
+    if asked.all_azimuths:
+        from rocking_cli.cli import azimuths
+
+        azimuths.check(asked, history, len(paths) + missing, impacts=impacts, contact=contact)
+        compile_first()
+        azimuths.respond(structure, _names(structure, history), paths[0], asked, vertical, history, output)
+        return
     chosen: Sequence[Scaled | None] = [None]  # a free release
     refused = 0
     if asked:

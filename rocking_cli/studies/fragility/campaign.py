@@ -16,9 +16,11 @@ from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
+from rocking_cli.studies.fragility.displacements import FACT, asked_for
 from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.measuring import complete
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
+from rocking_cli.studies.fragility.reached import rotations
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
@@ -97,8 +99,10 @@ def prepare(
     every = [str(each) for each in all_measures()] if rank_measures else []
     plan = measured(study, plan, motions, [*given.asked_measures, *every], origins=rank_measures)
     if known is None:
+        asked |= _displacements(study, plan, {})
         store.begin(plan, {**facts, **asked, "libraries": libraries()})
     else:
+        asked |= _displacements(study, plan, store.facts().get(FACT, {}))
         for k in mended:
             store.replace_record(k, records[k])
         store.note(asked)
@@ -241,6 +245,12 @@ def _hazard(study: Study) -> list[list[float]] | None:
     if study.hazard is None:
         return None
     return [list(map(float, study.hazard.intensity)), list(map(float, study.hazard.annual_rate))]
+
+
+def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:
+    """The rotations that limits on the displacement of the top stand for, as a fact; none where there is no such."""
+    limits = asked_for(study.definition.limit_states)
+    return {FACT: rotations(study.samples, plan.trials, limits, known)} if limits else {}
 
 
 def _refuse_useless(plan: Plan) -> None:
