@@ -20,7 +20,7 @@ from rocking_cli.studies.fragility.definition import Definition, Limit
 from rocking_cli.studies.fragility.intensity import PGA, PGV
 from rocking_cli.studies.fragility.measuring import ORIGIN, V_IMP
 from rocking_cli.studies.fragility.plan import Plan
-from rocking_cli.studies.fragility.store import STANDS, Store
+from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.tally import samples_of
 
 Reals = NDArray[np.float64]
@@ -267,7 +267,7 @@ def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
     each = len(plan.records) * plan.block
     ids, peaks = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
     for found in store.endings(samples.start * each, samples.stop * each):
-        rocks = (found.outcome == STANDS) & found.uplifts & (found.peak_ratio > 0)
+        rocks = found.uplifts & (found.peak_ratio > 0)  # NaN of those that overturn, or cannot be followed
         ids.append(found.id[rocks])
         peaks.append(np.log(found.peak_ratio[rocks]))
     return np.concatenate(ids), np.concatenate(peaks)
