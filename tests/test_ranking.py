@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 import statsmodels.api as sm
 
+from rocking_cli import fragility
 from rocking_cli.studies.fragility import ranking
+from rocking_cli.studies.fragility.campaign import prepare, steps
 from rocking_cli.studies.fragility.ranking import Ranked, Ranking, judge, line, serves
 from rocking_cli.studies.fragility.store import Store
+from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.stores import command
 
@@ -142,6 +145,21 @@ class TestStudy:
         said = command("results", folder / "study.db", "--rank-measures").stdout
         for each in shown["ranking"]:
             assert all(sentence in " ".join(said.split()) for sentence in each["verdict"])
+
+    def test_python_ranks_too(self, study):
+        answer = fragility(study[0] / "study.yaml", store=study[0] / "study.db", rank_measures=True)
+        assert answer.to_dict()["ranking"] == study[1]["ranking"]
+        assert study[1]["ranking"][0]["verdict"][0] in " ".join(answer.sentences)
+
+    def test_the_bar_is_full_when_all_is_measured(self, study, tmp_path):
+        path = tmp_path / "study.yaml"
+        path.write_text(STUDY, encoding="utf-8")
+        asked, told = load_study(path), []
+        for k, rank_measures in enumerate((False, True)):
+            with Store.writing(tmp_path / f"{k}.db") as kept:
+                prepare(asked, kept, told.append, rank_measures=rank_measures)
+            assert sum(told) == steps(asked, rank_measures=rank_measures) == 3 + 6 * (1 + k)
+            told.clear()
 
     def test_a_store_that_was_not_measured_ranks_less_and_tests_nothing(self, study, tmp_path):
         path = tmp_path / "bare.yaml"

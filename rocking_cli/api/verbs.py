@@ -810,7 +810,11 @@ def equivalent(
 
 
 def fragility(
-    study: str | Path | Mapping[str, Any], *, store: str | Path | None = None, threads: int | None = None
+    study: str | Path | Mapping[str, Any],
+    *,
+    store: str | Path | None = None,
+    threads: int | None = None,
+    rank_measures: bool = False,
 ) -> Answer[list[Fragility]]:
     """Run a fragility study, or go on with it, and fit its curves.
 
@@ -823,6 +827,8 @@ def fragility(
         Where the runs are kept; beside the study, unless given; of one given in Python study.db in this folder.
     threads : int, optional
         Histories at a time; without it, one for each processor.
+    rank_measures : bool
+        Whether to say which of all measures of intensity serves, too.
 
     Returns
     -------
@@ -858,7 +864,7 @@ def fragility(
         place = Path(store) if store is not None else Path(study).with_suffix(".db")
     asked = load_study(study)
     with Store.writing(place, anew=False, say=lambda text: None) as kept:
-        prepared = campaign.prepare(asked, kept)
+        prepared = campaign.prepare(asked, kept, rank_measures=rank_measures)
         with engines.threads(threads) as engine:
             campaign.run(prepared, kept, engine)
     with Store.reading(place) as kept:
@@ -869,6 +875,11 @@ def fragility(
         curves, surfaces = assess.fitted(counted, definition, hazard, lambda count: None)
         shown = view(kept, plan, definition, *kept.count(), curves, surfaces)
         shown = with_quantiles(shown, list(all_quantiles(kept, plan, definition)), in_words=False)
+        if rank_measures:
+            from rocking_cli.studies.fragility.ranking import rank
+            from rocking_cli.views.ranking import added
+
+            shown = added(shown, rank(kept, plan, definition))
         blocks = list(table.blocks(kept, plan, definition.asked_measures))
 
     def columns() -> Columns:

@@ -134,7 +134,7 @@ def _check(study: Study, *, as_json: bool) -> bool:
 def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measures: bool) -> None:
     """Run what the store does not hold; to begin anew all, and the old store is kept under another name."""
     from rocking_cli.cli import waiting
-    from rocking_cli.studies.fragility.campaign import prepare, run
+    from rocking_cli.studies.fragility.campaign import prepare, run, steps
     from rocking_cli.studies.fragility.store import Store
 
     with ExitStack() as stack:
@@ -142,7 +142,7 @@ def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measu
         engine = stack.enter_context(running.engine()) if running.restart else None
         say = terminal.note if running.restart else terminal.warning
         store = stack.enter_context(Store.writing(place, anew=running.restart, say=say))
-        with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
+        with terminal.progress(steps(study, rank_measures=rank_measures), "records and structures") as examined:
             prepared = prepare(study, store, examined, rank_measures=rank_measures)
         _report(prepared)
         if prepared.finished == prepared.plan.total:

@@ -11,7 +11,7 @@ from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import leave_out, origin
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity.base import Measure, MotionMeasure, Reference, RelativeMeasure, RunMeasure
-from rocking_cli.text import did_you_mean
+from rocking_cli.text import cut, did_you_mean
 
 __all__ = [
     "IntensityMeasures",
@@ -96,7 +96,7 @@ def parse_measure(text: str) -> Measure:
             hint = hint.replace(f"did you mean {low}?", f"did you mean {each}?")
         if not hint.startswith("did"):
             hint = f"known: {', '.join(known)}"
-        raise InputError(Problem(f"unknown measure: {text.strip()}", hint=hint))
+        raise InputError(Problem(f"unknown measure: {cut(text.strip())}", hint=hint))
     cls = known[name]
     words = re.split("[,:]", found[2]) if (found[2] or "").strip() else []
     with blame(f"the measure {name} failed to be made", cls.__module__):

@@ -14,10 +14,11 @@ from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equival
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.processing.intensity import all_measures
+from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.displacements import FACT, asked_for
 from rocking_cli.studies.fragility.engines import Engine
+from rocking_cli.studies.fragility.intensity import PGA, PGV
 from rocking_cli.studies.fragility.measuring import complete
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
 from rocking_cli.studies.fragility.reached import rotations
@@ -97,7 +98,8 @@ def prepare(
     else:
         _refuse_changes(store, facts, known, plan)
     every = [str(each) for each in all_measures()] if rank_measures else []
-    plan = measured(study, plan, motions, [*given.asked_measures, *every], origins=rank_measures)
+    told = examined if examined is not None and _measures(study, rank_measures=rank_measures) else lambda count: None
+    plan = measured(study, plan, motions, [*given.asked_measures, *every], told, origins=rank_measures)
     if known is None:
         asked |= _displacements(study, plan, {})
         store.begin(plan, {**facts, **asked, "libraries": libraries()})
@@ -110,6 +112,17 @@ def prepare(
         store.commit()
     finished, failed = store.count()
     return Prepared(study, plan, motions, finished, failed, tuple(records[k].name for k in mended))
+
+
+def steps(study: Study, *, rank_measures: bool = False) -> int:
+    """How much `prepare` tells: of structures and records, and of records again where more than peaks are measured."""
+    return len(study.samples) + len(study.sources) * (1 + _measures(study, rank_measures=rank_measures))
+
+
+def _measures(study: Study, *, rank_measures: bool) -> bool:
+    """Whether records are measured beyond their peaks."""
+    bases = (parse_measure(name).base for name in study.definition.asked_measures)
+    return rank_measures or any(base is None or str(base) not in (PGA, PGV) for base in bases)
 
 
 def survey(study: Study, examined: Examined | None = None, known: Plan | None = None) -> tuple[Plan, KeptMotions]:
@@ -150,11 +163,17 @@ def survey(study: Study, examined: Examined | None = None, known: Plan | None = 
 
 
 def measured(
-    study: Study, plan: Plan, motions: KeptMotions, measures: Sequence[str], *, origins: bool = False
-) -> Plan:  # fmt: skip
+    study: Study,
+    plan: Plan,
+    motions: KeptMotions,
+    measures: Sequence[str],
+    told: Examined = lambda count: None,
+    *,
+    origins: bool = False,
+) -> Plan:
     """The plan with what its levels and some measures need, and with what records state of their earthquake."""
     mechanisms = [sample.mechanism for sample in study.samples]
-    return complete(plan, mechanisms, study.definition.model, motions, measures, origins=origins)
+    return complete(plan, mechanisms, study.definition.model, motions, measures, told, origins=origins)
 
 
 def _of_one_kind(one: Plan, other: Plan) -> bool:
