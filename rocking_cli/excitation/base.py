@@ -35,6 +35,30 @@ class Doubt(NamedTuple):
     text: str
 
 
+class Origin(NamedTuple):
+    """Which earthquake a record is of, and where it was taken, as far as its file says so for sure.
+
+    Parameters
+    ----------
+    event : str or None
+        The earthquake: its name, or when it was.
+    station : str or None
+        Name or code.
+    magnitude : float or None
+        Of the moment where the file gives several.
+    distance : float or None
+        From the epicentre, or as the file says [km].
+    """
+
+    event: str | None = None
+    station: str | None = None
+    magnitude: float | None = None
+    distance: float | None = None
+
+
+NOT_SAID = Origin()
+
+
 @dataclass(frozen=True, eq=False)
 class GroundMotion:
     """A ground acceleration history, positive to the right.
@@ -60,6 +84,8 @@ class GroundMotion:
         Of how many samples a history keeps one: a pulse is sampled more finely than its history need be shown.
     remarks : tuple of Doubt, optional
         What its reader found doubtful in the file.
+    origin : Origin, optional
+        The earthquake and the station, as far as its file says.
 
     Raises
     ------
@@ -76,6 +102,7 @@ class GroundMotion:
     points: NDArray[np.intp] | None = None
     every: int = 1
     remarks: tuple[Doubt, ...] = ()
+    origin: Origin = NOT_SAID
 
     def __post_init__(self) -> None:
         samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Channel, choose
-from rocking_cli.excitation.records.seismo import channel_of, given_unit, traces, velocity_code
+from rocking_cli.excitation.records.seismo import channel_of, given_unit, origin_of, traces, velocity_code
 
 TITLE = "miniSEED"
 SIGN = "a binary header with six digits and D, R, Q or M, or with MS and 3, then a date"
@@ -66,7 +67,8 @@ def _joined(file: str, name: str, segments: Sequence[Any], unit: str) -> Channel
     segments = sorted(segments, key=lambda segment: segment.stats.starttime)
     flaw = velocity_code(file, segments[0].stats.channel) or _gap(file, name, segments)
     samples = np.concatenate([segment.data for segment in segments])
-    return channel_of(file, name, segments[0].stats.delta, samples, unit, flaw)
+    found = channel_of(file, name, segments[0].stats.delta, samples, unit, flaw)
+    return replace(found, origin=origin_of(segments[0]))
 
 
 def _gap(file: str, name: str, segments: Sequence[Any]) -> Problem | None:
