@@ -80,7 +80,7 @@ def test_geonet(tmp_path):
 def test_smc(tmp_path):
     lines = made.smc().split("\n")
     lines[3:7] = ["     1989  10  18    0004 Made Up, CA", "Moment Mag=      7.1 Ms=      7.2 Ml=      7.0",
-                  "station = Town, 12 Street component=    360", "epicentral dist =     89.0     pk  =    104.4"]  # fmt: skip
+                  "station = Town, 12 Street component=  360", "epicentral dist =   89.0   pk = 104.4"]  # fmt: skip
     assert of(tmp_path, "\n".join(lines)) == Origin("Made Up, CA 1989-10-18 00:04", "Town, 12 Street", 7.1, 89.0)
     lines[4] = "Moment Mag=          Ms=      7.2 Ml=      7.0"
     assert of(tmp_path, "\n".join(lines)).magnitude == 7.0
@@ -130,7 +130,7 @@ def test_csmip_v1(tmp_path):
 
 def test_cosmos(tmp_path):
     lines = made.cosmos().split("\n")
-    lines[1:6] = ["Record of Made Up Quake of Fri Nov 30, 2018 17:29 UTC", "Hypocenter: 61.3 -149.9 H= 46km ML=6.8, Mw=7.0",
+    lines[1:6] = ["Record of Made Up Quake of Fri Nov 30, 2018 17:29 UTC", "Hypocenter: 61.3 -149.9 ML=6.8, Mw=7.0",
                   "x", "Statn No: 37-000011 Code:AK-BMR     UAF  Some River, AK, USA", "x"]  # fmt: skip
     first = next(k for k, line in enumerate(lines) if "Real-header" in line) + 1
     cells = lines[first + 2]

@@ -76,11 +76,8 @@ class Wanted:
                 message = f"it must be two positive numbers, the smaller first, got {low:g} and {high:g}"
                 raise InputError(Problem(message, field=f"`{name}`"))
         if not 0 <= self.damping < 1:
-            raise InputError(
-                Problem(
-                    f"a damping ratio is from 0 to below 1, got {self.damping:g}", field="`damping`", hint="5 % is 0.05"
-                )
-            )
+            message = f"a damping ratio is from 0 to below 1, got {self.damping:g}"
+            raise InputError(Problem(message, field="`damping`", hint="5 % is 0.05"))
         if self.one_per not in ONE_PER:
             raise InputError(Problem(f"it is one of {', '.join(ONE_PER)}, got {self.one_per}", field="`one_per`"))
 
@@ -201,9 +198,12 @@ def candidates(
     Raises
     ------
     InputError
-        If the target does not cover the band, or vanishes in it.
+        If the target does not cover the band, or vanishes in it, or there are too few records of different events or
+        stations.
     """
     target.check(wanted.band)
+    names = [key_of(motion, wanted.one_per) for motion in motions]
+    _check_enough(len(motions), len(motions), int(_groups(names).max(initial=-1)) + 1, wanted)  # before any work
     periods = periods_of(wanted.band, target)
     spectra = np.zeros((len(motions), periods.size))
     for k, motion in enumerate(motions):
@@ -225,7 +225,11 @@ def periods_of(band: tuple[float, float], target: TargetSpectrum) -> Reals:
     return np.sort(np.concatenate([found[:1], found[1:-1][away], own, found[-1:]]))
 
 
-def choose(found: Candidates, wanted: Wanted, progress: Callable[[int], object] = lambda done: None) -> RecordSet:
+def choose(
+    found: Candidates,
+    wanted: Wanted,
+    begin: Callable[[int], Callable[[int], object]] = lambda steps: lambda done: None,
+) -> RecordSet:
     """Choose the records and their factors.
 
     Parameters
@@ -234,8 +238,8 @@ def choose(found: Candidates, wanted: Wanted, progress: Callable[[int], object] 
         What to choose from.
     wanted : Wanted
         What the set is to be.
-    progress : callable, optional
-        Told how many more sets, or searches, are done: of `steps` of the problem.
+    begin : callable, optional
+        Told how many sets, or searches, there are; what it gives is told how many more are done.
 
     Returns
     -------
@@ -261,7 +265,7 @@ def choose(found: Candidates, wanted: Wanted, progress: Callable[[int], object] 
         wanted.within,
         wanted.factors,
     )
-    best = subsets.best(problem, wanted.seed, progress)
+    best = subsets.best(problem, wanted.seed, begin(problem.steps))
     chosen = usable[best.members]
     silent = sum(name is None for name in names) if wanted.one_per != "none" else 0
     sets = subsets.count_sets(groups, wanted.count)
@@ -296,7 +300,7 @@ def log_weights(periods: Reals) -> Reals:
     weights = np.zeros(periods.size)
     weights[:-1] += steps / 2
     weights[1:] += steps / 2
-    return weights / weights.sum()
+    return np.asarray(weights / weights.sum())
 
 
 def key_of(motion: GroundMotion, one_per: str) -> str | None:

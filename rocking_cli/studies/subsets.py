@@ -21,6 +21,7 @@ MOST_TRIED = 200_000  # sets
 BLOCK = 4096  # sets judged at once
 STARTS = 20  # of the searches
 SAME = 1e-9  # differences, in logarithms, that are rounding: what comes first goes before
+INSIDE = 1e-12  # of a mean at a limit, so that rounding does not take it over
 EXCHANGES = 1000  # in a search, at most
 
 
@@ -147,8 +148,8 @@ def judge(problem: Problem, sums: Reals, count: int, least: Reals, most: Reals) 
     centre = logs @ problem.weights
     nearest = np.clip(
         -centre,
-        np.minimum(np.maximum(floor - low, down), balanced),
-        np.maximum(np.minimum(roof - high, up), balanced),
+        np.minimum(np.maximum(floor - low, down) + INSIDE, balanced),
+        np.maximum(np.minimum(roof - high, up) - INSIDE, balanced),
     )
     common = np.where(fits, nearest, balanced)
     rms = np.sqrt(((logs + common[:, None]) ** 2) @ problem.weights)
