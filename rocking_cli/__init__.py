@@ -34,6 +34,7 @@ _HOME = {
         "record",
         "respond",
         "respond_each",
+        "select",
         "spectrum",
         "write_report",
     ],

@@ -23,6 +23,7 @@ from rocking_cli.api.verbs import overturning_map as overturning_map
 from rocking_cli.api.verbs import record as record
 from rocking_cli.api.verbs import respond as respond
 from rocking_cli.api.verbs import respond_each as respond_each
+from rocking_cli.api.verbs import select as select
 from rocking_cli.api.verbs import spectrum as spectrum
 from rocking_cli.api.verbs import write_report as write_report
 from rocking_cli.core import Body as Body

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import ceil, isfinite, log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,8 @@ from rocking_cli.studies.target_spectrum import Reals, TargetSpectrum
 WITHIN = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has the lower one alone
 FACTORS = (0.2, 5.0)
 ONE_PER = ("event", "station", "none")
-POINTS = 50  # periods of a band at equal ratios
+SPACING = 0.05  # of ln T, at most: half the width of a resonance of 5 % damping
+POINTS = 50  # periods of a band, at least
 OWN_POINTS = 100  # of the target within the band that are added to these, if there are no more
 SAME_PERIOD = 1e-6  # ratio, less one, of periods that are one
 FEWEST = 4  # intervals of a record to a period, for its samples to show it
@@ -214,11 +215,13 @@ def candidates(
 
 def periods_of(band: tuple[float, float], target: TargetSpectrum) -> Reals:
     """Periods [s] at equal ratios over a band, and the target's own in it if they are not too many."""
-    found = np.geomspace(*band, POINTS)
+    count = max(POINTS, ceil(log(band[1] / band[0]) / SPACING) + 1)
+    found = np.geomspace(*band, count)
     found[[0, -1]] = band
     own = target.periods[(target.periods > band[0]) & (target.periods < band[1])]
     if own.size > OWN_POINTS:
-        return np.geomspace(*band, POINTS + OWN_POINTS)
+        count += OWN_POINTS
+        return np.concatenate([band[:1], np.geomspace(*band, count)[1:-1], band[1:]])
     # Of two that are one the target's stays, where its slope changes, but not in the place of an end.
     away = np.abs(found[1:-1, None] / own - 1).min(axis=1, initial=1.0) > SAME_PERIOD
     own = own[(own > band[0] * (1 + SAME_PERIOD)) & (own < band[1] * (1 - SAME_PERIOD))]

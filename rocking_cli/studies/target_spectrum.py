@@ -80,6 +80,8 @@ class TargetSpectrum:
 
 def wrong_points(periods: Reals, sa: Reals) -> list[tuple[int, str]]:
     """The points of a spectrum that are wrong, counted from 0, and what is wrong there."""
+    if periods.shape != sa.shape or periods.ndim != 1:
+        return [(min(periods.size, sa.size), "a period without an ordinate, or an ordinate without a period")]
     found = []
     for k, (period, value) in enumerate(zip(periods.tolist(), sa.tolist(), strict=True)):
         before = periods[k - 1] if k else -math.inf

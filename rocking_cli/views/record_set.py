@@ -117,7 +117,7 @@ def verdict(results: Results) -> str:
     least, most = int(ratio.argmin()), int(ratio.argmax())
     count = len(found.chosen)
     whose = "The spectrum" if count == 1 else f"The mean of the {count} spectra"
-    where = f"from {wanted.band[0]:g} to {wanted.band[1]:g} s"
+    where = f"at {periods.size} periods from {wanted.band[0]:g} to {wanted.band[1]:g} s"
     range_ = (
         f"between {ratio_in_words(float(ratio[least]), wanted.within)} times the target, at {periods[least]:.3g} s, "
         f"and {ratio_in_words(float(ratio[most]), wanted.within)} times, at {periods[most]:.3g} s"
@@ -132,8 +132,8 @@ def verdict(results: Results) -> str:
     best = "No set fits" if found.exact else "No set that fits was found"
     nearest = "record" if count == 1 else "set"
     return (
-        f"{best}. {whose} of the nearest {nearest} lies {range_}: it is {', and '.join(missed)}. More records to choose "
-        "from, a larger set, a narrower band or wider limits on the factors may help."
+        f"{best}. {whose} of the nearest {nearest} lies {range_}: it is {', and '.join(missed)}. More records to "
+        "choose from, a larger set, a narrower band or wider limits on the factors may help."
     )
 
 
