@@ -133,9 +133,10 @@ def test_hints_name_the_options_of_the_vertical_component(tmp_path):
 def test_hints_name_the_keys_of_a_study(tmp_path):
     (tmp_path / "column.txt").write_text("a [g]\n0\n0.1\n0\n", encoding="utf-8")
     from rocking_cli.errors import InputError
+    from rocking_cli.processing.reading import Reading
     from rocking_cli.studies.fragility.definition import RecordEntry
     from rocking_cli.studies.fragility.sources import Source
 
-    source = Source("column", RecordEntry(file="column.txt"), tmp_path / "column.txt")
+    source = Source("column", RecordEntry(file="column.txt"), Reading(), tmp_path / "column.txt")
     with pytest.raises(InputError, match="give it with `dt`,"):
         source.read()

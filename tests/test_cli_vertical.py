@@ -39,6 +39,7 @@ def test_it_changes_the_response_as_the_library_says(up):
         assert data["responses"][name]["peak_ratio"] != without["responses"][name]["peak_ratio"]
     assert data["record"]["vertical"] == {
         "name": "up.csv", "npts": 1500, "dt": 0.004, "unit": "g", "pga": pytest.approx(0.3, rel=1e-3), "format": "text",
+        "processing": [],
     }  # fmt: skip
     assert without["record"]["vertical"] is None
     assert (len(data["notes"]), without["notes"]) == (1, [])

@@ -22,6 +22,7 @@ from rocking_cli import GroundMotion, equivalent_block, exact_response, load_str
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.processing.reading import Reading
 from rocking_cli.studies.fragility import assess, curves, engines, sources, store, store_file, tally, units
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.definition import SCALE, LevelMeasure, Measure, RecordEntry
@@ -809,7 +810,7 @@ def test_the_checksum_of_a_pulse_is_of_all_its_digits_and_of_how_it_is_sampled(m
     """A store does not mix runs under pulses that differ in the seventh digit, or in their samples."""
 
     def checksum(text):
-        return Source(text, RecordEntry(pulse=text)).checksum()
+        return Source(text, RecordEntry(pulse=text), Reading()).checksum()
 
     one = checksum("sine:0.3g:1s")
     assert one == checksum("sine:0.3g:1.0s") != checksum("sine:0.30000001g:1s")

@@ -739,7 +739,7 @@ def margin(
     ready, around = _structure(structure), Around()
     shaking = [_motion(each) for each in _each(motions)]
     found = {each.name: study.margin(ready.model("nonlinear"), each, polarities, around=around) for each in shaking}
-    rows = [views.Row(each.name, 1.0, each.pga, found[each.name]) for each in shaking]
+    rows = [views.Row(each.name, 1.0, each.of_ground.pga, found[each.name]) for each in shaking]
     polarity = "both" if len(polarities) > 1 else str(polarities[0])
 
     def columns() -> Columns:

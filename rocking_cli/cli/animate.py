@@ -108,7 +108,7 @@ def command(
     from rocking_cli.studies.picture import picture
     from rocking_cli.views.animation import view
 
-    read = [*files, *(str(path) for path in paths)]
+    read = [*files, *(str(each.path) for each in paths)]
     keep_apart([("--out", out)], read)
     structure = inputs.structure(files, asked.records)
     given, refused = inputs.gather(paths, asked, structure.growth, several=several)

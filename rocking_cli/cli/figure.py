@@ -101,9 +101,10 @@ def command(
 def _motion(record: str | None, reading: Reading) -> GroundMotion:
     """The record of Figure 14: the user's, or the shipped example, which a wheel has and a checkout has elsewhere."""
     from rocking_cli.excitation.records import read_record
+    from rocking_cli.processing.listed import Listed
 
     if record is not None:
-        return motion_files.read(record, *reading.reading)
+        return motion_files.read(Listed(Path(record)), reading.reading)
     package = Path(__file__).parents[1]
     shipped = package / "data" / "accel.csv"
     return read_record(shipped if shipped.exists() else package.parent / "examples" / "accel.csv")

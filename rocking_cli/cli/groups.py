@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, cast
 import click
 from click.core import ParameterSource
 
-from rocking_cli.cli import terminal
+from rocking_cli.cli import options, terminal
 from rocking_cli.cli.defaults import from_default
+from rocking_cli.cli.options import Placed
 from rocking_cli.cli.pictures import write_picture
+from rocking_cli.cli.quantities import Azimuth
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,22 +22,67 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.dynamics.release import Release
     from rocking_cli.excitation.pulses import Pulse
+    from rocking_cli.excitation.records.sensor import Gain, Quantity
     from rocking_cli.io.tables import Columns
+    from rocking_cli.processing import reading as processing
+    from rocking_cli.processing.floor import Floor
     from rocking_cli.studies.neighbours import Around
+
+SPELLED = {"quantity": "from", "other": "with"}  # options by the names of their parameters
 
 
 @dataclass(frozen=True)
 class Reading:
-    """How records are read."""
+    """How records are read, and what is made of them."""
 
     units: str | None
     dt: float | None
     channel: str | None
+    quantity: Quantity | None
+    gain: Gain | None
+    other: str | None
+    other_channel: str | None
+    azimuth: float | str | None
+    baseline: Placed | None
+    highpass: Placed | None
+    lowpass: Placed | None
+    taper: Placed | None
+    trim: Placed | None
+    resample: Placed | None
+    floor: Floor | None
+
+    def __post_init__(self) -> None:
+        if self.other is None and (self.azimuth is not None or self.other_channel is not None):
+            raise click.UsageError("--azimuth and --with-channel are of a pair of components: give --with FILE.")
+        if self.other is not None and self.azimuth is None:
+            raise click.UsageError("--with FILE is one of a pair: give --azimuth, 0 for the record and 90 for FILE.")
 
     @property
-    def reading(self) -> tuple[float | None, str | None, str | None]:
-        """`dt`, `units` and `channel` of a record."""
-        return self.dt, self.units, self.channel
+    def placed(self) -> list[Placed]:
+        """The corrections, in their order."""
+        given = (getattr(self, name) for name in options.CORRECTIONS)
+        return sorted((each for each in given if each is not None), key=lambda each: each.place)
+
+    @property
+    def all_azimuths(self) -> bool:
+        """Whether a pair is turned into all directions."""
+        return self.azimuth == Azimuth.ALL
+
+    @property
+    def reading(self) -> processing.Reading:
+        """How to read a record, in one direction."""
+        if self.all_azimuths:
+            raise click.UsageError("--azimuth all is for `rocking respond`: give one angle here.")
+        return self.towards(self.azimuth or 0.0)
+
+    def towards(self, azimuth: float | str) -> processing.Reading:
+        """How to read a record, in the direction of an azimuth [deg]."""
+        from rocking_cli.processing.reading import Reading as Made
+
+        return Made(
+            self.dt, self.units, self.channel, self.quantity, self.gain, self.other, self.other_channel,
+            float(azimuth), tuple(each.step for each in self.placed), self.floor,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -85,6 +132,12 @@ class GroundMotions(Scaling, Reading):
         reading = ("units", "dt", "channel") if vertical is None else ("channel",)
         if not self.records and any(getattr(self, name) is not None and not from_default(name) for name in reading):
             raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
+        of_records = [name for name in ("quantity", "gain", "other", *options.CORRECTIONS) if getattr(self, name)]
+        if not self.records and of_records:
+            named = " and ".join(f"--{SPELLED.get(name, name)}" for name in of_records)
+            raise click.UsageError(f"{named} change{'s' * (len(of_records) == 1)} a record: give --record FILE.")
+        if not self and self.floor is not None:
+            raise click.UsageError("--floor is shaken by a ground motion: give --record FILE or --pulse PULSE.")
         if not self and self.is_scaled:
             raise click.UsageError(
                 "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."

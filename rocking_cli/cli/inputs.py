@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import motion_files, terminal
@@ -16,6 +15,8 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulses import Pulse
+    from rocking_cli.processing.listed import Listed
+    from rocking_cli.processing.reading import Reading
 
 
 def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
@@ -35,27 +36,31 @@ def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
         raise
 
 
-def read(what: str, file: str | Path, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
+def read(what: str, record: Listed, reading: Reading) -> GroundMotion:
     """Read a motion and say what was read; `what` it is to be called."""
-    motion = motion_files.read(file, dt, units, channel)
-    terminal.note(
-        f"{what}: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:g} s, "
-        f"in {motion.unit}, PGA = {motion.pga:.4g} g"
-    )
+    motion = motion_files.read(record, reading)
+    _say(what, motion)
     return motion
 
 
-def read_vertical(
-    file: str, dt: float | None, own_dt: float | None, units: str | None, channel: str | None
-) -> GroundMotion:
-    """Read a vertical component as `read` does; `own_dt` is its interval, else that of the horizontal one."""
+def _say(what: str, motion: GroundMotion) -> None:
+    ground = motion.of_ground
+    terminal.note(
+        f"{what}: {motion.name} ({motion.format}), {ground.npts} points, dt = {ground.dt:g} s, "
+        f"in {motion.unit}, PGA = {ground.pga:.4g} g{motion_files.done(motion)}"
+    )
+
+
+def read_vertical(vertical: Vertical, reading: Reading) -> GroundMotion:
+    """Read a vertical component; its interval and channel are its own, the rest as that of the horizontal one."""
     from rocking_cli.errors import InputError, Problem, renamed
 
     arguments = {"channel": "vertical_channel"}
-    if own_dt is not None or dt is None:
+    if vertical.vertical_dt is not None or reading.dt is None:
         arguments["dt"] = "vertical_dt"
+    assert vertical.vertical is not None
     try:
-        return read("vertical", file, dt if own_dt is None else own_dt, units, channel)
+        motion = reading.vertical(vertical.vertical, vertical.vertical_dt, vertical.vertical_channel)
     except InputError as error:
         found: list[Problem] = []
         for each in renamed(error, arguments).problems:
@@ -63,6 +68,8 @@ def read_vertical(
                 each = replace(each, hint="give the interval of the vertical component with `vertical_dt`")
             found.append(each)
         raise InputError(*found) from None
+    _say("vertical", motion)
+    return motion
 
 
 def make(specification: str) -> tuple[Pulse, GroundMotion]:
@@ -87,7 +94,7 @@ def judge(
     from rocking_cli.excitation.doubts import doubts
     from rocking_cli.excitation.measures import measure
 
-    measured = measure(motion)
+    measured = measure(motion.of_ground)
     if motion.format != "pulse":  # what a formula leaves the ground with is meant
         _warn(motion, measured, p)
     if motion.vertical is not None:
@@ -102,11 +109,11 @@ def judge(
 def _warn(motion: GroundMotion, measured: Measures, p: float) -> None:
     from rocking_cli.excitation.doubts import coarse_for, doubts
 
-    motion_files.warn(motion, doubts(motion, measured) + coarse_for(motion, p))
+    motion_files.warn(motion, doubts(motion.of_ground, measured) + coarse_for(motion, p))
 
 
 def gather(
-    paths: Sequence[Path], asked: GroundMotions, p: float, vertical: Vertical | None = None, *, several: bool
+    records: Sequence[Listed], asked: GroundMotions, p: float, vertical: Vertical | None = None, *, several: bool
 ) -> tuple[list[Scaled], int]:
     """The motions that shake a structure of a frequency parameter `p`, and how many of those asked for cannot be used.
 
@@ -114,14 +121,14 @@ def gather(
     `vertical` may be the vertical component of a single one.
     """
     if several:
-        return motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, p, "this structure")
+        return motion_files.gather(records, asked.pulses, asked.reading, asked.scaling, p, "this structure")
     pulse, file = None, None
     if asked.pulses:
         pulse, motion = make(asked.pulses[0])
+        motion = asked.reading.on_floor(motion)
     else:
-        file = paths[0]
-        motion = read("record", file, *asked.reading)
+        file = records[0].path
+        motion = read("record", records[0], asked.reading)
     if vertical is not None and vertical.vertical is not None:
-        up = read_vertical(vertical.vertical, asked.dt, vertical.vertical_dt, asked.units, vertical.vertical_channel)
-        motion = replace(motion, vertical=up)
+        motion = replace(motion, vertical=read_vertical(vertical, asked.reading))
     return [Scaled(motion, judge(motion, p, *asked.scaling), pulse, file)], 0

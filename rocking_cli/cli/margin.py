@@ -56,7 +56,7 @@ def command(
     from rocking_cli.views.margin import view
 
     paths, missing = motion_files.find(asked.records)
-    keep_apart([("--plot", plot)], [file, *(str(path) for path in paths)])
+    keep_apart([("--plot", plot)], [file, *(str(each.path) for each in paths)])
     structure = structures.prepared([file] if file else [])
     mechanism, model = structure.mechanism, structure.model("nonlinear")
     chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, structure.p)
@@ -84,9 +84,6 @@ def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], aroun
     with waiting.histories(each_has * len(chosen)) as progress:
         for motion, factor, *_ in chosen:
             scaled = motion.scaled(factor)
-            rows.append(
-                Row(
-                    motion.name, factor, scaled.pga, margin(model, scaled, polarities, around=around, progress=progress)
-                )
-            )
+            found = margin(model, scaled, polarities, around=around, progress=progress)
+            rows.append(Row(motion.name, factor, scaled.of_ground.pga, found))
     return rows

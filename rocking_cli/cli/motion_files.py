@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from textwrap import shorten
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import Doubt, GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulses import Pulse
+    from rocking_cli.processing.listed import Listed
+    from rocking_cli.processing.reading import Reading
 
 MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and past following in a reasonable time
 
@@ -77,18 +79,38 @@ def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
         terminal.warning(f"{motion.name}: {doubt.text}")
 
 
-def read(file: str | Path, dt: float | None, units: str | None, channel: str | None) -> GroundMotion:
+def read(record: Listed, reading: Reading) -> GroundMotion:
     """Read a record; what of its reading is a default, and was not typed, holds only where the file does not say."""
-    from rocking_cli.excitation.records import read_record
     from rocking_cli.excitation.records.opening import allow_again
 
-    given: dict[str, Any] = {"dt": dt, "units": units, "channel": channel}
-    typed = {name: None if from_default(name) else value for name, value in given.items()}
+    given = record.reading(reading)
+    typed = _typed(given)
     if typed != given:
         with suppress(InputError):
-            return read_record(file, **typed)
-        allow_again(file)
-    return read_record(file, **given)
+            return record.as_said(typed.read(record.path))
+        allow_again(record.path)
+    return record.as_said(given.read(record.path))
+
+
+def settled(record: Listed, reading: Reading) -> Reading:
+    """How `read` read a file, not standard input: without the defaults, unless the file needs them."""
+    given = record.reading(reading)
+    typed = _typed(given)
+    if typed != given:
+        with suppress(InputError):
+            typed.read(record.path)
+            return typed
+    return given
+
+
+def _typed(given: Reading) -> Reading:
+    """What of a reading is no default."""
+    return replace(
+        given,
+        dt=None if from_default("dt") else given.dt,
+        units=None if from_default("units") else given.units,
+        channel=None if from_default("channel") else given.channel,
+    )
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
@@ -102,25 +124,34 @@ def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
         )
 
 
-def find(places: Sequence[str]) -> tuple[list[Path], int]:
-    """The files of several names and patterns, each once, and how many of these stand for none, which is reported."""
+def find(places: Sequence[str]) -> tuple[list[Listed], int]:
+    """The files of several names, patterns and lists, each once, and how many of these stand for none: is reported."""
     from rocking_cli.excitation.selection import select
+    from rocking_cli.processing.listed import Listed, is_list
 
-    found: dict[Path, None] = {}
+    found: list[Listed] = []
     bad = 0
     for place in places:
         try:
-            found |= dict.fromkeys(select(place))
+            for path in select(place):
+                inside = _of_list(path) if is_list(path) else [Listed(path)]
+                found += [each for each in inside if each not in found]
         except InputError as error:
             terminal.error(str(error))
             bad += 1
-    return list(found), bad
+    return found, bad
+
+
+def _of_list(path: Path) -> list[Listed]:
+    from rocking_cli.processing.record_list import read_list
+
+    return read_list(path)
 
 
 def gather(
-    paths: Sequence[Path],
+    records: Sequence[Listed],
     pulses: Sequence[str],
-    reading: tuple[float | None, str | None, str | None],
+    reading: Reading,
     asked: tuple[float | None, float | None, float | None],
     p: float,
     whom: str = "the smallest size",
@@ -129,12 +160,12 @@ def gather(
 
     Parameters
     ----------
-    paths : sequence of Path
+    records : sequence of Listed
         The records.
     pulses : sequence of str
         Specifications such as `sine:0.6g:0.8s`.
-    reading : tuple
-        `dt`, `units` and `channel` of `read_record`.
+    reading : Reading
+        How records are read, and the floor of all motions.
     asked : tuple
         `scale`, `target_pga` and `target_pgv` of `factor`.
     p : float
@@ -158,46 +189,53 @@ def gather(
     from rocking_cli.excitation.measures import measure
     from rocking_cli.excitation.pulses import parse_pulse
 
-    sources: list[Path | Pulse] = [*paths, *dict.fromkeys(parse_pulse(text) for text in pulses)]
-    dt, units, channel = reading
+    sources: list[Listed | Pulse] = [*records, *dict.fromkeys(parse_pulse(text) for text in pulses)]
     found: list[Scaled] = []
     doubtful: list[tuple[GroundMotion, list[Doubt]]] = []
-    for source in sources:
+    for place, source in enumerate(sources):
         try:
-            if isinstance(source, Path):
-                each = Scaled(read(source, dt, units, channel), 1.0, file=source)
+            if isinstance(source, tuple):
+                each = Scaled(read(source, reading), 1.0, file=source.path, place=place)
             else:
-                each = Scaled(source.sampled(), 1.0, pulse=source)
+                each = Scaled(reading.on_floor(source.sampled()), 1.0, pulse=source, place=place)
             motion = each.motion
-            measured = measure(motion)
+            measured = measure(motion.of_ground)
             each = each._replace(factor=factor(motion, measured, *asked))
         except InputError as error:
             terminal.error(str(error))
             terminal.debug_traceback(error)
             continue
-        if isinstance(source, Path):
+        if isinstance(source, tuple):
             if any(motion.name == other.motion.name for other in found):
-                each = each._replace(motion=replace(motion, name=f"{motion.name} ({source.parent})"))
-            doubtful.append((each.motion, doubts(motion, measured) + coarse_for(motion, p, whom)))
+                each = each._replace(motion=replace(motion, name=f"{motion.name} ({source.path.parent})"))
+            doubtful.append((each.motion, doubts(motion.of_ground, measured) + coarse_for(motion, p, whom)))
         found.append(each)
     _introduce(found)
     _warn_of([each for each in doubtful if each[1]])
     return found, len(sources) - len(found)
 
 
+def done(motion: GroundMotion) -> str:
+    """What was done to a motion, to go on a sentence with."""
+    from rocking_cli.views.processing import in_words
+
+    return f"; {said}" if (said := in_words(motion)) else ""
+
+
 def _introduce(found: Sequence[Scaled]) -> None:
     """Say which ground motions these are."""
     if len(found) <= FEW:
         for motion, by, *_ in found:
-            scaled = f", scaled by {by:.6g}: PGA = {abs(by) * motion.pga:.4g} g" if by != 1 else ""
+            pga = motion.of_ground.pga
+            scaled = f", scaled by {by:.6g}: PGA = {abs(by) * pga:.4g} g" if by != 1 else ""
             terminal.note(
                 f"motion: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:.6g} s, "
-                f"PGA = {motion.pga:.4g} g{scaled}"
+                f"PGA = {pga:.4g} g{scaled}{done(motion)}"
             )
         return
-    pga = [abs(each.factor) * each.motion.pga for each in found]
+    peaks = [abs(each.factor) * each.motion.of_ground.pga for each in found]
     scaled = " as scaled" if any(each.factor != 1 for each in found) else ""
-    terminal.note(f"motions: {len(found)}, PGA from {min(pga):.3g} to {max(pga):.3g} g{scaled}")
+    terminal.note(f"motions: {len(found)}, PGA from {min(peaks):.3g} to {max(peaks):.3g} g{scaled}")
 
 
 def _warn_of(doubtful: Sequence[tuple[GroundMotion, list[Doubt]]]) -> None:

@@ -6,12 +6,24 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
 from rocking_cli.cli import complete, terminal
-from rocking_cli.cli.quantities import AMPLITUDE, INTERVAL, PERIOD, PGA, PGV, Finite, Quantity, Share, Unit
+from rocking_cli.cli.quantities import (
+    AMPLITUDE,
+    INTERVAL,
+    PERIOD,
+    PGA,
+    PGV,
+    Azimuth,
+    Finite,
+    Parsed,
+    Quantity,
+    Share,
+    Unit,
+)
 
 STANDARD_OUTPUT = "-"
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -148,12 +160,93 @@ ground_motions: Decorator = _in_order(
 )  # fmt: skip
 """Ground motions, any number of them: `records` and `pulses`."""
 
+
+class Placed(NamedTuple):
+    """A correction that was asked for, and its place among them: they are made in the order of the command line."""
+
+    place: int
+    step: Any
+
+    def __str__(self) -> str:
+        return str(self.step.value)
+
+
+def _placed(ctx: click.Context, param: click.Parameter, value: tuple[Any, ...]) -> Placed | None:
+    """A callback that keeps the order of corrections: click calls callbacks in the order of what was typed."""
+    if not value:
+        return None
+    if len(value) > 1:
+        hint = "a `processing:` list of a study, or of a list of records, may repeat a step."
+        raise click.BadParameter(f"is given twice: give it once; {hint}", ctx, param)
+    place = ctx.meta[__name__] = ctx.meta.get(__name__, 0) + 1
+    return Placed(place, value[0])
+
+
+def _parser_of(name: str) -> Callable[[], Callable[[str], Any]]:
+    def fetch() -> Callable[[str], Any]:
+        from rocking_cli.processing.steps import STEPS
+
+        return STEPS[name].parse
+
+    return fetch
+
+
+def _correction(name: str, metavar: str, what: str) -> Decorator:
+    kind = Parsed(name, _parser_of(name))
+    return click.option(f"--{name}", multiple=True, type=kind, metavar=metavar, callback=_placed, help=what)
+
+
+def _gain() -> Callable[[str], Any]:
+    from rocking_cli.excitation.records.sensor import Gain
+
+    return Gain.parse
+
+
+def _floor() -> Callable[[str], Any]:
+    from rocking_cli.processing.floor import Floor
+
+    return Floor.parse
+
+
+CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
+corrections: Decorator = _in_order(
+    _correction("baseline", "linear|quadratic", "Subtract the line, parabola or constant that fits the samples best."),
+    _correction("highpass", "HZ", "Take out what is slower (Butterworth, both ways)."),
+    _correction("lowpass", "HZ", "Take out what is faster."),
+    _correction("taper", "SHARE", "Bring both ends to zero, over this share of the duration each."),
+    _correction("trim", "FROM:TO", "Keep what is between two times, in s."),
+    _correction("resample", "TIME", "Another interval, in s; uneven times are put on a grid."),
+)
+"""Corrections of a record, made in the order in which they are given."""
+
 reading: Decorator = _in_order(
     click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),
     click.option("--dt", type=Quantity(INTERVAL), metavar="TIME", help="Interval of a record without times, in s."),
     click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name."),
-)
-"""How to read a record: `units`, `dt` and `channel`."""
+    click.option(
+        "--from", "quantity", type=click.Choice(("acceleration", "velocity", "displacement")),
+        help="What the record holds; others than accelerations are differentiated.",
+    ),
+    click.option(
+        "--gain", type=Parsed("gain", _gain), metavar="GAIN",
+        help="What one unit of the record stands for, such as 0.05m/V or 4.7e-6m/s2/count.",
+    ),
+    click.option(
+        "--with", "other", type=click.Path(), metavar="FILE", shell_complete=complete.files,
+        help="The component at right angles, turned with the record into the plane of the structure.",
+    ),
+    click.option("--with-channel", "other_channel", metavar="CHANNEL", help="Which of several that is in its file."),
+    click.option(
+        "--azimuth", type=Azimuth(), metavar="DEGREES",
+        help="Of the structure's plane, from the record (0) towards --with (90); `respond` takes all.",
+    ),
+    corrections,
+    click.option(
+        "--floor", type=Parsed("floor", _floor), metavar="T1=...",
+        help="Stand on a floor of a building: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
+    ),
+)  # fmt: skip
+"""How to read a record and what to make of it: the fields of `groups.Reading`."""
 
 
 def scaling(*polarities: str, both: str = "one after the other", default: str = "1") -> Decorator:

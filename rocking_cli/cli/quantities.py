@@ -5,6 +5,7 @@ A number with its unit. Where the help says which unit a bare number has, the un
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -37,7 +38,10 @@ class Finite(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
 
 
 class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A unit of acceleration, in any spelling that the header of a record may have: `m/s^2` is `m/s2`."""
+    """A unit of acceleration, in any spelling that the header of a record may have: `m/s^2` is `m/s2`.
+
+    Units of velocities and lengths are taken too, for records `--from` these, and not listed.
+    """
 
     def __init__(self) -> None:
         super().__init__(UNITS)
@@ -46,9 +50,40 @@ class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in 
         """Turn a spelling into the name, or fail naming the option and the choices."""
         if value in UNITS:
             return value
+        from rocking_cli.excitation.records.sensor import quantity_of
         from rocking_cli.excitation.records.units import canonical
 
-        return super().convert(canonical(str(value)) or value, param, ctx)
+        found = canonical(str(value))
+        if found is None and quantity_of(str(value)) is not None:
+            return "".join(str(value).split())
+        return super().convert(found or value, param, ctx)
+
+
+class Parsed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
+    """What a parser of a lower layer makes of a text; the parser is fetched when there is one to read.
+
+    Parameters
+    ----------
+    name : str
+        What it is, for the help.
+    parser : callable
+        Gives the parser, which raises `InputError`.
+    """
+
+    def __init__(self, name: str, parser: Callable[[], Callable[[str], Any]]) -> None:
+        self.name, self._parser = name, parser
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Turn a text into the object, or fail naming the option and what would be right."""
+        if not isinstance(value, str):
+            return value
+        from rocking_cli.errors import InputError
+
+        try:
+            return self._parser()(value)
+        except InputError as error:
+            (problem,) = error.problems
+            self.fail(f"{problem.message}{f': {problem.hint}' if problem.hint else ''}.", param, ctx)
 
 
 @dataclass(frozen=True)
@@ -147,6 +182,30 @@ def _acceleration(number: float, spelling: str) -> float:
     if unit is None:
         raise UnitError(f"{spelling!r} is no unit of acceleration", f"give one of {', '.join(UNITS)}")
     return number if unit == "g" else number * units.UNITS[unit] / STANDARD_GRAVITY
+
+
+class Azimuth(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
+    """An angle in degrees; or the word `all`, where a command takes all of them."""
+
+    name = "angle"
+    ALL = "all"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Turn a text into the angle, or fail naming the option."""
+        if isinstance(value, float) or value == self.ALL:
+            return value
+        try:
+            number = float(str(value).strip()) if _is_plain(str(value)) else read(str(value), "deg")
+        except UnitError as error:
+            self.fail(f"{error.message}: give degrees, such as 30.", param, ctx)
+        if not abs(number) < inf:
+            self.fail(f"{value} is not a finite angle.", param, ctx)
+        return number
+
+
+def _is_plain(text: str) -> bool:
+    parts = split(text)
+    return parts is not None and not parts[1]
 
 
 class Tilt(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only

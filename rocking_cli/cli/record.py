@@ -191,8 +191,9 @@ class _Asked:
     def of(self, file: str) -> list[Examined]:
         """Read a record, examine it in every polarity, and write what is to be written."""
         from rocking_cli.excitation.records.opening import name_of
+        from rocking_cli.processing.listed import Listed
 
-        motion = motion_files.read(file, *self.reading.reading)
+        motion = motion_files.read(Listed(Path(file)), self.reading.reading)
         found = []
         for sign in self.scaling.signs:
             one, scaled = self._examine(name_of(file), motion, sign)
@@ -211,8 +212,8 @@ class _Asked:
         from rocking_cli.excitation.measures import measure
         from rocking_cli.views.record import Examined
 
-        own, p = measure(motion), self.p
-        found = doubts(motion, own) + (coarse_for(motion, p) if p is not None else [])
+        own, p = measure(motion.of_ground), self.p
+        found = doubts(motion.of_ground, own) + (coarse_for(motion, p) if p is not None else [])
         factor = polarity * motion_files.factor(motion, own, *self.scaling.scaling)
         scaled = motion.scaled(factor)
         fits = _fit(scaled) if self.fit_pulse else []

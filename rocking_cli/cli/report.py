@@ -92,7 +92,9 @@ def command(
         out = Path(f"{structures.stem(files[0] if files else None)}.html")
         check_writable(out)
     paths, bad = motion_files.find(asked.records)
-    keep_apart([("--out", out)], [*files, *(str(path) for path in paths), *([str(head.logo)] if head.logo else [])])
+    keep_apart(
+        [("--out", out)], [*files, *(str(each.path) for each in paths), *([str(head.logo)] if head.logo else [])]
+    )
     title = head.block(_command_line(ctx))
     structure = inputs.structure(files, asked.records)
     several = len(paths) + bad + len(asked.pulses) > 1

@@ -155,7 +155,7 @@ def command(
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.response import Question
 
-    read = [*files, *(str(path) for path in paths), vertical.vertical]
+    read = [*files, *(str(each.path) for each in paths), vertical.vertical]
     keep_apart([("--out", output.out), ("--plot", output.plot)], read)
     check_table(output.out)
     structure = inputs.structure(files, asked.records)

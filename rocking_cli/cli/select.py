@@ -17,6 +17,7 @@ from rocking_cli.errors import INCOMPLETE, InputError
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.processing.listed import Listed
     from rocking_cli.studies.record_set import RecordSet, Wanted
     from rocking_cli.studies.target_spectrum import TargetSpectrum
     from rocking_cli.views.record_set import Results
@@ -132,25 +133,32 @@ def command(
     from rocking_cli.studies.target_spectrum import doubts, read_target
 
     wanted = asked.wanted
-    paths, missing = motion_files.find(records)
-    paths = _without(target, paths)
-    keep_apart([("--plot", output.plot)], [str(target), *(str(path) for path in paths)])
+    listed, missing = motion_files.find(records)
+    listed = _without(target, listed)
+    paths = [target, *(each.path for each in listed)]
+    keep_apart([("--plot", output.plot)], [str(path) for path in paths])
     if output.out is not None:
-        check_folder(output.out, [target, *paths])
+        check_folder(output.out, paths)
     spectrum = read_target(target)
     spectrum.check(wanted.band)
     if spectrum.unit is None:
         terminal.note(f"{target} names no unit: its ordinates are taken to be in g")
     for doubt in doubts(spectrum):
         terminal.warning(doubt)
-    chosen, refused = motion_files.gather(paths, (), reading.reading, (None, None, None), 0.0)
+    chosen, refused = motion_files.gather(listed, (), reading.reading, (None, None, None), 0.0)
     if not chosen:
         ctx.exit(InputError.exit_code)
-    results = _results(chosen, paths, spectrum, wanted)
+    results = _results(chosen, listed, spectrum, wanted)
     if output.out is not None:
         from rocking_cli.cli.set_folder import write_set
 
-        write_set(output.out, results, reading)
+        sources = [listed[chosen[k].place] for k in results.found.chosen.tolist()]
+        again = [None if str(each.path) == options.STANDARD_OUTPUT else each for each in sources]
+        write_set(
+            output.out,
+            results,
+            [motion_files.settled(each, reading.reading) if each is not None else None for each in again],
+        )
     if output.plot is not None:
         from rocking_cli.cli.pictures import write_picture
         from rocking_cli.plotting.record_set import draw_record_set
@@ -164,20 +172,20 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _without(target: Path, paths: list[Path]) -> list[Path]:
+def _without(target: Path, listed: list[Listed]) -> list[Listed]:
     """The records without the target, which a pattern may stand for too."""
-    kept = [path for path in paths if not (path.exists() and target.exists() and path.samefile(target))]
-    if len(kept) < len(paths):
+    kept = [each for each in listed if not (each.path.exists() and target.exists() and each.path.samefile(target))]
+    if len(kept) < len(listed):
         terminal.note(f"{target} is the target, and not taken for a record")
     return kept
 
 
-def _results(chosen: list[Scaled], paths: list[Path], target: TargetSpectrum, wanted: Wanted) -> Results:
+def _results(chosen: list[Scaled], listed: list[Listed], target: TargetSpectrum, wanted: Wanted) -> Results:
     """Choose among the records that were read."""
     from rocking_cli.views.record_set import Results
 
-    read = {each.file for each in chosen}
-    unusable = {str(path): "it cannot be used" for path in paths if path not in read}
+    read = {each.place for each in chosen}
+    unusable = [str(each.path) for place, each in enumerate(listed) if place not in read]
     found = _found([each.motion for each in chosen], target, wanted)
     return Results(found, target, [str(each.file) for each in chosen], unusable)
 

@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Sequence
-from math import isclose
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.cli import terminal
-from rocking_cli.cli.defaults import from_default
-from rocking_cli.cli.options import STANDARD_OUTPUT
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
-    from rocking_cli.cli.groups import Reading
     from rocking_cli.excitation.base import GroundMotion
+    from rocking_cli.processing.reading import Reading
     from rocking_cli.views.record_set import Results
 
 LIST = "set.yaml"
-KEYS = ("file", "dt", "units", "channel", "factor", "event", "station")
 ELSEWHERE = "move it away, or name another folder"
 MARK = "# A set of records, chosen by rocking select."
 
 
-def write_set(folder_: Path, results: Results, reading: Reading) -> None:
+def write_set(folder_: Path, results: Results, readings: Sequence[Reading | None]) -> None:
     """Write the scaled records and their list; records of an earlier set in that folder are taken away.
 
     Parameters
@@ -34,8 +30,8 @@ def write_set(folder_: Path, results: Results, reading: Reading) -> None:
         Where to; made if it is not there.
     results : Results
         The set.
-    reading : Reading
-        How the records were read.
+    readings : sequence of (Reading or None)
+        How each record of the set was read; None of one that cannot be read again: its scaled file stands in the list.
 
     Notes
     -----
@@ -53,7 +49,7 @@ def write_set(folder_: Path, results: Results, reading: Reading) -> None:
         path.unlink()
     for path, motion in zip(paths, motions, strict=True):
         write_whole(path, lambda stream, motion=motion: write_record_csv(stream, motion))  # type: ignore[misc]
-    text = _list(place, results, reading, paths)
+    text = _list(place, results, readings, paths)
     write_whole(place / LIST, lambda stream: stream.write(text.encode("utf-8", "surrogateescape")))
     gone = f"; {len(stale)} of an earlier set taken away" if stale else ""
     terminal.note(f"wrote {len(paths)} record{'s' * (len(paths) > 1)} and {LIST} to {place.resolve()}{gone}")
@@ -107,7 +103,7 @@ def _earlier(path: Path) -> set[str]:
     return {line.removeprefix("#   ") for line in lines if line.startswith("#   ")}
 
 
-def _list(place: Path, results: Results, reading: Reading, paths: list[Path]) -> str:
+def _list(place: Path, results: Results, readings: Sequence[Reading | None], paths: Sequence[Path]) -> str:
     """The list as YAML: the records where they are, the factor on each, and how they were read."""
     import yaml
 
@@ -115,38 +111,22 @@ def _list(place: Path, results: Results, reading: Reading, paths: list[Path]) ->
 
     found = results.found
     entries = [
-        _entry(place, results.files[k], found.candidates.motions[k], factor, reading, path)
-        for k, factor, path in zip(found.chosen.tolist(), found.factors.tolist(), paths, strict=True)
+        _entry(place, results.files[k], found.candidates.motions[k], factor, reading)
+        if reading is not None
+        else {"file": path.name}
+        for k, factor, reading, path in zip(found.chosen.tolist(), found.factors.tolist(), readings, paths, strict=True)
     ]
     said = [MARK, f"# Target: {results.target.name}", f"# {verdict(results)}", "# The same records, scaled already:"]
-    head = "".join(f"{' '.join(line.split())}\n" for line in said) + "".join(f"#   {path.name}\n" for path in paths)
+    head = "".join(f"{one_line(line)}\n" for line in said) + "".join(f"#   {path.name}\n" for path in paths)
     body = yaml.safe_dump({"records": entries}, sort_keys=False, allow_unicode=True, width=1000)
     return f"{head}{body}"
 
 
-def _entry(
-    place: Path, file: str | None, motion: GroundMotion, factor: float, reading: Reading, written: Path
-) -> dict[str, Any]:
-    """One record of the list. Of how it was read it has what its file does not say by itself."""
-    dt, units, channel = reading.reading
-    if file is None or file == STANDARD_OUTPUT:  # what came through a pipe is gone: the scaled record takes its place
-        entry: dict[str, Any] = {"file": written.name, "factor": 1.0}
-    else:
-        entry = {"file": _relative(Path(file), place)}
-        if dt is not None and isclose(dt, motion.dt, rel_tol=1e-3):
-            entry["dt"] = dt
-        if units is not None and units == motion.unit:
-            entry["units"] = units
-        if channel is not None and (not from_default("channel") or " channel " in motion.name):
-            entry["channel"] = channel
-        entry["factor"] = factor
-    entry |= {key: value for key, value in motion.origin._asdict().items() if value is not None}
-    return {key: value for key, value in entry.items() if key in KEYS}
+def _entry(place: Path, file: str | None, motion: GroundMotion, factor: float, reading: Reading) -> dict[str, Any]:
+    """One record of the list."""
+    from rocking_cli.processing.entry import of_reading, relative
 
-
-def _relative(file: Path, place: Path) -> str:
-    """A file as seen from a folder; of another drive of Windows its whole path."""
-    try:
-        return Path(os.path.relpath(file.resolve(), place.resolve())).as_posix()
-    except ValueError:
-        return str(file.resolve())
+    assert file is not None
+    named = {"event": motion.origin.event, "station": motion.origin.station}
+    said = {key: value for key, value in named.items() if value is not None}
+    return {"file": relative(Path(file), place), **of_reading(reading, place), "factor": factor, **said}

@@ -146,7 +146,7 @@ def command(
     from rocking_cli.views.spectrum import Results, lost
 
     paths, missing = motion_files.find(asked.records)
-    keep_apart([("--out", output.out), ("--plot", output.plot)], [*files, *(str(path) for path in paths)])
+    keep_apart([("--out", output.out), ("--plot", output.plot)], [*files, *(str(each.path) for each in paths)])
     shapes, bad = _shapes(files, sizing.slenderness, cast("ModelName", sizing.model), sizing.eta)
     periods = _sizes(shapes, sizing.sizes)
     smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])

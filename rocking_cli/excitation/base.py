@@ -21,11 +21,11 @@ class Doubt(NamedTuple):
     ----------
     kind : str
         A word for programs: dt, mean_period, pga, offset, start, final_velocity, final_displacement, clipped, spike,
-        dropout or p_dt; of what a reader found in a file, columns, digits, count, header_peak, header_time or
-        header_length.
+        dropout or p_dt; of what a reader found in a file, columns, digits, count, header_peak, header_time,
+        header_length, uneven or resolution.
     value : float
         The number that raised it: in s, s, g, g, g, m/s, m, samples, s, s and 1; rows (of free text the line), the
-        line, points, in the unit of the header, s and s.
+        line, points, in the unit of the header, s, s, s and g.
     text : str
         A sentence for people.
     """
@@ -84,6 +84,10 @@ class GroundMotion:
         Of how many samples a history keeps one: a pulse is sampled more finely than its history need be shown.
     remarks : tuple of Doubt, optional
         What its reader found doubtful in the file.
+    processing : tuple of str, optional
+        What was done to it since it was read, in order, as it would be asked for again: `"highpass 0.1"`.
+    ground : GroundMotion, optional
+        Of the motion of a floor, that of the ground below: its peaks are what a motion is scaled to.
     origin : Origin, optional
         The earthquake and the station, as far as its file says.
 
@@ -102,6 +106,8 @@ class GroundMotion:
     points: NDArray[np.intp] | None = None
     every: int = 1
     remarks: tuple[Doubt, ...] = ()
+    processing: tuple[str, ...] = ()
+    ground: GroundMotion | None = None
     origin: Origin = NOT_SAID
 
     def __post_init__(self) -> None:
@@ -150,6 +156,11 @@ class GroundMotion:
         return float(f"{np.abs(self.acceleration).max() / STANDARD_GRAVITY:.15g}")
 
     @property
+    def of_ground(self) -> GroundMotion:
+        """The motion of the ground, which this is unless it is that of a floor."""
+        return self if self.ground is None else self.ground
+
+    @property
     def kept(self) -> GroundMotion:
         """The motion at the samples that a history keeps, to be shown beside it."""
         if self.every == 1:
@@ -181,7 +192,8 @@ class GroundMotion:
         if not np.isfinite(factor * float(np.abs(self.acceleration).max())):
             raise InputError(f"{self.name}: a factor of {factor:g} makes accelerations beyond the range of numbers")
         vertical = self.vertical.scaled(abs(factor)) if self.vertical is not None else None
-        return replace(self, name=name, acceleration=factor * self.acceleration, vertical=vertical)
+        ground = self.ground.scaled(factor) if self.ground is not None else None
+        return replace(self, name=name, acceleration=factor * self.acceleration, vertical=vertical, ground=ground)
 
 
 def from_zero(steps: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -31,7 +31,8 @@ def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
     Parameters
     ----------
     motion : GroundMotion
-        As read, before any scaling: whether its PGA is plausible is one of the questions.
+        As read, before any scaling: whether its PGA is plausible is one of the questions. Of the motion of a floor it
+        is that of the ground.
     measured : Measures
         Its measures.
 
@@ -45,10 +46,15 @@ def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
         *_sampling(motion, measured),
         *_size(motion, measured),
         *_baseline(motion, measured),
-        *_clipping(motion),
-        *_spikes(motion),
-        *_dropouts(motion),
+        *of_samples(motion),
     ]
+
+
+def of_samples(motion: GroundMotion) -> list[Doubt]:
+    """What single samples give reason to doubt: nothing once they were corrected, which hides it."""
+    if not all(each.startswith("gain ") for each in motion.processing):
+        return []
+    return [*_clipping(motion), *_spikes(motion), *_dropouts(motion)]
 
 
 def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> list[Doubt]:

@@ -8,19 +8,25 @@ from typing import BinaryIO
 import numpy as np
 
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.text import one_line
 
 HEADER = "t [s],a [m/s2]\n"  # metres: any other unit would round the accelerations on the way back
+DONE = "# processed: "  # begins the line above it, of a record that was corrected
+MOST = 10_000  # bytes of the line that says what was done
 BLOCK = 10_000  # lines written at a time: a long record never stands in memory as text
 
 
 def is_record_csv(path: Path) -> bool:
     """Whether a file begins as `write_record_csv` begins it."""
     with path.open("rb") as file:
-        return file.read(len(HEADER)) == HEADER.encode()
+        first = file.readline(MOST)
+        return first == HEADER.encode() or (
+            first.startswith(DONE.encode()) and file.readline(len(HEADER)) == HEADER.encode()
+        )
 
 
 def write_record_csv(stream: BinaryIO, motion: GroundMotion) -> None:
-    """Write time [s] and acceleration [m/s2], a line a sample.
+    """Write time [s] and acceleration [m/s2], a line a sample, below a comment on what was done to it, if anything.
 
     Parameters
     ----------
@@ -29,6 +35,8 @@ def write_record_csv(stream: BinaryIO, motion: GroundMotion) -> None:
     motion : GroundMotion
         The motion. Its accelerations are read back identical, its interval too or to the last bit.
     """
+    if motion.processing:
+        stream.write(one_line(f"{DONE}{', '.join(motion.processing)}")[: MOST - 1].encode() + b"\n")
     stream.write(HEADER.encode())
     last = motion.npts - 1
     for start in range(0, motion.npts, BLOCK):

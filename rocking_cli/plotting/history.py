@@ -124,7 +124,8 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
         t = pulse.start + np.linspace(0.0, pulse.pulse.duration, POINTS)
         axes.plot(t, pulse.acceleration(t) / STANDARD_GRAVITY, **style.PULSES[0])
     axes.set_ylabel("ground [g]", fontsize=style.LABEL)
-    named = f"{motion.name}, PGA {motion.pga:.3g} g"
+    what = "floor, peak" if motion.ground is not None else "PGA"
+    named = f"{motion.name}, {what} {motion.pga:.3g} g"
     if pulse is not None:
         named += f"; bold: its {pulse.pulse.name} pulse, {pulse.pulse.amplitude / STANDARD_GRAVITY:.3g} g"
     if motion.vertical is not None:

@@ -101,7 +101,7 @@ class MotionResult:
     file : File or None
         Where it was read; None for a pulse.
     measured : Measures
-        Of the motion as scaled.
+        Of the motion as scaled, on the floor if there is one.
     doubts : tuple of Doubt
         About the motion as read.
     runs : mapping of int to mapping of str to History
@@ -143,6 +143,11 @@ class MotionResult:
     def scaled(self, polarity: int) -> GroundMotion:
         """The motion as scaled, under the name it was given."""
         return replace(self.given.motion.scaled(polarity * self.given.factor), name=self.given.motion.name)
+
+    @property
+    def pga_of_ground(self) -> float:
+        """Peak acceleration of the ground as scaled [standard gravity], below the floor if there is one."""
+        return abs(self.given.factor) * self.given.motion.of_ground.pga
 
     @property
     def scaled_much(self) -> bool:
@@ -320,8 +325,9 @@ def _plugin(mechanism: Mechanism) -> str:
 
 
 def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], around: Around) -> MotionResult:
-    asked = measure(given.motion)
-    doubtful = [] if given.pulse is not None else doubts(given.motion, asked) + coarse_for(given.motion, structure.p)
+    ground = given.motion.of_ground
+    found = [] if given.pulse is not None else doubts(ground, measure(ground))
+    doubtful = [*found, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
     under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
     models, model = structure.models(structure.default_models), structure.model("nonlinear")
     runs = {sign: {each.name: follow(each, motion) for each in models} for sign, motion in under.items()}

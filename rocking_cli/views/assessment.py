@@ -5,6 +5,7 @@ from __future__ import annotations
 from rocking_cli.studies.assessment import Assessment
 from rocking_cli.studies.movements import Watched
 from rocking_cli.views import assessment_words as words
+from rocking_cli.views import processing
 from rocking_cli.views.equiv import sides_of, without
 from rocking_cli.views.margin import margin_data
 from rocking_cli.views.parameters import values
@@ -35,7 +36,8 @@ def view(content: Assessment) -> View:
                 "file": each.file.name if each.file else None,
                 "sha256": each.file.checksum if each.file else None,
                 "factor": each.given.factor,
-                "pga": each.measured.pga,
+                "pga": each.pga_of_ground,
+                **processing.data(each.motion),
                 "headline": said.headline,
                 "answers": {item.question: item.answer for item in said.answers},
                 "doubts": list(said.doubts),

@@ -108,7 +108,7 @@ def overview(content: Assessment) -> list[list[str]]:
         peaks = [inf if run.overturned else run.peak_ratio, near.peak_ratio[1]]
         itself, median = (names.OVERTURNS if isinf(peak) else f"{peak:.3g}" for peak in peaks)
         rows.append(
-            [each.given.motion.name, f"{each.measured.pga:.3g}", itself, names.percent(near.overturned), median]
+            [each.given.motion.name, f"{each.pga_of_ground:.3g}", itself, names.percent(near.overturned), median]
         )
     return rows
 
@@ -202,7 +202,7 @@ def _joints(content: Assessment, result: MotionResult) -> tuple[Answer, ...]:
 
 
 def _uplift(content: Assessment, result: MotionResult) -> str:
-    best, pga = result.histories["nonlinear"], result.measured.pga
+    best, pga = result.histories["nonlinear"], result.measured.pga  # that which reaches it: of a floor its own
     least = _least(content)
     needed = f"A ground acceleration of {_ground(content, least)} is enough to lift it"
     one, other = (side.lambda_ for side in content.structure.statics)
@@ -249,7 +249,7 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
         if best.peak_ratio > 1:
             said.append("It passes that, and only the next push of the ground brings it back.")
     said.append(str(result.neighbours[result.polarity]))
-    said.append(in_words(found, result.measured.pga))
+    said.append(in_words(found, result.pga_of_ground))
     return " ".join(said)
 
 

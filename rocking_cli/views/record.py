@@ -7,6 +7,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rocking_cli.views import processing
 from rocking_cli.views.view import ABSENT, Table, number
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def data(record: Examined) -> dict[str, Any]:
         "dt": motion.dt,
         "duration": motion.duration,
         "factor": record.factor,
+        **processing.data(motion),
         "pga": measures.pga,
         "pgv": measures.pgv,
         "pgd": measures.pgd,
@@ -107,6 +109,7 @@ def _rows(records: Sequence[Examined]) -> list[list[str]]:
         ("points", [str(r.motion.npts) for r in records], ""),
         ("dt", [number(r.motion.dt) for r in records], "s"),
         ("duration", [number(r.motion.duration) for r in records], "s"),
+        ("processed", ["\n".join(r.motion.processing) or ABSENT for r in records], ""),
         ("scaled by", [number(r.factor) for r in records], ""),
         ("PGA", [number(r.measures.pga, 4) for r in records], "g"),
         ("PGV", [number(r.measures.pgv, 4) for r in records], "m/s"),
@@ -118,7 +121,7 @@ def _rows(records: Sequence[Examined]) -> list[list[str]]:
         ("mean acceleration", [number(r.measures.mean, 2) for r in records], "g"),
         ("p dt", [number(r.p_dt, 2) for r in records], ""),
     ]
-    silent = {"channel": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
+    silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
     silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
     return [
         [label, *cells, unit]

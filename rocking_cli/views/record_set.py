@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,14 +32,14 @@ class Results:
         What it is to fit.
     files : sequence of (str or None)
         Of each candidate.
-    unusable : mapping of str to str
-        Files that are no candidates, and why.
+    unusable : sequence of str
+        Files that are no candidates: what is wrong with them was said.
     """
 
     found: RecordSet
     target: TargetSpectrum
     files: Sequence[str | None]
-    unusable: Mapping[str, str] = field(default_factory=dict)
+    unusable: Sequence[str] = ()
 
 
 def view(results: Results) -> View:
@@ -71,7 +71,7 @@ def data(results: Results) -> dict[str, Any]:
                 "name": found.candidates.motions[k].name,
                 **found.candidates.motions[k].origin._asdict(),
                 "factor": factor,
-                "pga": factor * found.candidates.motions[k].pga,
+                "pga": factor * found.candidates.motions[k].of_ground.pga,
             }
             for k, factor in _chosen(found)
         ],
@@ -81,7 +81,7 @@ def data(results: Results) -> dict[str, Any]:
             "mean": found.mean.tolist(),
         },
         "left_out": [
-            *({"file": file, "name": None, "why": why} for file, why in results.unusable.items()),
+            *({"file": file, "name": None, "why": "it cannot be used"} for file in results.unusable),
             *(
                 {"file": results.files[k], "name": found.candidates.motions[k].name, "why": why}
                 for k, why in found.left_out.items()
@@ -175,7 +175,7 @@ def _records(results: Results) -> Table:
     for k, factor in _chosen(found):
         motion = found.candidates.motions[k]
         event, station = (cut(each or ABSENT, NAME) for each in (motion.origin.event, motion.origin.station))
-        rows.append([motion.name, event, station, f"{factor:.4g}", f"{factor * motion.pga:.3g}"])
+        rows.append([motion.name, event, station, f"{factor:.4g}", f"{factor * motion.of_ground.pga:.3g}"])
     heads = ["record", "earthquake", "station", "factor", "PGA as\nscaled [g]"]
     return Table(title(results), heads, rows, numbers=(3, 4))
 

@@ -22,6 +22,7 @@ from rocking_cli.studies.contact import Contact
 from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Answer, Histories, Question, Runs
+from rocking_cli.views import processing
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import ABSENT, Table, View, in_degrees, number
@@ -107,8 +108,9 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
         "npts": motion.npts,
         "dt": motion.dt,
         "unit": motion.unit,
-        "pga": motion.pga,
+        "pga": motion.of_ground.pga,
         "format": motion.format,
+        **processing.data(motion),
     }
 
 

@@ -47,7 +47,7 @@ class Several:
     def add(self, found: Answer) -> None:
         """Take up what became of it under one motion."""
         assert found.given is not None
-        pga = f"{abs(found.given.factor) * found.given.motion.pga:.4g}"
+        pga = f"{abs(found.given.factor) * found.given.motion.of_ground.pga:.4g}"
         severities = []
         for sign, histories in found.runs.items():
             reversed_ = ", reversed" if sign < 0 and len(found.runs) > 1 else ""

@@ -13,6 +13,7 @@ from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Integers, Reals
+from rocking_cli.views import processing
 from rocking_cli.views.overturning import FROM_KINEMATICS, numbers
 from rocking_cli.views.view import ABSENT, Table, View
 
@@ -63,8 +64,8 @@ def _all(results: Results) -> dict[str, Any]:
         "polarity": results.polarity,
         "fractiles": list(results.fractiles),
         "motions": [
-            {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt, "pga": motion.pga}
-            | {"scale": factor}
+            {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt}
+            | {"pga": motion.of_ground.pga, "scale": factor, **processing.data(motion)}
             for motion, factor, *_ in results.motions
         ],
         "spectra": [_data(results, each) for each in results.spectra],

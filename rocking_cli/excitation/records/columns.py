@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.records.sensor import Wanted, quantity_of
 from rocking_cli.excitation.records.units import header_units, is_unit, other_quantity
 
 MOST = 1000  # columns of a table
@@ -22,6 +23,8 @@ _TIME = re.compile(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
 _BARE_T = re.compile(r"t", re.IGNORECASE)  # the time, or the transverse component
 _WORDS = re.compile(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, and what is in brackets behind it
 _GAPS = re.compile(r"\s{2,}|\t")
+_COLUMN = re.compile(r"col(?:umn)?\.? *(\d{1,4})")
+_BRACKETED = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]")
 
 
 @dataclass(frozen=True)
@@ -102,8 +105,9 @@ def choose(
     names: Sequence[Label],
     asked: str | None,
     increases: Callable[[NDArray[np.float64]], bool],
+    wanted: Wanted,
 ) -> Choice:
-    """Find the column that is asked for, or the only one with accelerations.
+    """Find the column that is asked for, or the only one with values of the kind that is wanted.
 
     Parameters
     ----------
@@ -114,9 +118,11 @@ def choose(
     names : sequence of Label
         One for each column.
     asked : str, optional
-        Place among the columns of accelerations, counted from 1, or name.
+        Place among the columns with such values, counted from 1, or name; or `column 6`, of all.
     increases : callable
         Whether a column increases evenly, as times do.
+    wanted : Wanted
+        What the values are: accelerations, as a rule.
 
     Raises
     ------
@@ -124,15 +130,26 @@ def choose(
         If there are several and none is asked for, or no such one; it lists them.
     """
     times = _times(table, names, increases)
-    values = [k for k in range(len(table)) if k not in times and not other_quantity(str(names[k]))]
+    values = [k for k in range(len(table)) if k not in times and _may_be(str(names[k]), wanted)]
     if not values:
-        message = "none of the columns holds accelerations"
+        message = f"none of the columns holds {'values' if wanted.raw else wanted.quantity + 's'}"
+        message = message.replace("velocitys", "velocities")
         raise InputError(Problem(message, file, hint=f"there are:{_listed(table, names, times, values)}"))
     place = 0 if asked is None and len(values) == 1 else _place(file, table, names, times, values, asked)
     column = values[place]
     time = max((k for k in times if k < column), default=min(times, default=None))
     channel = "" if len(values) == 1 else names[column].name or str(place + 1)
     return Choice(column, time, channel)
+
+
+def _may_be(label: str, wanted: Wanted) -> bool:
+    """Whether the values under a label may be of the kind that is wanted."""
+    if wanted.raw:
+        return True
+    if wanted.quantity == "acceleration":
+        return not other_quantity(label)
+    said = {quantity_of(unit) for unit in _BRACKETED.findall(label)} - {None}
+    return wanted.quantity in said if said else not header_units(label)
 
 
 def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
@@ -190,6 +207,8 @@ def _place(
             listed += "\n  values that run on from line to line are no table: give the file as the data centre made it"
         raise InputError(Problem(message, file, hint=f"choose one with `channel`, by place or name:{listed}"))
     word = _plain(asked)
+    if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:
+        return values.index(int(number[1]) - 1)
     if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
         return int(word) - 1
     for spellings in ([_plain(str(names[k])) for k in values], [_without_unit(names[k].name) for k in values]):

@@ -13,11 +13,13 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Channel, choose
-from rocking_cli.excitation.records.seismo import channel_of, given_unit, origin_of, traces, velocity_code
+from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
+from rocking_cli.excitation.records.sensor import Wanted
 
 TITLE = "miniSEED"
 SIGN = "a binary header with six digits and D, R, Q or M, or with MS and 3, then a date"
 BINARY = True
+TAKES_WANTED = True
 
 _LEAST = 48  # bytes of a header
 _YEARS = range(1900, 2101)
@@ -38,13 +40,19 @@ def sniff(data: bytes) -> bool:
 
 
 def read(
-    data: bytes, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+    data: bytes,
+    file: str,
+    *,
+    dt: float | None = None,
+    units: str | None = None,
+    channel: str | None = None,
+    wanted: Wanted = Wanted(),  # noqa: B008 - it does not change
 ) -> GroundMotion:
     """Read a miniSEED file; arguments, result and errors are those of `registry.Reader.read`."""
     if _version_3(data):
         hint = "convert it to miniSEED 2 first"
         raise InputError(Problem("this is miniSEED 3, which obspy does not read", file, hint=hint))
-    unit = given_unit(file, units)
+    unit = wanted.unit(file, [], units)
     segments: dict[str, list[Any]] = {}
     for trace in traces(data, file, "MSEED"):
         segments.setdefault(trace.id, []).append(trace)
@@ -55,17 +63,19 @@ def read(
     codes = {name: parts[0].stats.channel for name, parts in segments.items()}
     if len(set(codes.values())) == len(codes):  # station and network are of no use then
         segments = {codes[name]: parts for name, parts in segments.items()}
-    return choose(file, TITLE, [_joined(file, name, parts, unit) for name, parts in segments.items()], channel, dt)
+    return choose(
+        file, TITLE, [_joined(file, name, parts, unit, wanted) for name, parts in segments.items()], channel, dt
+    )
 
 
 def _version_3(data: bytes) -> bool:
     return data.startswith(b"MS\x03")
 
 
-def _joined(file: str, name: str, segments: Sequence[Any], unit: str) -> Channel:
+def _joined(file: str, name: str, segments: Sequence[Any], unit: tuple[str, float], wanted: Wanted) -> Channel:
     """Put the segments of a channel, which obspy parts at gaps, one behind the other."""
     segments = sorted(segments, key=lambda segment: segment.stats.starttime)
-    flaw = velocity_code(file, segments[0].stats.channel) or _gap(file, name, segments)
+    flaw = velocity_code(file, segments[0].stats.channel, wanted) or _gap(file, name, segments)
     samples = np.concatenate([segment.data for segment in segments])
     found = channel_of(file, name, segments[0].stats.delta, samples, unit, flaw)
     return replace(found, origin=origin_of(segments[0]))

@@ -2,7 +2,8 @@
 
 A reader is a module, or any object, with a `TITLE` (the name of its format), a `SIGN` (what it recognises a file
 by, for the messages) and the functions `sniff` and `read` of `Reader`. One that has `BINARY = True` too is given the
-bytes of a file in place of its text.
+bytes of a file in place of its text. One with `TAKES_WANTED = True` can be asked for other values than accelerations:
+its `read` takes `wanted`, a `sensor.Wanted`.
 """
 
 from __future__ import annotations
@@ -137,6 +138,7 @@ class _Guarded:
 
     def __init__(self, reader: Reader, point: EntryPoint) -> None:
         self.TITLE, self.SIGN, self.BINARY = reader.TITLE, reader.SIGN, takes_bytes(reader)
+        self.TAKES_WANTED = takes_wanted(reader)
         self._reader, self._point = reader, point
         self._module = point.value.partition(":")[0]
 
@@ -167,6 +169,11 @@ class _Guarded:
 def takes_bytes(reader: Reader) -> bool:
     """Whether a reader is given the bytes of a file, not its text."""
     return bool(getattr(reader, "BINARY", False))
+
+
+def takes_wanted(reader: Reader) -> bool:
+    """Whether a reader can be asked for other values than accelerations at even times."""
+    return bool(getattr(reader, "TAKES_WANTED", False))
 
 
 def reader_for(text: str | None, file: str, readers: dict[str, Reader], data: bytes = b"") -> Reader:

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import choose
-from rocking_cli.excitation.records.seismo import channel_of, given_unit, origin_of, traces, velocity_code
+from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
+from rocking_cli.excitation.records.sensor import Wanted
 
 TITLE = "SAC"
 SIGN = "a binary header with version 6 or 7 in its 77th word"
 BINARY = True
+TAKES_WANTED = True
 
 _HEADER, _FOOTER = 632, 176  # bytes; version 7 ends with some of the header once more, in double precision
 _VERSIONS = (6, 7)
@@ -24,6 +26,7 @@ _ACCELERATION = 8  # of IDEP
 _UNSET = -12345.0
 _ROUNDED = 1e-5  # of the extremes, which have 32 bits
 _OTHERS = {6: "displacement", 7: "velocity", 50: "voltage"}
+_A = {"acceleration": "an acceleration", "velocity": "a velocity", "displacement": "a displacement"}
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,13 @@ def sniff(data: bytes) -> bool:
 
 
 def read(
-    data: bytes, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+    data: bytes,
+    file: str,
+    *,
+    dt: float | None = None,
+    units: str | None = None,
+    channel: str | None = None,
+    wanted: Wanted = Wanted(),  # noqa: B008 - it does not change
 ) -> GroundMotion:
     """Read a SAC file; arguments, result and errors are those of `registry.Reader.read`."""
     header = _header(data)
@@ -59,17 +68,18 @@ def read(
     if header.kind not in (_TIME_SERIES, _XY):
         message = f"the header says this is no time series (IFTYPE = {header.kind})"
         raise InputError(Problem(message, file, hint="give the file with the acceleration"))
-    if header.quantity in _OTHERS:
-        message = f"the header says the values are a {_OTHERS[header.quantity]}, not an acceleration (IDEP)"
-        raise InputError(Problem(message, file, hint="give the file with the acceleration"))
+    said = _OTHERS.get(header.quantity, wanted.quantity)
+    if said != wanted.quantity and not wanted.raw:
+        message = f"the header says the values are a {said}, not {_A[wanted.quantity]} (IDEP)"
+        raise InputError(Problem(message, file, hint="give the file with the acceleration, or say `from` what it is"))
     size = _HEADER + 4 * header.npts
     if len(data) != size + (_FOOTER if header.version == 7 else 0):
         message = f"the header says {header.npts} points, which do not make the {len(data)} bytes of the file"
         raise InputError(Problem(message, file, hint="the file may have been cut short: download it again"))
-    unit = given_unit(file, units)
+    unit = wanted.unit(file, [], units)
     (trace,) = traces(data[:size], file, "SAC")
     name = trace.stats.channel
-    flaw = None if header.quantity == _ACCELERATION else velocity_code(file, name)
+    flaw = None if header.quantity == _ACCELERATION else velocity_code(file, name, wanted)
     # 0.005 is stored as the nearest float of 32 bits, 0.004999999888: the shortest decimal of that was meant.
     own = float(str(np.float32(header.delta)))
     found = channel_of(file, name, own, trace.data, unit, flaw)

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Origin
-from rocking_cli.excitation.records.layout import Channel, in_si
+from rocking_cli.excitation.records.layout import Channel
 from rocking_cli.excitation.records.origins import origin
+from rocking_cli.excitation.records.sensor import Wanted
 from rocking_cli.excitation.records.text import sensible, usable
-from rocking_cli.excitation.records.units import resolve_unit
+from rocking_cli.excitation.records.units import UNITS
 
 # SEED names a channel by band, instrument and direction; H, L and P are seismometers and geophones: velocity.
 _VELOCITY_CODE = re.compile(r"[A-Z][HLP][A-Z0-9]")
@@ -67,11 +68,6 @@ def traces(data: bytes, file: str, form: str) -> list[Any]:
     return found
 
 
-def given_unit(file: str, units: str | None) -> str:
-    """Canonical unit the user gave, which must be given: the formats have no place for it."""
-    return resolve_unit(file, [], units)
-
-
 def origin_of(trace: Any) -> Origin:
     """Network and station of a trace; of SAC also the name of the event, its magnitude and its distance [km]."""
     stats = trace.stats
@@ -80,23 +76,31 @@ def origin_of(trace: Any) -> Origin:
     return origin(str(sac.get("kevnm", "")), station, sac.get("mag"), sac.get("dist"))
 
 
-def channel_of(file: str, name: str, dt: float, samples: NDArray[Any], unit: str, flaw: Problem | None) -> Channel:
-    """Make a channel of samples, with the flaw found in the header or the first one found in the samples."""
+def channel_of(
+    file: str, name: str, dt: float, samples: NDArray[Any], unit: tuple[str, float], flaw: Problem | None
+) -> Channel:
+    """Make a channel of samples, with the flaw found in the header or the first one found in the samples.
+
+    `unit` is name and size of the unit of the samples, which the formats have no place for.
+    """
     values = samples.astype(np.float64) if samples.dtype.kind in "iuf" else np.full(samples.size, np.nan)
     flaw = flaw or _flaw(file, name, values, unit, whole=samples.dtype.kind in "iu")
-    return Channel(name, dt, values if flaw else in_si(values, unit), unit, flaw=flaw)
+    return Channel(name, dt, values if flaw else values * unit[1], unit[0], flaw=flaw)
 
 
-def velocity_code(file: str, code: str) -> Problem | None:
-    """Find a channel code of an instrument that records velocity."""
-    if not _VELOCITY_CODE.fullmatch(code):
+def velocity_code(file: str, code: str, wanted: Wanted) -> Problem | None:
+    """Find a channel code of an instrument that records velocity, where accelerations are wanted."""
+    if wanted.quantity != "acceleration" or not _VELOCITY_CODE.fullmatch(code):
         return None
     message = f"channel {code} is of a seismometer, which records velocity, not of an accelerometer"
-    hint = "give the accelerometer's channel, such as HNE; name one so that was converted to acceleration"
+    hint = (
+        "give the accelerometer's channel, such as HNE; name one so that was converted to acceleration; or say `from` "
+        "velocity"
+    )
     return Problem(message, file, hint=hint)
 
 
-def _flaw(file: str, name: str, values: NDArray[np.float64], unit: str, *, whole: bool) -> Problem | None:
+def _flaw(file: str, name: str, values: NDArray[np.float64], unit: tuple[str, float], *, whole: bool) -> Problem | None:
     """Find samples that are no numbers, or counts of a digitiser."""
     who = f"channel {name}" if name else "the file"
     if not values.size:
@@ -105,10 +109,12 @@ def _flaw(file: str, name: str, values: NDArray[np.float64], unit: str, *, whole
         place = next(index for index, value in enumerate(values.tolist()) if not sensible(value))
         message = f"sample {place + 1} of {who} is not a finite number of sensible size: {values[place]:g}"
         return Problem(message, file, hint="repair the record first: every sample must have a value")
-    peak = float(np.abs(in_si(values, unit)).max())
-    if whole and peak > _MOST:
-        message = f"{who} has whole numbers with a peak of {peak / STANDARD_GRAVITY:.4g} g, if in {unit}: raw counts"
-        hint = "convert them first: remove_response(output='ACC') in obspy gives m/s2"
+    peak = float(np.abs(values * unit[1]).max())
+    if whole and peak > _MOST and unit[0] in UNITS:
+        message = f"{who} has whole numbers with a peak of {peak / STANDARD_GRAVITY:.4g} g, if in {unit[0]}: raw counts"
+        hint = (
+            "give `gain`, such as 4.7e-6 m/s2/count, or convert them: remove_response(output='ACC') in obspy gives m/s2"
+        )
         return Problem(message, file, hint=hint)
     return None
 

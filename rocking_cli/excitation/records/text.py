@@ -16,12 +16,13 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, labels
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.times import UnevenTimeError, even_interval
-from rocking_cli.excitation.records.units import UNITS, resolve_unit
+from rocking_cli.excitation.records.sensor import Wanted
+from rocking_cli.excitation.records.times import UnevenTimeError, even_interval, on_grid
 from rocking_cli.excitation.records.widths import Rows, unlike_the_others
 
 TITLE = "delimited text"
 SIGN = "a line that begins with a number"
+TAKES_WANTED = True
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
@@ -41,7 +42,13 @@ def sniff(text: str) -> bool:
 
 
 def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
+    text: str,
+    file: str,
+    *,
+    dt: float | None = None,
+    units: str | None = None,
+    channel: str | None = None,
+    wanted: Wanted = Wanted(),  # noqa: B008 - it does not change
 ) -> GroundMotion:
     """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
     lines = Lines(text)
@@ -69,16 +76,16 @@ def read(
     if columns > 2 or (columns == 2 and channel is not None and label_lines):
         table = _table(file, lines, start, delimiter, names, commas=commas)
         _refuse_a_single_sample(file, start, table)
-        choice = choose(file, table, names, channel, _increases_evenly)
+        choice = choose(file, table, names, channel, _increases_evenly, wanted)
         header = [each for each in header if each[0] not in label_lines]
         header += [(number, str(names[choice.column])) for number in label_lines[:1]]
     elif channel is not None and channel.strip().lower() != names[-1].name.lower():
         only_channel(file, channel)
 
     problems: list[Problem] = []
-    unit = ""
+    unit, size = "", 1.0
     try:
-        unit = resolve_unit(file, header, units)
+        unit, size = wanted.unit(file, header, units)
     except InputError as error:
         problems.extend(error.problems)
     if choice.time is None and dt is None:
@@ -91,15 +98,23 @@ def read(
     if table is None:
         table = _table(file, lines, start, delimiter, names, commas=commas)
         _refuse_a_single_sample(file, start, table)
+    values, uneven = table[choice.column], None
     if choice.time is not None:
         column = _called(names, choice.time) if columns > 2 else ""
-        own = _interval(file, lines, start, table[choice.time], column)
+        try:
+            own = _interval(file, lines, start, table[choice.time], column)
+        except InputError:
+            if not wanted.uneven or (found := on_grid(table[choice.time], values)) is None:
+                raise
+            own, values, uneven = found
         check_interval(file, None, own, dt)
         dt = own
     assert dt is not None  # none at all was refused above
     name = Path(file).name + (f" channel {choice.channel}" if choice.channel else "")
     remarks = unlike_the_others(Rows(lines, start, lambda line: _clean(line).split(delimiter)[choice.column :][:1]))
-    return GroundMotion(name, dt, table[choice.column] * UNITS[unit], unit, "text", remarks=remarks)
+    if uneven is not None:
+        remarks = (*remarks, uneven)
+    return GroundMotion(name, dt, values * size, unit, "text", remarks=remarks)
 
 
 def usable(values: NDArray[np.float64]) -> bool:

@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.excitation.base import Doubt
+
 _LEAST = 1e-9  # s
 _FEWEST, _MOST = 5, 12  # significant digits that programs print numbers with
 _FINE = 0.01  # share of times that must be finer than the coarsest one, or they have decimals and no digits in common
@@ -81,8 +83,40 @@ def even_interval(time: NDArray[np.float64]) -> float:
     else:
         row = int(np.argmax(out_of_step))
         message = f"time is uneven: {time[row]:.9g} s here, a constant interval would give {time[0] + dt * row:.9g} s"
-    hint = "resample at a constant interval; if only the printed times are rough, keep the accelerations and give `dt`"
+    hint = (
+        f"`resample` puts it on an even grid, such as {usual:.3g}; if only the printed times are rough, keep the "
+        "accelerations and give `dt`"
+    )
     raise UnevenTimeError(message, hint, row)
+
+
+def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], Doubt] | None:
+    """Values at even times, on the straight lines between those at uneven ones.
+
+    Parameters
+    ----------
+    time, values : ndarray, shape (npts,)
+        Times [s], and the values then.
+
+    Returns
+    -------
+    (float, ndarray, Doubt) or None
+        The usual interval [s], the values at it, and how uneven the times are; None where they do not increase.
+    """
+    steps = np.diff(time)
+    if not (steps > 0).all():
+        return None
+    dt = float(f"{np.median(steps):.6g}")  # a clock ticks in a number that people write
+    even = time[0] + dt * np.arange(int((time[-1] - time[0]) / dt * (1 + 1e-9)) + 1)
+    longest = int(steps.argmax())
+    odd = int((np.abs(steps - dt) > 0.01 * dt).sum())
+    text = (
+        f"its times are uneven: {odd} of {steps.size} steps are not within 1 % of {dt:g} s, they go from "
+        f"{float(steps.min()):.3g} to {float(steps[longest]):.3g} s (at {float(time[longest]):.4g} s); between the "
+        f"samples straight lines were taken, at {dt:g} s"
+    )
+    off = float(np.abs(steps - dt).max())
+    return dt, np.interp(even, time, values), Doubt("uneven", off, text)
 
 
 def _of_decimals(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:

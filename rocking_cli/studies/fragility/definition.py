@@ -14,6 +14,10 @@ from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.io.field_problems import place_of, problems
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
+from rocking_cli.processing.entry import Entry, FloorText, Steps
+from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.reading import Reading
+from rocking_cli.processing.steps import parse_steps
 from rocking_cli.studies.fragility.distributions import Distribution, Positive
 from rocking_cli.studies.fragility.hazard import wrong_points
 from rocking_cli.studies.fragility.intensity import MEASURES, PGA
@@ -84,26 +88,22 @@ class StructureEntry(Part):
     vary: dict[str, Distribution] = Field({}, description="distributions of some of its fields")
 
 
-class RecordEntry(Part):
-    """Ground motions of the study: files that a pattern stands for, or a pulse."""
+class RecordEntry(Entry, Part):
+    """Ground motions of the study: files that a pattern stands for, a list of records, or a pulse."""
 
-    file: str | None = Field(None, description="a file, or a pattern of file names")
     pulse: str | None = Field(None, description="a pulse, such as sine:0.6g:0.8s")
-    units: Literal["g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g"] | None = Field(
-        None, description="unit, where no file says"
-    )
-    dt: Positive | None = Field(None, description="sample interval, where no file says")
-    channel: str | None = Field(None, description="which of several channels")
     vertical: str | None = Field(None, description="the file of the vertical component")
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """There must be one source."""
-        there = {name for name in cls.model_fields if given.get(name) is not None}
+        there = {name for name in given if given.get(name) is not None}
         if len(there & {"file", "pulse"}) != 1:
             yield (), "give a file or a pulse"
-        elif "pulse" in there and len(there) > 1:
-            yield (), "units, dt, channel and vertical describe a file"
+        elif "pulse" in there and there - {"pulse", "floor", "weight"}:
+            yield (), "units, dt, channel, vertical and the like describe a file"
+        if "azimuth" in there and not there & {"with", "other"}:
+            yield ("azimuth",), "is between two components: give the file of the second with `with`"
 
 
 Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
@@ -188,7 +188,20 @@ class Sampling(Part):
     seed: int = Field(0, ge=0, lt=2**63, description="of the random numbers")
 
 
-class Definition(Sampling):
+class Common(Part):
+    """What is made of every record."""
+
+    processing: Steps = Field([], description="corrections of every record, in their order, after its own")
+    floor: FloorText | None = Field(None, description="the floor of a building that the structures stand on")
+
+    @property
+    def reading(self) -> Reading:
+        """How every record is read that does not say otherwise."""
+        floor = Floor.parse(self.floor) if self.floor is not None else None
+        return Reading(steps=parse_steps(self.processing), floor=floor)
+
+
+class Definition(Sampling, Common):
     """What a study file says."""
 
     name: Name | None = Field(None, description="what to call the study")
@@ -265,7 +278,7 @@ def checks_sliding(given: dict[str, Any]) -> bool:
 HINT = "docs/fragility.md shows one to start from"
 WORDS = {"owner": "the study", "lister": HINT}
 PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))  # of an entry, each worth a look by itself
-Entry = TypeVar("Entry", bound=BaseModel)
+Piece = TypeVar("Piece", bound=BaseModel)
 
 
 def read_definition(path: Path) -> tuple[Document, Definition | None]:
@@ -305,7 +318,7 @@ def read_definition(path: Path) -> tuple[Document, Definition | None]:
     return document, None
 
 
-def usable_entries(document: Document, field: str, model: type[Entry]) -> list[tuple[int, Entry]]:
+def usable_entries(document: Document, field: str, model: type[Piece]) -> list[tuple[int, Piece]]:
     """The entries of a list with their places; of those that are wrong what can be looked at all the same."""
     found = []
     entries = document.data.get(field)
@@ -319,7 +332,7 @@ def usable_entries(document: Document, field: str, model: type[Entry]) -> list[t
     return found
 
 
-def usable_part(model: type[Entry], data: Any) -> Entry | None:
+def usable_part(model: type[Piece], data: Any) -> Piece | None:
     """A part of the file that is right by itself, whatever is wrong elsewhere; None if it is among the problems."""
     try:
         return model.model_validate(data)

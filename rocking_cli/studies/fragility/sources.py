@@ -14,7 +14,7 @@ from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.pulses import COARSE, parse_pulse
 from rocking_cli.excitation.pulses.base import SAMPLING
-from rocking_cli.excitation.records import read_record
+from rocking_cli.processing.reading import Reading
 from rocking_cli.studies.fragility.definition import RecordEntry
 
 KEPT = 32_000_000  # samples of records held in memory at most, a quarter of a gigabyte
@@ -29,20 +29,24 @@ class Source:
     name : str
         What to call it: the file as the study names it, or the pulse's specification.
     entry : RecordEntry
-        How to read it.
+        What the study says of it.
+    reading : Reading
+        How to read it, and what to make of it.
     path, vertical : Path, optional
         Its files.
     """
 
     name: str
     entry: RecordEntry
+    reading: Reading
     path: Path | None = None
     vertical: Path | None = None
 
     def checksum(self) -> str:
         """SHA-256 of its files, or of the pulse and how it is sampled. Raises `InputError` if one is not there."""
         found = hashlib.sha256()
-        for path in (self.path, self.vertical):
+        other = Path(self.reading.other) if self.reading.other is not None else None
+        for path in (self.path, self.vertical, other):
             if path is None:
                 continue
             try:
@@ -60,11 +64,10 @@ class Source:
         """The motion, unscaled. Raises `InputError` if it cannot be read."""
         if self.path is None:
             assert self.entry.pulse is not None
-            return parse_pulse(self.entry.pulse).sampled(COARSE)
-        asked = self.entry
-        motion = read_record(self.path, dt=asked.dt, units=asked.units, channel=asked.channel)
+            return self.reading.on_floor(parse_pulse(self.entry.pulse).sampled(COARSE))
+        motion = self.reading.read(self.path)
         if self.vertical is not None:
-            motion = replace(motion, vertical=read_record(self.vertical, dt=asked.dt, units=asked.units))
+            motion = replace(motion, vertical=self.reading.vertical(self.vertical))
         return motion
 
 
@@ -104,12 +107,14 @@ def examine(source: Source) -> tuple[Record, GroundMotion | None]:
     try:
         checksum = source.checksum()
         motion = source.read()
-        measured = measure(motion)
+        measured = measure(motion.of_ground)
     except InputError as error:
         return Record(source.name, checksum, reason=str(error).splitlines()[0]), None
     if measured.pga == 0:
         return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale"), None
-    doubtful = len(doubts(motion, measured)) if source.path is not None else 0  # what a formula gives is meant
+    doubtful = (
+        len(doubts(motion.of_ground, measured)) if source.path is not None else 0
+    )  # what a formula gives is meant
     found = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful)
     return found, motion
 

@@ -19,9 +19,14 @@ from rocking_cli.excitation.selection import select
 from rocking_cli.io.field_problems import say
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import Document, Place
+from rocking_cli.processing.entry import as_written
+from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.listed import is_list
+from rocking_cli.processing.record_list import read_list
 from rocking_cli.structure import load_structure
 from rocking_cli.studies.fragility.definition import (
     SLIDING,
+    Common,
     Definition,
     Hazard,
     RecordEntry,
@@ -112,10 +117,9 @@ class Study:
                 for structure, entry in zip(self.structures, given.structures, strict=True)
             },
             "order of structures": [structure.name for structure in self.structures],
-            "records": [
-                {"name": source.name, **source.entry.model_dump(exclude_none=True, exclude={"file"})}
-                for source in self.sources
-            ],
+            "records": [{"name": source.name, **as_written(source.entry)} for source in self.sources],
+            **({"processing": given.processing} if given.processing else {}),
+            **({"floor": str(Floor.parse(given.floor))} if given.floor is not None else {}),
             "levels": {"measure": given.levels.measure, "values": given.levels.levels()},
             "polarities": list(given.polarities),
             "eta": given.eta,
@@ -151,10 +155,11 @@ def load_study(path: str | Path) -> Study:
     document, definition = read_definition(path)
     entries = usable_entries(document, "structures", StructureEntry)
     structures = [_structure(document, ("structures", k), path.parent, entry) for k, entry in entries]
+    common = usable_part(Common, {key: document.data[key] for key in Common.model_fields if key in document.data})
     sources = [
         source
         for k, entry in usable_entries(document, "records", RecordEntry)
-        for source in _sources(document, ("records", k), path.parent, entry)
+        for source in _sources(document, ("records", k), path.parent, entry, common or Common())
     ]
     _refuse_repeated(
         document, "records", [source.path.resolve().as_posix() if source.path else source.name for source in sources]
@@ -217,24 +222,57 @@ def _varied(document: Document, place: Place) -> list[str]:
     return list(given) if isinstance(given, dict) else []
 
 
-def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry) -> list[Source]:
+def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry, common: Common) -> list[Source]:
     if entry.pulse is not None:
         try:
             parse_pulse(entry.pulse)
         except (InputError, MechanismError) as error:
             document.problems.append(document.at(_within(document, place, "pulse"), str(error)))
             return []
-        return [Source(entry.pulse, entry)]
+        return [Source(entry.pulse, entry, entry.reading(folder, common.reading))]
     assert entry.file is not None
     files = _select(document, _within(document, place, "file"), entry.file, folder)
+    other = _select(document, (*place, "with"), entry.other, folder) if entry.other is not None else []
     vertical = None
     if entry.vertical is not None:
         found = _select(document, (*place, "vertical"), entry.vertical, folder)
         if max(len(files), len(found)) > 1:
             what = "a vertical component belongs to one record: give each record an entry of its own"
             document.problems.append(document.at((*place, "vertical"), what))
+            return []
         vertical = found[0] if found else None
-    return [Source(_shown(each, folder), entry, each, vertical) for each in files]
+    if other and max(len(files), len(other)) > 1:
+        what = "a second component belongs to one record: give each record an entry of its own"
+        document.problems.append(document.at((*place, "with"), what))
+        return []
+    return [one for each in files for one in _of_file_or_list(document, place, folder, entry, common, each, vertical)]
+
+
+def _of_file_or_list(
+    document: Document,
+    place: Place,
+    folder: Path,
+    entry: RecordEntry,
+    common: Common,
+    file: Path,
+    vertical: Path | None,
+) -> list[Source]:
+    """The records of a file: itself, or those of a list, which are read as each says, and else as the entry does."""
+    reading = entry.reading(folder, common.reading)
+    if not is_list(file):
+        return [Source(_shown(file, folder), entry, reading, file, vertical)]
+    try:
+        listed = read_list(file)
+    except InputError as error:
+        document.problems += _of_file(document, _within(document, place, "file"), str(entry.file), file, error)
+        return []
+    found = []
+    for each in listed:
+        assert each.entry is not None
+        said = {**as_written(entry), **as_written(each.entry), "file": str(entry.file)}
+        own = RecordEntry.model_validate(said)
+        found.append(Source(_shown(each.path, folder), own, each.reading(reading), each.path))
+    return found
 
 
 def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:

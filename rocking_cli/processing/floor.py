@@ -1,0 +1,131 @@
+"""The motion of a floor of a building, by its first mode: u_z'' = u_g'' + psi gamma u_rel''."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import isfinite, pi
+from typing import Self
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.processing.oscillator import DAMPING, check_oscillator, finer, relative_response
+from rocking_cli.text import did_you_mean
+from rocking_cli.units import UnitError, read
+
+EXAMPLE = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
+KEYS = ("T1", "xi", "z", "gamma", "n")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Floor:
+    """A floor of a building that answers in its first mode.
+
+    Parameters
+    ----------
+    period : float
+        T1, of the mode [s].
+    damping : float
+        xi, its damping ratio.
+    height : float
+        z, of the floor over that of the building, from 0 to 1: the shape of the mode, psi = z/H.
+    participation : float
+        gamma, of the mode; 3n/(2n + 1) for n equal storeys.
+    """
+
+    period: float
+    damping: float
+    height: float
+    participation: float
+
+    def __post_init__(self) -> None:
+        check_oscillator(self.period, self.damping)
+        if not 0 <= self.height <= 1:
+            hint = "z is the height of the floor over that of the building"
+            raise _refused(f"z must be from 0 to 1, got {self.height:g}", hint)
+        if not (isfinite(self.participation) and self.participation > 0):
+            raise _refused(f"gamma must be a positive number, got {self.participation:g}")
+
+    def __str__(self) -> str:
+        return f"T1={self.period:.9g},xi={self.damping:.9g},z={self.height:.9g},gamma={self.participation:.9g}"
+
+    @classmethod
+    def parse(cls, given: str | Mapping[str, object]) -> Self:
+        """Read a floor: `T1=0.4,xi=0.05,z=0.67,gamma=1.29`, with `n=3` storeys in place of gamma, or a mapping.
+
+        Raises
+        ------
+        InputError
+            If something is missing, unknown, no number or out of range.
+        """
+        pairs = dict(given) if isinstance(given, Mapping) else _pairs(given)
+        for key in pairs:
+            if key not in KEYS:
+                raise _refused(f"{key!r} is none of {', '.join(KEYS)}", did_you_mean(str(key), list(KEYS)))
+        missing = [key for key in ("T1", "z") if key not in pairs]
+        if ("gamma" in pairs) == ("n" in pairs):
+            missing.append("gamma, or n for as many equal storeys (one of the two)")
+        if missing:
+            raise _refused(f"{' and '.join(missing)} must be given")
+        values = {key: _value(key, value) for key, value in pairs.items()}
+        if "n" in values:
+            n = values["n"]
+            if n < 1 or n != round(n):
+                raise _refused(f"n is the number of storeys, got {n:g}")
+            values["gamma"] = 3 * n / (2 * n + 1)
+        return cls(values["T1"], values.get("xi", DAMPING), values["z"], values["gamma"])
+
+    def of(self, ground: GroundMotion) -> GroundMotion:
+        """The motion of the floor above a ground motion.
+
+        Returns
+        -------
+        GroundMotion
+            Sampled so finely that the mode is seen; its `ground` is what is given here, its vertical component that of
+            the ground, as floors are taken as rigid that way.
+        """
+        x, v, parts = relative_response(ground, self.period, self.damping)
+        w = 2 * pi / self.period
+        below = finer(ground.acceleration, parts)
+        relative = -below - 2 * self.damping * w * v - w * w * x
+        return replace(
+            ground,
+            dt=ground.dt / parts,
+            acceleration=below + self.height * self.participation * relative,
+            points=None,
+            every=ground.every * parts,
+            processing=(*ground.processing, f"floor {self}"),
+            ground=ground,
+        )
+
+
+def _pairs(text: str) -> dict[str, object]:
+    found: dict[str, object] = {}
+    for part in text.split(","):
+        key, equals, value = (each.strip() for each in part.partition("="))
+        if not equals or not value:
+            raise _refused(f"{part.strip()!r} is not of the form {KEYS[0]}=0.4")
+        if key in found:
+            raise _refused(f"{key} is given twice")
+        found[key] = value
+    return found
+
+
+def _value(key: str, given: object) -> float:
+    if isinstance(given, bool) or not isinstance(given, str | int | float):
+        raise _refused(f"{key} must be a number, got {given!r}")
+    text = str(given).strip()
+    try:
+        if key == "T1" and not _NUMBER.fullmatch(text):
+            return read(text, "s")
+        return float(text.removesuffix("%")) / (100 if key == "xi" and text.endswith("%") else 1)
+    except UnitError as error:
+        raise _refused(f"{key}: {error.message}", error.hint) from None
+    except ValueError:
+        raise _refused(f"{key} must be a number, got {text!r}") from None
+
+
+def _refused(message: str, hint: str | None = None) -> InputError:
+    return InputError(Problem(message, field="`floor`", hint=hint or f"such as {EXAMPLE}"))

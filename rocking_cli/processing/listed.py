@@ -1,0 +1,45 @@
+"""A record file that was asked for, by itself or in a list of records."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.origins import name
+from rocking_cli.processing.reading import Reading
+
+if TYPE_CHECKING:  # pydantic is for who gives a list
+    from rocking_cli.processing.entry import Entry
+
+SUFFIXES = (".yaml", ".yml")
+
+
+class Listed(NamedTuple):
+    """A record file, and what a list says of it; None where it was named by itself."""
+
+    path: Path
+    entry: Entry | None = None
+    folder: Path = Path()
+
+    def reading(self, common: Reading) -> Reading:
+        """How to read it, `common` being how all are read."""
+        return common if self.entry is None else self.entry.reading(self.folder, common)
+
+    def read(self, common: Reading) -> GroundMotion:
+        """The motion. Raises `InputError` if it cannot be read."""
+        return self.as_said(self.reading(common).read(self.path))
+
+    def as_said(self, motion: GroundMotion) -> GroundMotion:
+        """The motion with the earthquake and the station that the list gives, in the place of those of its file."""
+        if self.entry is None:
+            return motion
+        own = motion.origin
+        event, station = name(self.entry.event) or own.event, name(self.entry.station) or own.station
+        return replace(motion, origin=own._replace(event=event, station=station))
+
+
+def is_list(path: Path) -> bool:
+    """Whether a file is a list of records, by its name."""
+    return path.suffix.lower() in SUFFIXES

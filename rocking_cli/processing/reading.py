@@ -1,0 +1,96 @@
+"""How a record is read and what is made of it, in one object: from a file to the motion that shakes a structure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records import read_measured
+from rocking_cli.excitation.records.sensor import Gain, Quantity, as_acceleration
+from rocking_cli.processing.components import turned
+from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.steps import Resample, Step, process
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How a record is read, and what is made of it, in this order.
+
+    Parameters
+    ----------
+    dt, units, channel : float, str, str, optional
+        See `rocking_cli.excitation.records.read_record`.
+    quantity : str, optional
+        What the file holds; by default accelerations, or what the gain is of.
+    gain : Gain, optional
+        What one unit of the file stands for.
+    other : str or Path, optional
+        The file of the component at right angles, read alike.
+    other_channel : str, optional
+        Its channel; by default that of the first.
+    azimuth : float
+        Of the plane of the structure, from the first component to the second [deg].
+    steps : tuple of Step
+        Corrections, in their order: of what was recorded, before it is differentiated.
+    floor : Floor, optional
+        The floor that the structure stands on.
+    """
+
+    dt: float | None = None
+    units: str | None = None
+    channel: str | None = None
+    quantity: Quantity | None = None
+    gain: Gain | None = None
+    other: str | Path | None = None
+    other_channel: str | None = None
+    azimuth: float = 0.0
+    steps: tuple[Step, ...] = ()
+    floor: Floor | None = None
+
+    def __post_init__(self) -> None:
+        if self.other is None and (self.azimuth or self.other_channel is not None):
+            hint = "give the file of the second with `with`"
+            raise InputError(Problem("an azimuth is between two components", field="`azimuth`", hint=hint))
+
+    def read(self, file: str | Path) -> GroundMotion:
+        """The motion that shakes a structure.
+
+        Raises
+        ------
+        InputError
+            If a file cannot be read, a correction cannot be made, or two components do not go together.
+        """
+        measured, quantity = self._measured(file, self.channel)
+        if self.other is not None:
+            channel = self.channel if self.other_channel is None else self.other_channel
+            if self.other_channel is None and Path(self.other) == Path(file):
+                hint = "give the channel of the second with `with_channel`"
+                raise InputError(Problem("is the first component too", str(file), field="`with`", hint=hint))
+            measured = turned(measured, self._measured(self.other, channel)[0], self.azimuth)
+        return self.on_floor(as_acceleration(process(measured, self.steps), quantity))
+
+    def on_floor(self, motion: GroundMotion) -> GroundMotion:
+        """A motion of the ground as it is on the floor, if there is one."""
+        return motion if self.floor is None else self.floor.of(motion)
+
+    def vertical(self, file: str | Path, dt: float | None = None, channel: str | None = None) -> GroundMotion:
+        """The vertical component in a file of its own: as it is read, with the same corrections.
+
+        Raises
+        ------
+        InputError
+            As `read`.
+        """
+        own = replace(
+            self, dt=dt if dt is not None else self.dt, channel=channel, other=None, other_channel=None, azimuth=0.0,
+            floor=None,
+        )  # fmt: skip
+        return own.read(file)
+
+    def _measured(self, file: str | Path, channel: str | None) -> tuple[GroundMotion, Quantity]:
+        uneven = any(isinstance(step, Resample) for step in self.steps)
+        return read_measured(
+            file, dt=self.dt, units=self.units, channel=channel, quantity=self.quantity, gain=self.gain, uneven=uneven
+        )

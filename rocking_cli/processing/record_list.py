@@ -1,0 +1,59 @@
+"""A list of records in a YAML file, such as `rocking select` writes: each with how to read it and its factor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.selection import select
+from rocking_cli.io.field_problems import problems
+from rocking_cli.io.yaml_file import parse, read_text
+from rocking_cli.processing.entry import Entry
+from rocking_cli.processing.listed import Listed
+
+HINT = "`rocking select` writes one"
+
+
+class RecordList(BaseModel):
+    """The content of a list of records."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore", strict=True, allow_inf_nan=False)
+
+    records: list[Entry] = Field(min_length=1, description="the records")
+
+
+def read_list(path: Path) -> list[Listed]:
+    """The records of a list.
+
+    Parameters
+    ----------
+    path : Path
+        The YAML file; the files it names are relative to its folder.
+
+    Raises
+    ------
+    InputError
+        With every problem of the list.
+    """
+    document = parse(read_text(path, "list of records"), str(path), "list of records", HINT)
+    document.check()
+    try:
+        known = RecordList.model_validate(document.data)
+    except ValidationError as error:
+        found: Any = error.errors(include_url=False)
+        raise InputError(*problems(document, RecordList, found, owner="the list", lister=HINT)) from None
+    listed: list[Listed] = []
+    for k, entry in enumerate(known.records):
+        if entry.file is None:
+            document.problems.append(document.at(("records", k), "names no file"))
+            continue
+        try:
+            listed += [Listed(each, entry, path.parent) for each in select(entry.file, path.parent)]
+        except InputError as error:
+            place = ("records", k, "file")
+            document.problems += [document.at(place, f"{one.file}: {one.message}", one.hint) for one in error.problems]
+    document.check()
+    return listed

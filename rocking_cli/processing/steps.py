@@ -1,0 +1,394 @@
+"""Corrections of a ground motion, each a step that is asked for: nothing is corrected unless asked.
+
+Filters are Butterworth's of order 4, once forwards and once backwards (scipy.signal.sosfiltfilt), so that no time is
+shifted; at the corner half of the amplitude is left.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import ceil, floor, inf, isfinite
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.text import did_you_mean
+from rocking_cli.units import UnitError, read
+
+Reals = NDArray[np.float64]
+ORDER = 4
+DEGREES = {"constant": 0, "linear": 1, "quadratic": 2}
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One correction; `str` gives it as it is asked for."""
+
+    name: ClassVar[str]
+    example: ClassVar[str]
+
+    @property
+    def value(self) -> str:
+        """What it is given, as text."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.value}"
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read what it is given. Raises `InputError`."""
+        raise NotImplementedError
+
+    def of(self, motion: GroundMotion) -> GroundMotion:
+        """The corrected motion, its vertical component left alone. Raises `InputError` where it cannot be done."""
+        raise NotImplementedError
+
+    def refused(self, motion: GroundMotion, message: str, hint: str | None = None) -> InputError:
+        """What to raise where it cannot be done."""
+        return InputError(Problem(message, motion.name, field=f"`{self.name}`", hint=hint))
+
+
+@dataclass(frozen=True)
+class Baseline(Step):
+    """Subtract the least-squares polynomial of the samples: `constant`, `linear` or `quadratic`."""
+
+    name = "baseline"
+    example = "linear"
+    kind: str
+
+    @property
+    def value(self) -> str:
+        """Which polynomial."""
+        return self.kind
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read which polynomial."""
+        word = text.strip().lower()
+        if word not in DEGREES:
+            hint = did_you_mean(word, list(DEGREES))
+            raise _wrong(cls, f"{text!r} is none of {', '.join(DEGREES)}", hint)
+        return cls(word)
+
+    def of(self, motion: GroundMotion) -> GroundMotion:
+        """The motion without it."""
+        degree = DEGREES[self.kind]
+        if motion.npts <= degree + 1:
+            raise self.refused(motion, f"{motion.npts} samples lie on such a line: nothing would be left")
+        t = np.linspace(-1.0, 1.0, motion.npts)
+        fitted = np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, motion.acceleration, degree))
+        return _of_samples(motion, motion.acceleration - fitted)
+
+
+@dataclass(frozen=True)
+class Filter(Step):
+    """A filter with its corner frequency [Hz]."""
+
+    example = "0.1"
+    kind: ClassVar[str]
+    frequency: float
+
+    @property
+    def value(self) -> str:
+        """The corner."""
+        return f"{self.frequency:.9g}"
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read the corner frequency, in Hz."""
+        return cls(_positive(cls, re.sub(r"\s*[hH][zZ]\s*$", "", text), "a frequency in Hz"))
+
+    def of(self, motion: GroundMotion) -> GroundMotion:
+        """The motion, filtered forwards and backwards."""
+        from scipy import signal
+
+        nyquist, slowest = 0.5 / motion.dt, 1 / motion.duration
+        if self.frequency >= nyquist:
+            message = f"{self.frequency:g} Hz is not below {nyquist:.4g} Hz, the highest in samples at {motion.dt:g} s"
+            raise self.refused(motion, message, "give a lower one, or leave the filter out")
+        if self.frequency < slowest * (1 - 1e-9):
+            message = f"a record of {motion.duration:.4g} s does not hold one period of {self.frequency:g} Hz"
+            raise self.refused(motion, message, f"give {1.01 * slowest:.3g} Hz at least")
+        sections = signal.butter(ORDER, self.frequency, self.kind, fs=1 / motion.dt, output="sos")
+        try:
+            return _of_samples(motion, signal.sosfiltfilt(sections, motion.acceleration))
+        except ValueError:
+            raise self.refused(motion, f"{motion.npts} samples are too few for a filter") from None
+
+
+@dataclass(frozen=True)
+class Highpass(Filter):
+    """Take out what is slower than a frequency."""
+
+    name = "highpass"
+    kind = "highpass"
+
+
+@dataclass(frozen=True)
+class Lowpass(Filter):
+    """Take out what is faster than a frequency."""
+
+    name = "lowpass"
+    example = "25"
+    kind = "lowpass"
+
+
+@dataclass(frozen=True)
+class Taper(Step):
+    """Bring both ends to zero by half a cosine, over a share of the duration each (scipy's Tukey window)."""
+
+    name = "taper"
+    example = "0.05"
+    share: float
+
+    @property
+    def value(self) -> str:
+        """The share at each end."""
+        return f"{self.share:.9g}"
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read the share, a number or per cent."""
+        plain = text.strip()
+        percent = plain.endswith("%")
+        share = _positive(cls, plain.removesuffix("%"), "a share") / (100 if percent else 1)
+        if share > 0.5:
+            raise _wrong(cls, f"{text} at each end is more than there is", "5 % at each end is 0.05")
+        return cls(share)
+
+    def of(self, motion: GroundMotion) -> GroundMotion:
+        """The tapered motion."""
+        from scipy.signal import windows
+
+        return _of_samples(motion, motion.acceleration * windows.tukey(motion.npts, 2 * self.share))
+
+
+@dataclass(frozen=True)
+class Trim(Step):
+    """Keep what is from one time to another [s], to the nearest samples; the first becomes time zero."""
+
+    name = "trim"
+    example = "2:20"
+    start: float
+    end: float
+
+    @property
+    def value(self) -> str:
+        """The two times."""
+        return f"{self.start:.9g}:{self.end:.9g}" if self.end < inf else f"{self.start:.9g}:"
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read two times, either of which may be left out: `2:20`, `2:`, `:20`."""
+        first, colon, last = (part.strip() for part in text.partition(":"))
+        if not colon or not (first or last):
+            raise _wrong(cls, f"{text!r} is not a range of times")
+        start, end = (_time(cls, each) if each else default for each, default in ((first, 0.0), (last, inf)))
+        if end <= start:
+            raise _wrong(cls, f"{text!r} ends before it begins")
+        return cls(start, end)
+
+    def of(self, motion: GroundMotion) -> GroundMotion:
+        """The motion between the two times."""
+        dt = motion.dt
+        first = round(self.start / dt) if self.start <= motion.duration else motion.npts
+        last = round(min(self.end, motion.duration) / dt)
+        if self.end < inf and self.end > motion.duration + dt:
+            message = f"the record ends at {motion.duration:.6g} s, before {self.end:g} s"
+            raise self.refused(motion, message, f"leave the end open: {self.start:g}:")
+        if last - first < 1:
+            message = f"of {motion.duration:.4g} s at intervals of {dt:g} s fewer than two samples would be left"
+            raise self.refused(motion, message)
+        return _of_samples(motion, motion.acceleration[first : last + 1])
+
+
+@dataclass(frozen=True)
+class Resample(Step):
+    """Another interval [s]: a finer one on the straight lines, of a coarser one first what it cannot hold is out."""
+
+    name = "resample"
+    example = "0.005"
+    dt: float
+
+    FINEST: ClassVar[int] = 1000  # parts of an interval
+    STEPS: ClassVar[int] = 20_000  # of the ratio of the intervals as a fraction
+
+    @property
+    def value(self) -> str:
+        """The interval."""
+        return f"{self.dt:.9g}"
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read the interval, in s or with its unit."""
+        return cls(_time(cls, text))
+
+    def of(self, motion: GroundMotion) -> GroundMotion:
+        """The motion at the new interval."""
+        ratio = self.dt / motion.dt
+        if abs(ratio - 1) < 1e-9:
+            return motion
+        if not ratio >= 1 / self.FINEST:
+            message = f"{self.dt:g} s is less than a {self.FINEST}th of the {motion.dt:g} s between its samples"
+            raise self.refused(motion, message)
+        if self.dt > motion.duration:
+            message = f"of {motion.duration:.4g} s fewer than two samples would be left"
+            raise self.refused(motion, message)
+        if ratio < 1:
+            return self._finer(motion)
+        return self._coarser(motion, Fraction(ratio).limit_denominator(self.STEPS))
+
+    def _finer(self, motion: GroundMotion) -> GroundMotion:
+        time = self.dt * np.arange(floor(motion.duration / self.dt * (1 + 1e-12)) + 1)
+        return _of_samples(motion, np.interp(time, motion.time, motion.acceleration), self.dt)
+
+    def _coarser(self, motion: GroundMotion, ratio: Fraction) -> GroundMotion:
+        """By scipy.signal.resample_poly, which low-passes; the interval is to the fraction that it takes."""
+        from scipy import signal
+
+        samples = signal.resample_poly(motion.acceleration, ratio.denominator, ratio.numerator, padtype="line")
+        dt = motion.dt * float(ratio)
+        if abs(dt / self.dt - 1) < 1e-9:
+            dt = self.dt
+        inside = ceil(motion.duration / dt - 1e-9) + 1  # none is beyond the last sample
+        return _of_samples(motion, samples[: inside if (inside - 1) * dt <= motion.duration * (1 + 1e-9) else -1], dt)
+
+
+@dataclass(frozen=True)
+class Factor(Step):
+    """Multiply by a number: that of a set of records."""
+
+    name = "factor"
+    example = "1.5"
+    by: float
+
+    @property
+    def value(self) -> str:
+        """The number."""
+        return f"{self.by:.15g}"
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read the number, not zero."""
+        return cls(_number(cls, text, "a factor"))
+
+    def of(self, motion: GroundMotion) -> GroundMotion:
+        """The multiplied motion."""
+        return replace(motion.scaled(self.by), name=motion.name, vertical=motion.vertical)
+
+
+STEPS: Mapping[str, type[Step]] = {
+    each.name: each for each in (Baseline, Highpass, Lowpass, Taper, Trim, Resample, Factor)
+}
+
+
+def parse_step(name: str, given: object) -> Step:
+    """A step from its name and what it is given, as a study file has it: `highpass: 0.1`, `trim: [2, 20]`.
+
+    Raises
+    ------
+    InputError
+        If there is no such step, or it cannot take that.
+    """
+    step = STEPS.get(name)
+    if step is None:
+        hint = did_you_mean(name, list(STEPS)) or f"there are {', '.join(STEPS)}"
+        raise InputError(Problem(f"{name!r} is no step of processing", hint=hint))
+    if isinstance(given, list | tuple) and len(given) == 2:
+        given = f"{given[0]}:{given[1]}"
+    if isinstance(given, bool) or not isinstance(given, str | int | float):
+        raise _wrong(step, f"cannot be {given!r}")
+    return step.parse(str(given))
+
+
+def parse_steps(entries: Sequence[Mapping[str, Any] | str]) -> tuple[Step, ...]:
+    """Steps in their order, from a list of `{highpass: 0.1}` or of `highpass 0.1`. Raises `InputError`."""
+    found = []
+    for entry in entries:
+        if isinstance(entry, str):
+            name, _, given = entry.strip().partition(" ")
+            found.append(parse_step(name, given))
+        elif len(entry) == 1:
+            found.append(parse_step(*next(iter(entry.items()))))
+        else:
+            hint = "such as `- highpass: 0.1`"
+            raise InputError(Problem("one step an entry: a name and what it is given", hint=hint))
+    return tuple(found)
+
+
+def process(motion: GroundMotion, steps: Sequence[Step]) -> GroundMotion:
+    """A motion after some steps, in their order; its vertical component goes through the same.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        As read.
+    steps : sequence of Step
+        In the order of their doing.
+
+    Returns
+    -------
+    GroundMotion
+        Its `processing` has the steps, its `remarks` what was doubtful about single samples before them.
+
+    Raises
+    ------
+    InputError
+        If a step cannot be done.
+    """
+    if not steps:
+        return motion
+    from rocking_cli.excitation.doubts import of_samples
+
+    raw = motion
+    vertical = process(motion.vertical, steps) if motion.vertical is not None else None
+    for step in steps:
+        motion = step.of(motion)
+    if not np.isfinite(motion.acceleration).all():
+        raise InputError(Problem("is beyond the range of numbers after its corrections", raw.name))
+    remarks = (*raw.remarks, *of_samples(raw))
+    if any(isinstance(step, Lowpass) for step in steps):
+        remarks = tuple(each for each in remarks if each.kind != "resolution")
+    done = (*raw.processing, *map(str, steps))
+    return replace(motion, vertical=vertical, remarks=remarks, processing=done)
+
+
+def _of_samples(motion: GroundMotion, samples: Reals, dt: float | None = None) -> GroundMotion:
+    return replace(motion, acceleration=samples, dt=motion.dt if dt is None else dt, points=None)
+
+
+def _number(step: type[Step], text: str, what: str) -> float:
+    plain = text.strip()
+    if not _NUMBER.fullmatch(plain) or not isfinite(float(plain)) or float(plain) == 0:
+        raise _wrong(step, f"{text!r} is not {what}")
+    return float(plain)
+
+
+def _positive(step: type[Step], text: str, what: str) -> float:
+    found = _number(step, text, what)
+    if found < 0:
+        raise _wrong(step, f"{text!r} is not {what} above zero")
+    return found
+
+
+def _time(step: type[Step], text: str) -> float:
+    plain = text.strip()
+    try:
+        found = float(plain) if _NUMBER.fullmatch(plain) else read(plain, "s")
+    except UnitError as error:
+        raise _wrong(step, error.message, error.hint) from None
+    if not (isfinite(found) and (found > 0 or (step is Trim and found == 0))):
+        raise _wrong(step, f"{text!r} is not a time above zero")
+    return found
+
+
+def _wrong(step: type[Step], message: str, hint: str | None = None) -> InputError:
+    return InputError(Problem(message, field=f"`{step.name}`", hint=hint or f"such as {step.example}"))

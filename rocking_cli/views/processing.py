@@ -1,0 +1,21 @@
+"""What was done to a ground motion since it was read, for people and programs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rocking_cli.excitation.base import GroundMotion
+
+
+def in_words(motion: GroundMotion) -> str:
+    """What was done, a few words; empty for nothing."""
+    return f"processed: {', '.join(motion.processing)}" if motion.processing else ""
+
+
+def data(motion: GroundMotion) -> dict[str, Any]:
+    """The steps in their order, as they would be asked for again, and of a floor the peak of its own motion [g]."""
+    found: dict[str, Any] = {"processing": list(motion.processing)}
+    if motion.ground is not None:
+        found["floor_pga"] = motion.pga
+    return found
