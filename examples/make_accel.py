@@ -1,4 +1,6 @@
-"""Write `accel.csv`: a synthetic ground motion like those recorded close to a fault that ruptures towards the site.
+"""Write `accel.csv` and `accel_transverse.csv`: the two components of a synthetic ground motion near a fault.
+
+The fault ruptures towards the site; the first component is across it, where the pulse is.
 
 It is the sum of two parts, in units of standard gravity:
 
@@ -7,15 +9,17 @@ It is the sum of two parts, in units of standard gravity:
 - random shaking between 0.4 and 12 Hz that rises fast and dies away slowly, which carries the high-frequency peaks.
 
 The sum is corrected so that the ground ends at rest, brought smoothly to zero at both ends, and scaled to a peak of
-0.55 g. It is not a record of any earthquake: use it to try the tool, not to design with.
+0.55 g. The second component has other shaking, and half the pulse. This is not a record of any earthquake: use it to
+try the tool, not to design with.
 
-    python make_accel.py [FILE]
+    python make_accel.py [FILE [FILE]]
 """
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +30,7 @@ DT = 0.01  # s
 DURATION = 12.0  # s
 PEAK = 0.55  # g, of the sum
 SEED = 20030613
+TRANSVERSE_PEAK, TRANSVERSE_PULSE, TRANSVERSE_SEED = 0.4, 0.4, 20030627  # of the second component
 
 PULSE_FREQUENCY = 1.0  # Hz
 PULSE_CYCLES = 2.0  # length of the bell, in periods
@@ -47,9 +52,9 @@ def pulse(time: Array) -> Array:
     return _with_unit_peak(np.where(inside, slope, 0.0))
 
 
-def noise(time: Array) -> Array:
+def noise(time: Array, seed: int) -> Array:
     """Band-limited noise under an envelope that peaks with the pulse, with a peak of one."""
-    white = np.random.default_rng(SEED).standard_normal(time.size)
+    white = np.random.default_rng(seed).standard_normal(time.size)
     frequency = np.fft.rfftfreq(time.size, DT)
     low, high = BAND
     # Gentle slopes on both sides of the band, so that the filter does not ring.
@@ -67,13 +72,13 @@ def taper(time: Array) -> Array:
     return window
 
 
-def accelerogram() -> tuple[Array, Array]:
+def accelerogram(peak: float = PEAK, pulse_peak: float = PULSE_PEAK, seed: int = SEED) -> tuple[Array, Array]:
     """Return times [s] and accelerations [g], as they are printed to the file."""
     time = np.linspace(0, DURATION, round(DURATION / DT) + 1)
     window = taper(time)
-    acceleration = (PULSE_PEAK * pulse(time) + NOISE_PEAK * noise(time)) * window
+    acceleration = (pulse_peak * pulse(time) + NOISE_PEAK * noise(time, seed)) * window
     acceleration -= window * acceleration.sum() / window.sum()  # no velocity left at the end
-    acceleration = PEAK * _with_unit_peak(acceleration)
+    acceleration = peak * _with_unit_peak(acceleration)
     return np.round(time, 2), np.round(acceleration, 6) + 0.0  # + 0.0: no "-0.000000"
 
 
@@ -82,11 +87,14 @@ def _with_unit_peak(values: Array) -> Array:
     return scaled
 
 
-def write(path: Path) -> None:
-    """Write the accelerogram as comma-separated text."""
-    rows = [f"{t:.2f},{a:.6f}" for t, a in zip(*accelerogram(), strict=True)]
+def write(path: Path, *of: Any) -> None:
+    """Write an accelerogram as comma-separated text; `of` are the arguments of `accelerogram`."""
+    rows = [f"{t:.2f},{a:.6f}" for t, a in zip(*accelerogram(*of), strict=True)]
     path.write_text("\n".join(["time_s,accel_g", *rows]) + "\n", encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).with_name("accel.csv"))
+    here = Path(__file__)
+    write(Path(sys.argv[1]) if len(sys.argv) > 1 else here.with_name("accel.csv"))
+    transverse = Path(sys.argv[2]) if len(sys.argv) > 2 else here.with_name("accel_transverse.csv")
+    write(transverse, TRANSVERSE_PEAK, TRANSVERSE_PULSE, TRANSVERSE_SEED)

@@ -123,6 +123,10 @@ class GroundMotions(Scaling, Reading):
     records: tuple[str, ...]
     pulses: tuple[str, ...]
 
+    def __post_init__(self) -> None:
+        Reading.__post_init__(self)
+        Scaling.__post_init__(self)
+
     def __bool__(self) -> bool:
         """Whether there is any."""
         return bool(self.records or self.pulses)

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from rocking_cli.cli.groups import GroundMotions, Vertical
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
-    from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.reading import Reading
@@ -39,11 +38,12 @@ def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
 def read(what: str, record: Listed, reading: Reading) -> GroundMotion:
     """Read a motion and say what was read; `what` it is to be called."""
     motion = motion_files.read(record, reading)
-    _say(what, motion)
+    introduce(what, motion)
     return motion
 
 
-def _say(what: str, motion: GroundMotion) -> None:
+def introduce(what: str, motion: GroundMotion) -> None:
+    """Say what was read; `what` it is to be called."""
     ground = motion.of_ground
     terminal.note(
         f"{what}: {motion.name} ({motion.format}), {ground.npts} points, dt = {ground.dt:g} s, "
@@ -68,7 +68,7 @@ def read_vertical(vertical: Vertical, reading: Reading) -> GroundMotion:
                 each = replace(each, hint="give the interval of the vertical component with `vertical_dt`")
             found.append(each)
         raise InputError(*found) from None
-    _say("vertical", motion)
+    introduce("vertical", motion)
     return motion
 
 
@@ -96,7 +96,7 @@ def judge(
 
     measured = measure(motion.of_ground)
     if motion.format != "pulse":  # what a formula leaves the ground with is meant
-        _warn(motion, measured, p)
+        warn(motion, p)
     if motion.vertical is not None:
         motion_files.warn(motion.vertical, doubts(motion.vertical, measure(motion.vertical)))
     factor = motion_files.factor(motion, measured, scale, target_pga, target_pgv)
@@ -106,10 +106,13 @@ def judge(
     return factor
 
 
-def _warn(motion: GroundMotion, measured: Measures, p: float) -> None:
+def warn(motion: GroundMotion, p: float) -> None:
+    """Say what is doubtful about a record, also for a structure of a frequency parameter `p`."""
     from rocking_cli.excitation.doubts import coarse_for, doubts
+    from rocking_cli.excitation.measures import measure
 
-    motion_files.warn(motion, doubts(motion.of_ground, measured) + coarse_for(motion, p))
+    ground = motion.of_ground
+    motion_files.warn(motion, doubts(ground, measure(ground)) + coarse_for(motion, p))
 
 
 def gather(

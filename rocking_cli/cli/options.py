@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from functools import wraps
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import click
 
@@ -161,7 +161,8 @@ ground_motions: Decorator = _in_order(
 """Ground motions, any number of them: `records` and `pulses`."""
 
 
-class Placed(NamedTuple):
+@dataclass(frozen=True)
+class Placed:
     """A correction that was asked for, and its place among them: they are made in the order of the command line."""
 
     place: int

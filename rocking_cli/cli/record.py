@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -202,9 +202,20 @@ class _Asked:
             if self.clean:
                 _write(self.clean[file, sign], scaled)
             if self.plot is not None:
-                _draw(self.plot, scaled, one)
+                _draw(self.plot, scaled, one, self._before(file) if self.reading.placed else None)
             found.append(one)
         return found
+
+    def _before(self, file: str) -> GroundMotion:
+        """The record without its corrections, to be shown beside it."""
+        from rocking_cli.excitation.records.opening import allow_again
+        from rocking_cli.processing.listed import Listed
+        from rocking_cli.processing.steps import Resample
+
+        allow_again(file)
+        asked = self.reading.reading
+        grid = tuple(step for step in asked.steps if isinstance(step, Resample))  # uneven times cannot do without
+        return motion_files.read(Listed(Path(file)), replace(asked, steps=grid, floor=None))
 
     def _examine(self, file: str, motion: GroundMotion, polarity: int) -> tuple[Examined, GroundMotion]:
         """The record and its scaled motion; what is doubtful is looked for in the record as read."""
@@ -243,15 +254,26 @@ def _write(path: Path, motion: GroundMotion) -> None:
     terminal.note(f"wrote {path.resolve()}")
 
 
-def _draw(path: Path, motion: GroundMotion, examined: Examined) -> None:
+def _draw(path: Path, motion: GroundMotion, examined: Examined, before: GroundMotion | None) -> None:
+    from rocking_cli.plotting.processing import draw_before_and_after
     from rocking_cli.plotting.pulse_fit import draw_pulses
     from rocking_cli.plotting.record import draw_record
 
     if examined.pulses:
         end = examined.measures.t_95 or motion.duration
         write_picture(path, draw_pulses(motion, _best(examined.pulses), end))
+    elif before is not None:
+        write_picture(path, draw_before_and_after(before.scaled(examined.factor), motion, _shift(motion)))
     else:
         write_picture(path, draw_record(motion, examined.measures))
+
+
+def _shift(motion: GroundMotion) -> float:
+    """When a motion begins, on the time axis of what was read [s]."""
+    from rocking_cli.processing.steps import Trim
+
+    words = (each.split() for each in motion.processing)
+    return sum(Trim.parse(given).start for name, *rest in words if name == Trim.name for given in rest)
 
 
 def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:

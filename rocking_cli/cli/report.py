@@ -133,13 +133,18 @@ def _file(structure: Prepared, files: tuple[str, ...]) -> File:
     return File(structure.file, original(files[0] if files else structure.file))
 
 
+def _place(value: object) -> int:
+    """Where an option stands among the others: corrections in their order, all else before them."""
+    return value.place if isinstance(value, options.Placed) else 0
+
+
 def _command_line(ctx: click.Context) -> str:
     """The command as it was given, for a POSIX shell, with the user's defaults, which hold nowhere else."""
     from click.core import ParameterSource
 
     said = ["rocking", "report"]
     taken = defaults.of_run(ctx)
-    for param in ctx.command.params:
+    for param in sorted(ctx.command.params, key=lambda each: _place(ctx.params.get(each.name or ""))):
         value = ctx.params.get(param.name or "")
         if default := taken.get(param.name or ""):
             said += [f"--{default.option}", default.value]

@@ -159,6 +159,13 @@ def command(
     keep_apart([("--out", output.out), ("--plot", output.plot)], read)
     check_table(output.out)
     structure = inputs.structure(files, asked.records)
+    if asked.all_azimuths:
+        from rocking_cli.cli import azimuths
+
+        azimuths.check(asked, history, len(paths) + missing, impacts=impacts, contact=contact)
+        compile_first()
+        azimuths.respond(structure, _names(structure, history), paths[0], asked, vertical, history, output)
+        return
     chosen: Sequence[Scaled | None] = [None]  # a free release
     refused = 0
     if asked:

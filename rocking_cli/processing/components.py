@@ -37,11 +37,15 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
     if one.npts != other.npts:
         message = f"it has {other.npts} samples, {one.name} has {one.npts}"
         raise _unlike(other, message, "trim both to the same times; they must begin at the same moment")
+    ground = None
+    if one.ground is not None and other.ground is not None:
+        ground = turned(one.ground, other.ground, azimuth)
     c, s = (_exact(of(radians(azimuth))) for of in (cos, sin))
     return replace(
         one,
         acceleration=c * one.acceleration + s * other.acceleration,
         points=None,
+        ground=ground,
         remarks=(*one.remarks, *other.remarks),
         processing=(*one.processing, f"with {other.name}", f"azimuth {azimuth % 360:.9g}"),
     )

@@ -64,12 +64,27 @@ class Reading:
         """
         measured, quantity = self._measured(file, self.channel)
         if self.other is not None:
-            channel = self.channel if self.other_channel is None else self.other_channel
-            if self.other_channel is None and Path(self.other) == Path(file):
-                hint = "give the channel of the second with `with_channel`"
-                raise InputError(Problem("is the first component too", str(file), field="`with`", hint=hint))
-            measured = turned(measured, self._measured(self.other, channel)[0], self.azimuth)
+            measured = turned(measured, self._measured(self.other, self._channel_of_other(file))[0], self.azimuth)
         return self.on_floor(as_acceleration(process(measured, self.steps), quantity))
+
+    def pair(self, file: str | Path) -> tuple[GroundMotion, GroundMotion]:
+        """Two components, each by itself: what is made of them is linear, and may come before they are turned.
+
+        Raises
+        ------
+        InputError
+            As `read`.
+        """
+        assert self.other is not None
+        alone = replace(self, other=None, other_channel=None, azimuth=0.0)
+        return alone.read(file), replace(alone, channel=self._channel_of_other(file)).read(self.other)
+
+    def _channel_of_other(self, file: str | Path) -> str | None:
+        assert self.other is not None
+        if self.other_channel is None and Path(self.other) == Path(file):
+            hint = "give the channel of the second with `with_channel`"
+            raise InputError(Problem("is the first component too", str(file), field="`with`", hint=hint))
+        return self.channel if self.other_channel is None else self.other_channel
 
     def on_floor(self, motion: GroundMotion) -> GroundMotion:
         """A motion of the ground as it is on the floor, if there is one."""

@@ -10,7 +10,13 @@ if TYPE_CHECKING:
 
 def in_words(motion: GroundMotion) -> str:
     """What was done, a few words; empty for nothing."""
-    return f"processed: {', '.join(motion.processing)}" if motion.processing else ""
+    from rocking_cli.excitation.records import sensor
+
+    steps = list(motion.processing)
+    for quantity in sensor.QUANTITIES:
+        if (said := sensor.said(quantity)) in steps:
+            steps[steps.index(said)] += f" ({sensor.in_words(quantity, motion.of_ground.dt)})"
+    return f"processed: {', '.join(steps)}" if steps else ""
 
 
 def data(motion: GroundMotion) -> dict[str, Any]:

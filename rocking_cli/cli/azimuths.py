@@ -1,0 +1,67 @@
+"""`rocking respond --azimuth all`: a pair of components, turned into every direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import click
+
+from rocking_cli.cli import inputs, motion_files, terminal
+from rocking_cli.cli.groups import GroundMotions, History, Output, Vertical
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.dynamics.prepared import Prepared
+    from rocking_cli.processing.listed import Listed
+
+
+def check(asked: GroundMotions, history: History, count: int, *, impacts: bool, contact: bool) -> None:
+    """Refuse what is of one direction beside all of them."""
+    if count != 1 or asked.pulses:
+        raise click.UsageError("--azimuth all is of one pair of components: give one --record FILE.")
+    if asked.polarity != "1":
+        raise click.UsageError("--azimuth all has both polarities in it: leave --polarity out.")
+    if history.with_pulse is not None or impacts or contact:
+        raise click.UsageError("--with-pulse, --impacts and --contact are of one direction: give one --azimuth.")
+
+
+def respond(
+    structure: Prepared,
+    models: Sequence[ModelName],
+    record: Listed,
+    asked: GroundMotions,
+    vertical: Vertical,
+    history: History,
+    output: Output,
+) -> None:
+    """Follow a structure in all directions under a pair, and show what became of it."""
+    from rocking_cli.cli import structures
+    from rocking_cli.excitation.measures import measure
+    from rocking_cli.plotting import style
+    from rocking_cli.plotting.azimuths import draw_azimuths
+    from rocking_cli.studies.azimuths import all_around
+    from rocking_cli.views.azimuths import columns, view
+    from rocking_cli.views.view import heading
+
+    one, other = record.reading(asked.towards(0.0)).pair(record.path)
+    for each in (one, other):
+        inputs.introduce("component", each)
+        inputs.warn(each, structure.growth)
+    if vertical.vertical is not None:
+        one = replace(one, vertical=inputs.read_vertical(vertical, asked.towards(0.0)))
+    factor = motion_files.factor(one, measure(one.of_ground), *asked.scaling)
+    if factor != 1:
+        terminal.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga:.4g} g at 0 degrees")
+    release = history.release.ratio(structure) if history.release is not None else None
+    found = all_around(structure, models, (one, other), factor, release=release, rtol=history.rtol)
+
+    def draw() -> Figure:
+        one, other = (side.phi_cr is None for side in structure.statics)
+        return draw_azimuths(found, heading(structure.mechanism), style.over((one, other), math=True))
+
+    output.write(lambda: [columns(found)], draw)
+    terminal.show(view(structure, found, structures.doubts(structure.mechanism)), as_json=output.as_json)

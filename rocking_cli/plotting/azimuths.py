@@ -1,0 +1,65 @@
+"""Peak rotations over all directions of a structure's plane: a polar picture."""
+
+from __future__ import annotations
+
+from textwrap import shorten
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rocking_cli import names
+from rocking_cli.plotting import style
+from rocking_cli.studies.azimuths import Around
+
+OUTSIDE = 1.08  # phi/phi_cr at which directions that overturn are marked: beyond all that can come back, as a rule
+LONGEST = 32  # characters of a name
+
+
+def draw_azimuths(found: Around, title: str, over: str) -> Figure:
+    """Draw the largest rotation in each direction.
+
+    Parameters
+    ----------
+    found : Around
+        What is drawn: a closed curve for each model, crosses outside where it overturns.
+    title : str
+        Heading.
+    over : str
+        What rotations are over, as `style.over` gives it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(6.4)
+    axes: Any = figure.add_subplot(projection="polar")
+    axes.set_theta_zero_location("N")
+    axes.set_theta_direction(-1)
+    style.heading(axes, title)
+    angles = np.radians(np.append(found.azimuths, found.azimuths[0]))
+    peaks = [each.peak_ratio for each in found.outcomes.values()]
+    reach = max((float(np.nanmax(each)) for each in peaks if np.isfinite(each).any()), default=0.0)
+    falls = any(each.overturned.any() for each in found.outcomes.values())
+    outside = max(OUTSIDE, reach * OUTSIDE)
+    for k, (name, each) in enumerate(found.outcomes.items()):
+        look: Any = style.LINES[name]
+        ratio = np.append(each.peak_ratio, each.peak_ratio[0])
+        axes.plot(angles, ratio, label=style.LABELS[name], **look)
+        fallen = np.radians(found.azimuths[each.overturned])
+        ring = outside * (1 + 0.07 * k)
+        axes.plot(fallen, np.full(fallen.size, ring), linestyle="none", marker="x", markersize=5, color=look["color"])
+    if falls or reach > 0.5:
+        around = np.linspace(0.0, 2 * np.pi, 361)
+        axes.plot(around, np.ones(around.size), color=style.FAINT, linewidth=style.MEDIUM, linestyle=":")
+    axes.set_ylim(0.0, outside * (1 + 0.07 * len(found.outcomes)) if falls else max(1.1 * reach, 1e-3))
+    one, other = (shorten(name, LONGEST, placeholder=" ...") for name in found.names)
+    axes.set_xticks(np.radians(np.arange(0, 360, 30)))
+    axes.tick_params(labelsize=style.TICK, colors=style.INK)
+    axes.set_rlabel_position(67)
+    axes.grid(True, color=style.GRID, linewidth=style.THIN)
+    said = f"peak {over}; 0° is {style.plain(one)}, 90° {style.plain(other)}"
+    crosses = f"; crosses: {names.OVERTURNS}" if falls else ""
+    axes.set_xlabel(said + crosses, fontsize=style.LABEL)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), **style.LEGEND)
+    return figure

@@ -1,0 +1,108 @@
+"""What a pair of components does to a structure in every direction in which its plane may lie."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.history import RTOL
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.outcome import Outcomes
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import SolverError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.processing.components import turned
+
+Reals = NDArray[np.float64]
+STEP = 2  # degrees
+
+
+@dataclass(frozen=True, eq=False)
+class Around:
+    """The responses of a structure to a pair of components, in all directions.
+
+    Parameters
+    ----------
+    names : (str, str)
+        The component at 0 degrees, and that at 90.
+    scale : float
+        Factor on both.
+    azimuths : ndarray, shape (n,)
+        Of the structure's plane, from the first component to the second [deg]: with all of them both polarities are.
+    pga : ndarray, shape (n,)
+        Peak acceleration in that direction, as scaled [standard gravity].
+    outcomes : mapping of str to Outcome
+        Of each model, an array over the azimuths.
+    """
+
+    names: tuple[str, str]
+    scale: float
+    azimuths: Reals
+    pga: Reals
+    outcomes: Mapping[ModelName, Outcomes]
+
+
+def all_around(
+    structure: Prepared,
+    models: Sequence[ModelName],
+    pair: tuple[GroundMotion, GroundMotion],
+    scale: float,
+    *,
+    release: float | None = None,
+    rtol: float = RTOL,
+) -> Around:
+    """Turn a pair of components into all directions, and follow a structure in each.
+
+    Parameters
+    ----------
+    structure : Prepared
+        The structure.
+    models : sequence of str
+        Those to follow.
+    pair : (GroundMotion, GroundMotion)
+        The components at 0 and at 90 degrees, corrected alike.
+    scale : float
+        Factor on both.
+    release : float, optional
+        Start at rest from this fraction of phi_cr.
+    rtol : float
+        Relative local error of a step.
+
+    Raises
+    ------
+    InputError
+        If the components differ in length or interval.
+    SolverError
+        If a motion cannot be followed.
+    """
+    azimuths = np.arange(0.0, 360.0, STEP)
+    motions = [turned(*pair, azimuth).scaled(scale) for azimuth in azimuths.tolist()]
+    followed = structure.models(models)
+    found = respond_many(
+        followed, motions, Runs.every(len(followed), len(motions)), release=release, rtol=rtol, only_peaks=True
+    )
+    if found.failed.any():
+        k = int(found.failed.argmax()) % azimuths.size
+        raise SolverError(f"the motion at an azimuth of {azimuths[k]:g} degrees could not be followed")
+    each = [slice(k * azimuths.size, (k + 1) * azimuths.size) for k in range(len(followed))]
+    outcomes = {
+        model.name: found.by_field(lambda values, part=part: values[part])
+        for model, part in zip(followed, each, strict=True)
+    }
+    pga = np.array([motion.pga for motion in motions])
+    return Around((pair[0].name, pair[1].name), scale, azimuths, pga, outcomes)
+
+
+def sectors(azimuths: Reals, flags: NDArray[np.bool_]) -> list[tuple[float, float]]:
+    """The first and the last azimuth of each row of neighbours on the circle that are flagged."""
+    if flags.all():
+        return [(float(azimuths[0]), float(azimuths[-1]))]
+    begins = np.flatnonzero(flags & ~np.roll(flags, 1))
+    ends = np.flatnonzero(flags & ~np.roll(flags, -1))
+    if begins.size and ends[0] < begins[0]:
+        ends = np.roll(ends, -1)
+    return [(float(azimuths[a]), float(azimuths[b])) for a, b in zip(begins, ends, strict=True)]

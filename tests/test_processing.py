@@ -1,0 +1,252 @@
+"""Corrections of motions: each against scipy's own, in the order they are given, and said."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from scipy import signal
+
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.doubts import doubts
+from rocking_cli.excitation.measures import measure
+from rocking_cli.processing.reading import Reading
+from rocking_cli.processing.steps import STEPS, parse_step, parse_steps, process
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+ACCEL = EXAMPLES / "accel.csv"
+
+
+@pytest.fixture(scope="module")
+def motion():
+    rng = np.random.default_rng(3)
+    t = 0.01 * np.arange(1501)
+    samples = np.exp(-(((t - 6) / 3) ** 2)) * rng.normal(size=t.size) + 0.05 * t + 0.2
+    return GroundMotion("noise", 0.01, samples)
+
+
+def done(motion, *steps):
+    return process(motion, parse_steps(steps)).acceleration
+
+
+class TestAgainstScipy:
+    def test_filters(self, motion):
+        for name, f in (("highpass", 0.3), ("lowpass", 20.0)):
+            sections = signal.butter(4, f, name, fs=100, output="sos")
+            assert done(motion, f"{name} {f}") == pytest.approx(signal.sosfiltfilt(sections, motion.acceleration))
+
+    def test_half_of_the_amplitude_is_left_at_the_corner(self):
+        t = 0.005 * np.arange(20_001)
+        wave = GroundMotion("wave", 0.005, np.sin(2 * np.pi * 2 * t))
+        middle = slice(6000, 14000)
+        for name in ("highpass", "lowpass"):
+            assert done(wave, f"{name} 2")[middle] == pytest.approx(wave.acceleration[middle] / 2, abs=1e-6)
+
+    def test_baselines(self, motion):
+        a = motion.acceleration
+        assert done(motion, "baseline constant") == pytest.approx(signal.detrend(a, type="constant"), abs=1e-12)
+        assert done(motion, "baseline linear") == pytest.approx(signal.detrend(a, type="linear"), abs=1e-12)
+        t = motion.time
+        left = done(motion, "baseline quadratic")
+        for power in range(3):
+            assert np.sum(left * t**power) == pytest.approx(0, abs=1e-9 * np.sum(np.abs(a) * t**power))
+        parabola = GroundMotion("p", 0.01, 3 + 2 * t - 0.7 * t**2)
+        assert done(parabola, "baseline quadratic") == pytest.approx(0 * t, abs=1e-9)
+
+    def test_taper(self, motion):
+        n = motion.npts
+        assert done(motion, "taper 0.05") == pytest.approx(motion.acceleration * signal.windows.tukey(n, 0.1))
+        shape = done(GroundMotion("one", 0.01, np.ones(1001)), {"taper": "5%"})
+        assert shape[25] == pytest.approx(0.5) and shape[0] == 0 and (shape[51:950] == 1).all()
+
+    def test_coarser_samples(self, motion):
+        found = process(motion, parse_steps(["resample 0.025"]))
+        wanted = signal.resample_poly(motion.acceleration, 2, 5, padtype="line")
+        assert found.dt == 0.025 and found.npts == 601
+        assert found.acceleration == pytest.approx(wanted[:601])
+
+    def test_coarser_samples_hold_nothing_folded_back(self):
+        t = 0.005 * np.arange(8001)
+        slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 70 * t)
+        found = process(GroundMotion("two", 0.005, slow + fast), parse_steps(["resample 0.01"]))
+        assert found.acceleration[200:-200] == pytest.approx(slow[::2][200:-200], abs=0.01)
+
+
+class TestShape:
+    def test_finer_samples_lie_on_the_same_lines(self, motion):
+        found = process(motion, parse_steps(["resample 0.0025"]))
+        assert found.acceleration[::4] == pytest.approx(motion.acceleration)
+        assert found.velocity[::4] == pytest.approx(motion.velocity)
+        assert measure(found).pgd == pytest.approx(measure(motion).pgd)
+
+    def test_the_same_interval_changes_nothing(self, motion):
+        assert done(motion, "resample 0.01") is motion.acceleration
+
+    def test_an_interval_that_is_no_simple_fraction(self, motion):
+        found = process(motion, parse_steps(["resample 0.013"]))
+        assert found.dt == pytest.approx(0.013, rel=1e-7)
+        assert found.duration <= motion.duration * (1 + 1e-9) < found.duration + found.dt
+
+    def test_trim_takes_what_is_between(self, motion):
+        found = process(motion, parse_steps([{"trim": "2:12.5"}]))
+        assert (found.acceleration == motion.acceleration[200:1251]).all()
+        assert (done(motion, "trim 2:") == motion.acceleration[200:]).all()
+        assert (done(motion, {"trim": ":3 s"}) == motion.acceleration[:301]).all()
+        assert (done(motion, {"trim": [2, 12.5]}) == found.acceleration).all()
+
+    def test_the_order_is_the_one_given(self, motion):
+        one, other = ["trim 5:8", "baseline linear"], ["baseline linear", "trim 5:8"]
+        a, b = done(motion, *one), done(motion, *other)
+        assert np.abs(a - b).max() > 1e-3
+        assert process(motion, parse_steps(one)).processing == tuple(one)
+
+    def test_the_vertical_component_goes_through_the_same(self, motion):
+        from dataclasses import replace
+
+        both = replace(motion, vertical=motion.scaled(0.5))
+        found = process(both, parse_steps(["trim 2:8", "lowpass 10"]))
+        assert found.vertical.acceleration == pytest.approx(found.acceleration / 2)
+
+    def test_nothing_is_corrected_unless_asked(self, motion):
+        assert process(motion, ()) is motion
+        assert Reading().read(ACCEL).processing == ()
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(
+        ("step", "words"),
+        [
+            ("lowpass 50", "50 Hz is not below 50 Hz"),
+            ("highpass 80", "is not below 50 Hz"),
+            ("highpass 0.05", "does not hold one period of 0.05 Hz"),
+            ("trim 2:20", "ends at 15 s, before 20 s"),
+            ("trim 16:", "fewer than two samples"),
+            ("trim 3:3.001", "fewer than two samples"),
+            ("resample 20", "fewer than two samples"),
+            ("resample 1e-9", "less than a 1000th"),
+        ],
+    )
+    def test_what_the_record_does_not_allow(self, motion, step, words):
+        with pytest.raises(InputError, match=words):
+            done(motion, step)
+
+    @pytest.mark.parametrize(
+        ("name", "given", "words"),
+        [
+            ("baseline", "cubic", "none of constant, linear, quadratic"),
+            ("highpass", "-1", "is not a frequency in Hz above zero"),
+            ("highpass", "0", "is not a frequency"),
+            ("lowpass", "fast", "is not a frequency"),
+            ("taper", "0.7", "more than there is"),
+            ("trim", "2", "is no.* range of times"),
+            ("trim", "5:2", "ends before it begins"),
+            ("trim", ":", "range of times"),
+            ("resample", "0.01 kg", "is a mass"),
+            ("resample", True, "cannot be True"),
+            ("factor", "0", "is not a factor"),
+            ("hipass", "1", "no step of processing"),
+        ],
+    )
+    def test_what_no_step_takes(self, name, given, words):
+        with pytest.raises(InputError, match=words.replace("is no.*", "is not a")):
+            parse_step(name, given)
+
+    def test_too_few_samples(self):
+        with pytest.raises(InputError, match="12 samples are too few for a filter"):
+            done(GroundMotion("short", 0.01, np.ones(12)), "lowpass 20")
+        with pytest.raises(InputError, match="nothing would be left"):
+            done(GroundMotion("short", 0.01, np.array([0.0, 1.0, 0.0])), "baseline quadratic")
+
+
+def test_every_step_says_itself_as_it_is_asked_for():
+    for name, given in (
+        ("baseline", "linear"), ("highpass", "0.1 Hz"), ("lowpass", 25), ("taper", "5 %".replace(" ", "")),
+        ("trim", "2:20"), ("resample", "5 ms"), ("factor", 1.25),
+    ):  # fmt: skip
+        step = parse_step(name, given)
+        assert parse_steps([str(step)]) == (step,)
+    assert len(STEPS) == 7
+
+
+def test_doubts_of_samples_are_those_of_the_record_as_read():
+    samples = np.clip(np.sin(np.arange(800) / 20), -0.6, 0.6)
+    clipped = GroundMotion("clipped", 0.01, samples)
+    kinds = [each.kind for each in doubts(clipped, measure(clipped))]
+    filtered = process(clipped, parse_steps(["lowpass 20"]))
+    assert "clipped" in kinds
+    assert [each.kind for each in doubts(filtered, measure(filtered))].count("clipped") == kinds.count("clipped")
+
+
+class TestCommands:
+    def test_they_are_made_in_the_order_of_the_command_line(self):
+        one = run_json("record", ACCEL, "--lowpass", "10", "--trim", "1:9", "--taper", "0.1")
+        other = run_json("record", ACCEL, "--taper", "0.1", "--trim", "1:9", "--lowpass", "10")
+        assert one["processing"] == ["lowpass 10", "trim 1:9", "taper 0.1"]
+        assert other["processing"] == one["processing"][::-1]
+        assert one["pgv"] != other["pgv"]
+
+    def test_every_command_says_what_was_done(self):
+        asked = ("--baseline", "linear", "--lowpass", "20")
+        said = ["baseline linear", "lowpass 20"]
+        assert run_json("respond", "--neighbours", 0, "--record", ACCEL, *asked)["record"]["processing"] == said
+        assert "processed: baseline linear, lowpass 20" in run("respond", "--record", ACCEL, *asked).stderr
+
+    def test_a_clean_file_says_it_and_is_read_back(self, tmp_path):
+        run("record", ACCEL, "--highpass", "0.2", "-o", tmp_path / "clean.csv")
+        text = (tmp_path / "clean.csv").read_text()
+        assert text.startswith("# processed: highpass 0.2\nt [s],a [m/s2]\n")
+        again = run_json("record", tmp_path / "clean.csv")
+        assert again["pga"] == run_json("record", ACCEL, "--highpass", "0.2")["pga"]
+        run("record", ACCEL, "-o", tmp_path)  # it is known as one of its own, and may be replaced
+        (tmp_path / "accel.csv").write_text(text)
+        run("record", ACCEL, "-o", tmp_path)
+
+    @pytest.mark.parametrize(
+        ("options", "words"),
+        [
+            (("--highpass", "1", "--highpass", "2"), "is given twice"),
+            (("--lowpass", "80"), "--lowpass: 80 Hz is not below 50 Hz"),
+            (("--lowpass", "x"), "is not a frequency in Hz"),
+            (("--gain", "3"), "is a gain without a unit"),
+            (("--azimuth", "30"), "give --with FILE"),
+            (("--floor", "T1=0.4"), "z and gamma, or n"),
+        ],
+    )
+    def test_wrong_options(self, options, words):
+        assert words in run("record", ACCEL, *options, code=2).stderr
+
+    def test_a_pulse_has_none(self):
+        result = run("respond", "--pulse", "sine:0.5g:1s", "--lowpass", "5", code=2)
+        assert "--lowpass changes a record: give --record FILE" in result.stderr
+
+    def test_a_list_may_repeat_a_step(self, tmp_path):
+        (tmp_path / "set.yaml").write_text(
+            f"records:\n  - file: {ACCEL.as_posix()}\n    factor: 1.5\n    processing:\n"
+            "      - highpass: 0.2\n      - lowpass: 20\n      - highpass: 0.3\n"
+        )
+        data = run_json("respond", "--neighbours", 0, "--record", tmp_path / "set.yaml")
+        assert data["record"]["processing"] == ["highpass 0.2", "lowpass 20", "highpass 0.3", "factor 1.5"]
+        plain = run_json("respond", "--neighbours", 0, "--record", ACCEL, "--highpass", 0.2, "--lowpass", 20)
+        assert data["record"]["pga"] == pytest.approx(1.5 * plain["record"]["pga"], rel=0.05)
+
+    def test_mistakes_in_a_list_have_their_lines(self, tmp_path):
+        (tmp_path / "set.yaml").write_text(
+            "records:\n  - file: none.csv\n  - {file: accel.csv, processing: [{hipass: 1}]}\n  - {gain: 3 kg/V}\n"
+        )
+        said = run("respond", "--record", tmp_path / "set.yaml", code=2).stderr
+        assert "set.yaml:3" in said and "did you mean highpass?" in said
+        assert "set.yaml:4" in said and "'kg' is no unit" in said
+
+
+def test_a_report_says_what_was_done_and_how_to_do_it_again(tmp_path):
+    out = tmp_path / "r.html"
+    result = run(
+        "report", "--neighbours", 1, "--record", ACCEL, "--lowpass", 15, "--baseline", "linear", "-o", out, "--json"
+    )
+    data = json.loads(result.stdout)
+    assert data["motions"][0]["processing"] == ["lowpass 15", "baseline linear"]
+    assert "--lowpass 15 --baseline linear" in data["command"]
+    assert "lowpass 15" in out.read_text(encoding="utf-8")
