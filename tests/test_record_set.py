@@ -133,6 +133,18 @@ def test_searches_come_close_to_the_best_of_all(seed, monkeypatch):
     assert rms(searched) <= 1.05 * rms(best)
 
 
+def test_large_sets_are_not_all_tried(monkeypatch):
+    groups = np.arange(602)
+    assert subsets.count_sets(groups, 600) == 180901
+    assert not subsets.all_tried(groups, 600)
+    assert subsets.all_tried(np.arange(20), 7)
+    monkeypatch.setattr(subsets, "BLOCK", 7)  # in small blocks the same set is found
+    found, wanted = made(9, 2, 0.3), Wanted(3, BAND)
+    small = choose(found, wanted).chosen.tolist()
+    monkeypatch.undo()
+    assert small == choose(found, wanted).chosen.tolist()
+
+
 def test_sets_are_counted_as_they_are_tried():
     groups = np.array([0, 0, 1, 2, 2, 2, 3])
     tried = [members for members in combinations(range(7), 3) if len({groups[k] for k in members}) == 3]

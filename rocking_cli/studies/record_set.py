@@ -271,10 +271,8 @@ def choose(
     best = subsets.best(problem, wanted.seed, begin(problem.steps))
     chosen = usable[best.members]
     silent = sum(name is None for name in names) if wanted.one_per != "none" else 0
-    sets = subsets.count_sets(groups, wanted.count)
-    return RecordSet(
-        wanted, found, chosen, own[chosen] * best.common, left_out, silent, sets, sets <= subsets.MOST_TRIED
-    )
+    sets, exact = subsets.count_sets(groups, wanted.count), subsets.all_tried(groups, wanted.count)
+    return RecordSet(wanted, found, chosen, own[chosen] * best.common, left_out, silent, sets, exact)
 
 
 def own_factors(found: Candidates, wanted: Wanted) -> tuple[Reals, dict[int, str]]:

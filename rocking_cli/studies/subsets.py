@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 Reals = NDArray[np.float64]
 Integers = NDArray[np.intp]
 MOST_TRIED = 200_000  # sets
-BLOCK = 4096  # sets judged at once
+MOST_MEMBERS = 3_000_000  # of all these sets together
+BLOCK = 30_000  # members of sets that are judged at once
 STARTS = 20  # of the searches
 SAME = 1e-9  # differences, in logarithms, that are rounding: what comes first goes before
 INSIDE = 1e-12  # of a mean at a limit, so that rounding does not take it over
@@ -58,8 +59,7 @@ class Problem:
     @property
     def steps(self) -> int:
         """How much work there is, as `best` tells it."""
-        sets = count_sets(self.groups, self.count)
-        return sets if sets <= MOST_TRIED else STARTS
+        return count_sets(self.groups, self.count) if all_tried(self.groups, self.count) else STARTS
 
 
 class Judged(NamedTuple):
@@ -97,6 +97,12 @@ def count_sets(groups: Integers, count: int) -> int:
     return found[count]
 
 
+def all_tried(groups: Integers, count: int) -> bool:
+    """Whether so few sets there are, and so small ones, that `best` tries all."""
+    sets = count_sets(groups, count)
+    return sets <= MOST_TRIED and sets * count <= MOST_MEMBERS
+
+
 def best(problem: Problem, seed: int, progress: Callable[[int], object] = lambda done: None) -> Best:
     """The best set of all, or the best that searches find.
 
@@ -109,7 +115,7 @@ def best(problem: Problem, seed: int, progress: Callable[[int], object] = lambda
     progress : callable, optional
         Told how many more of `steps` are done.
     """
-    if count_sets(problem.groups, problem.count) <= MOST_TRIED:
+    if all_tried(problem.groups, problem.count):
         return _best_of_all(problem, progress)
     found: Best | None = None
     rng = np.random.default_rng(seed)
@@ -166,7 +172,7 @@ def _judge_members(problem: Problem, members: Integers) -> Judged:
 def _best_of_all(problem: Problem, progress: Callable[[int], object]) -> Best:
     blocks, judged = [], []
     sets = _all_sets(problem)
-    while block := list(islice(sets, BLOCK)):
+    while block := list(islice(sets, max(BLOCK // problem.count, 1))):
         members = np.sort(np.array(block, dtype=np.intp), axis=1)
         blocks.append(members)
         judged.append(_judge_members(problem, members))
