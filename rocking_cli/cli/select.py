@@ -176,6 +176,8 @@ def _without(target: Path, listed: list[Listed]) -> list[Listed]:
     """The records without the target, which a pattern may stand for too."""
     kept = [each for each in listed if not (each.path.exists() and target.exists() and each.path.samefile(target))]
     if len(kept) < len(listed):
+        if not kept:
+            raise click.UsageError(f"Nothing to choose from: {target} is the target, and no record is given beside it.")
         terminal.note(f"{target} is the target, and not taken for a record")
     return kept
 
