@@ -38,6 +38,7 @@ _HOME = {
         "spectrum",
         "write_report",
     ],
+    "api.motions": ["correct", "on_floor", "respond_around"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
     "core.registry": ["Registry"],
     "dynamics.batch": ["Runs", "respond_many"],
@@ -54,6 +55,8 @@ _HOME = {
     "excitation.pulse_fit": ["PulseFit", "fit_pulse"],
     "excitation.pulses": ["Pulse", "parse_pulse"],
     "excitation.records": ["read_record"],
+    "processing.components": ["turned"],
+    "processing.floor": ["Floor"],
     "structure": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}

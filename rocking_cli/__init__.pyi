@@ -12,6 +12,9 @@ from mechanisms.symmetric_frame import SymmetricFrame as SymmetricFrame
 from mechanisms.wall import Wall as Wall
 from rocking_cli.api.answer import Answer as Answer
 from rocking_cli.api.answer import MappingAnswer as MappingAnswer
+from rocking_cli.api.motions import correct as correct
+from rocking_cli.api.motions import on_floor as on_floor
+from rocking_cli.api.motions import respond_around as respond_around
 from rocking_cli.api.verbs import draw as draw
 from rocking_cli.api.verbs import equiv as equiv
 from rocking_cli.api.verbs import equivalent as equivalent
@@ -59,6 +62,8 @@ from rocking_cli.excitation.pulse_fit import fit_pulse as fit_pulse
 from rocking_cli.excitation.pulses import Pulse as Pulse
 from rocking_cli.excitation.pulses import parse_pulse as parse_pulse
 from rocking_cli.excitation.records import read_record as read_record
+from rocking_cli.processing.components import turned as turned
+from rocking_cli.processing.floor import Floor as Floor
 from rocking_cli.structure import load_structure as load_structure
 
 __version__: str

@@ -230,3 +230,20 @@ class TestAllAround:
         found = all_around(Prepared(Block(width=0.7, height=2.8)), ["nonlinear"], (quake, other), 1.0)
         peaks = found.outcomes["nonlinear"].peak_ratio
         assert peaks[: peaks.size // 2] == pytest.approx(peaks[peaks.size // 2 :], nan_ok=True)
+
+
+def test_in_python(quake, tmp_path):
+    import rocking_cli as rk
+
+    other = rk.correct(quake, "trim 0:6", {"lowpass": 20})
+    assert other.processing == ("trim 0:6", "lowpass 20")
+    assert rk.on_floor(quake, FLOOR).pga == Floor.parse(FLOOR).of(quake).pga
+    found = rk.respond_around(
+        rk.Block(width=0.7, height=2.8), quake, rk.correct(quake, "lowpass 3"), models="nonlinear"
+    )
+    assert list(found.to_dict()["responses"]) == ["nonlinear"]
+    assert found.outcomes["nonlinear"].peak_ratio[0] == pytest.approx(
+        rk.respond(rk.Block(width=0.7, height=2.8), quake, models="nonlinear")["nonlinear"].peak_ratio
+    )
+    found.plot(tmp_path / "around.svg")
+    assert (tmp_path / "around.svg").read_text(encoding="utf-8").startswith("<?xml")

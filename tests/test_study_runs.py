@@ -635,8 +635,8 @@ def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_pa
 def test_structures_of_like_names_have_a_picture_each(tmp_path):
     text = STUDY.replace("name: uncertain", "name: Valley/bridge")
     result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text, 5)), "--plot", "drawn"])
-    assert "wrote 5 pictures" in result.stderr
-    assert len({each.name.lower() for each in (tmp_path / "drawn").iterdir()}) == 5
+    assert "wrote 7 pictures" in result.stderr  # two of them of quantiles
+    assert len({each.name.lower() for each in (tmp_path / "drawn").iterdir()}) == 7
 
 
 def test_intensities_are_those_of_their_definitions():
@@ -724,7 +724,7 @@ def test_the_example_runs_with_pictures_and_tables(tmp_path):
     result = CliRunner().invoke(main, ["fragility", str(study), *where])
     assert result.exit_code == 0, result.stderr
     assert "a year" in result.stdout and "c2" in result.stdout
-    assert len(list((tmp_path / "drawn").glob("*.png"))) == 11
+    assert len(list((tmp_path / "drawn").glob("*.png"))) == 13
     for name in ("runs.csv", "runs.parquet"):
         assert CliRunner().invoke(main, ["results", "near.db", "--out", name]).exit_code == 0
     from pyarrow import parquet

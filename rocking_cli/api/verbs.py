@@ -895,9 +895,11 @@ def fragility(
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.hazard import HazardCurve
     from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.studies.fragility.quantiles import all_quantiles
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
     from rocking_cli.views.fragility import limit_name, view
+    from rocking_cli.views.quantiles import with_quantiles
 
     if isinstance(study, Mapping):
         place = Path(store or "study.db")
@@ -916,6 +918,7 @@ def fragility(
         counted = assess.counted(kept, plan, definition, lambda count: None)
         curves, surfaces = assess.fitted(counted, definition, hazard, lambda count: None)
         shown = view(kept, plan, definition, *kept.count(), curves, surfaces)
+        shown = with_quantiles(shown, list(all_quantiles(kept, plan, definition)), in_words=False)
         blocks = list(table.blocks(kept, plan))
 
     def columns() -> Columns:

@@ -11,6 +11,7 @@ import click
 
 from rocking_cli.cli import endings, options, terminal
 from rocking_cli.cli.defaults import from_default
+from rocking_cli.cli.study_output import Shown, show_study
 from rocking_cli.errors import INCOMPLETE
 
 if TYPE_CHECKING:
@@ -54,15 +55,17 @@ class Running:
 @click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
 @click.option("--restart", is_flag=True, help="Begin anew; the present store is kept under another name.")
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@options.nrml
+@options.quantiles
 @options.as_json
 @click.pass_context
-@options.grouped(running=Running)
+@options.grouped(running=Running, shown=Shown)
 def command(
     ctx: click.Context,
     file: str,
     check: bool,
     running: Running,
-    plot: str | None,
+    shown: Shown,
     as_json: bool,
 ) -> None:
     """Run a fragility study, and fit its curves.
@@ -81,8 +84,8 @@ def command(
       rocking results study.db --out runs.csv
     """
     from rocking_cli.cli import structures
-    from rocking_cli.cli.study_output import show_study
     from rocking_cli.io.files import check_writable, folder, keep_apart
+    from rocking_cli.studies.fragility.reached import held
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import load_study
 
@@ -92,16 +95,22 @@ def command(
         first = {sample.structure: sample.mechanism for sample in study.samples if sample.number == 0}
         for each in first.values():
             structures.warn(each)
+        for sentence in held(study):
+            terminal.warning(sentence)
         place = Path(running.store) if running.store is not None else Path(file).with_suffix(".db")
-        keep_apart([("--store" if running.store is not None else "the store beside the study", place)], [file])
+        keep_apart(
+            [("--store" if running.store is not None else "the store beside the study", place), ("--nrml", shown.nrml)],
+            [file],
+        )
         if check:
             complete = _check(study, as_json=as_json)
         else:
             check_writable(place)
-            pictures = folder(plot) if plot is not None else None
+            if shown.plot is not None:
+                folder(shown.plot)
             _bring_up_to_date(study, place, running)
             with Store.reading(place) as kept:
-                complete = show_study(kept, None, pictures, as_json=as_json)
+                complete = show_study(kept, shown, as_json=as_json)
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
         ctx.exit(endings.exit_code(stopped))

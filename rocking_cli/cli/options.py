@@ -91,6 +91,22 @@ def plot(what: str, more: str = "") -> Decorator:
     )
 
 
+nrml: Decorator = click.option(
+    "--nrml",
+    callback=output_path(".xml"),
+    metavar="FILE.xml",
+    shell_complete=complete.files,
+    help="Write the lognormal curves for OpenQuake (NRML 0.5).",
+)
+"""Where fragility curves go that OpenQuake reads: `nrml`."""
+
+
+quantiles: Decorator = click.option(
+    "--quantiles", is_flag=True, help="Show how far structures rock at each intensity: 16, 50 and 84 % of the runs."
+)
+"""Whether quantiles of the peak rotation are shown: `quantiles`."""
+
+
 class Renamed(click.Command):
     """A command some of whose options had other names, which go on working with a word on the new one.
 

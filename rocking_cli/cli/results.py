@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from rocking_cli.cli import options, terminal
+from rocking_cli.cli import complete, options, terminal
+from rocking_cli.cli.study_output import Shown, Tables, show_study
 from rocking_cli.errors import INCOMPLETE
 
 
@@ -15,10 +16,20 @@ from rocking_cli.errors import INCOMPLETE
 )
 @click.argument("file", metavar="STORE.db", type=click.Path())
 @options.out(".csv", ".parquet", what="Write every run (.csv, .parquet).")
+@click.option(
+    "--curves",
+    callback=options.output_path(".csv", ".parquet"),
+    metavar="FILE.csv",
+    shell_complete=complete.files,
+    help="Write the curves, a line for each intensity (.csv, .parquet).  - is standard output.",
+)
+@options.nrml
+@options.quantiles
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.as_json
 @click.pass_context
-def command(ctx: click.Context, file: str, out: Path | None, plot: str | None, as_json: bool) -> None:
+@options.grouped(shown=Shown, tables=Tables)
+def command(ctx: click.Context, file: str, shown: Shown, tables: Tables, as_json: bool) -> None:
     """Fragility curves and runs of a study, from its store.
 
     It needs none of the study's other files, and can look at a study while it runs.
@@ -27,21 +38,23 @@ def command(ctx: click.Context, file: str, out: Path | None, plot: str | None, a
     Example:
       rocking results study.db
       rocking results study.db --out runs.parquet --plot pictures
+      rocking results study.db --curves curves.csv --nrml fragility.xml
     """
-    from rocking_cli.cli.study_output import show_study
     from rocking_cli.io.files import folder, keep_apart
     from rocking_cli.io.tables import check_table
     from rocking_cli.studies.fragility.store import Store
 
-    keep_apart([("--out", out)], [file])
-    check_table(out)
-    pictures = folder(plot) if plot is not None else None
+    keep_apart([("--out", tables.out), ("--curves", tables.curves), ("--nrml", shown.nrml)], [file])
+    check_table(tables.out)
+    check_table(tables.curves)
+    if shown.plot is not None:
+        folder(shown.plot)
     with Store.reading(Path(file)) as store:
         for each in store.doubts():
             terminal.warning(f"{file}: {each}")
         harmed = bool(store.damaged) or store.unreadable
         if harmed:
             terminal.note("`rocking fragility STUDY.yaml` takes over what is sound, and runs the rest again")
-        complete = show_study(store, out, pictures, as_json=as_json) and not harmed
+        complete = show_study(store, shown, tables, as_json=as_json) and not harmed
     if not complete:
         ctx.exit(INCOMPLETE)

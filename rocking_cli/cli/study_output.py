@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,37 +17,68 @@ if TYPE_CHECKING:
     from rocking_cli.studies.fragility.store import Store
 
 
-def show_study(store: Store, out: Path | None, pictures: Path | None, *, as_json: bool) -> bool:
-    """Show what a store holds, write its runs and draw its curves.
+@dataclass(frozen=True)
+class Shown:
+    """How curves are shown besides as a table: drawn in a folder, for OpenQuake, and with quantiles."""
+
+    plot: str | None
+    nrml: Path | None
+    quantiles: bool
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Where the tables of runs and of curves are written."""
+
+    out: Path | None = None
+    curves: Path | None = None
+
+
+def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json: bool) -> bool:
+    """Show what a store holds, write its runs and curves and draw them.
 
     Returns
     -------
     bool
         Whether all records, samples and runs could be used, and all are there.
     """
-    from pydantic import ValidationError
-
-    from rocking_cli.studies.fragility.definition import Definition
+    from rocking_cli.studies.fragility.quantiles import all_quantiles
     from rocking_cli.views.fragility import left_out, view
+    from rocking_cli.views.quantiles import with_quantiles
 
-    plan = store.plan()
-    try:
-        definition = Definition.model_validate(store.fact("definition"))
-    except ValidationError:
-        hint = "`rocking fragility STUDY.yaml` says what, and keeps the runs"
-        raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
+    plan, definition = store.plan(), _definition(store)
     finished, failed = store.count()
     curves, surfaces = _fitted(store, plan, definition)
-    if out is not None:
-        _write(out, store, plan)
-    if pictures is not None:
+    if tables.out is not None:
+        _write(tables.out, store, plan)
+    if tables.curves is not None:
+        _write_curves(tables.curves, curves)
+    asked = shown.quantiles or as_json or shown.plot is not None
+    spread = list(all_quantiles(store, plan, definition)) if asked else []
+    if shown.plot is not None:
         from rocking_cli.cli.study_pictures import draw_all
 
-        draw_all(pictures, store, definition, curves, surfaces)
-    terminal.show(view(store, plan, definition, finished, failed, curves, surfaces), as_json=as_json)
+        draw_all(Path(shown.plot), store, definition, curves, surfaces, spread)
+    result = view(store, plan, definition, finished, failed, curves, surfaces)
+    terminal.show(with_quantiles(result, spread, in_words=shown.quantiles), as_json=as_json)
+    if shown.nrml is not None:  # last: whatever OpenQuake does not take has been shown
+        _write_nrml(shown.nrml, store, str(result.parts[0]), curves)
     if failed:
         terminal.error(f"{failed} runs could not be followed, and are left out of the curves")
     return finished == plan.total and not failed and not left_out(plan)
+
+
+def _definition(store: Store) -> Definition:
+    """What the study of a store asks for."""
+    from pydantic import ValidationError
+
+    from rocking_cli.studies.fragility.definition import Definition
+
+    try:
+        return Definition.model_validate(store.fact("definition"))
+    except ValidationError:
+        hint = "`rocking fragility STUDY.yaml` says what, and keeps the runs"
+        raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
 
 
 def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Fragility], list[Bivariate]]:
@@ -69,3 +102,33 @@ def _write(out: Path, store: Store, plan: Plan) -> None:
     from rocking_cli.studies.fragility.table import blocks
 
     table_files.write(out, blocks(store, plan))
+
+
+def _write_curves(out: Path, curves: Sequence[Fragility]) -> None:
+    from rocking_cli.cli import table_files
+    from rocking_cli.views.fragility import limit_name
+    from rocking_cli.views.fragility_table import blocks
+
+    for each in curves:
+        if each.curve.kind == "none":
+            terminal.warning(
+                f"{each.structure}, {limit_name(each.limit)} over {each.measure}: no curve: {each.curve.why}"
+            )
+    table_files.write(out, blocks(curves))
+
+
+def _write_nrml(out: Path, store: Store, said: str, curves: Sequence[Fragility]) -> None:
+    """Write the curves that OpenQuake takes, and name the others."""
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.studies.fragility.openquake import chosen
+    from rocking_cli.views.nrml import nrml
+
+    model = chosen(curves)
+    for each in model.left_out:
+        terminal.warning(f"not in {out}: {each}")
+    for each in model.doubts:
+        terminal.warning(each)
+    about = f"{said}; rocking-cli {store.fact('versions')['rocking-cli']}, study {store.fact('hash')[:12]}"
+    document = nrml(model, store.fact("name"), about)
+    write_whole(out, lambda stream: stream.write(document))
+    terminal.note(f"wrote {out}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility
     from rocking_cli.studies.fragility.definition import Definition
+    from rocking_cli.studies.fragility.quantiles import Quantiles
     from rocking_cli.studies.fragility.store import Store
 
 
@@ -24,10 +25,11 @@ def draw_all(
     definition: Definition,
     curves: Sequence[Fragility],
     surfaces: Sequence[Bivariate],
+    spread: Sequence[Quantiles],
 ) -> None:
-    """Draw the curves of each structure, the structures beside each other, analyses by increments, and surfaces."""
-    from rocking_cli.cli.pictures import save
+    """Draw the curves of each structure, the structures beside each other, what they are of, and surfaces."""
     from rocking_cli.plotting import fragility as plotting
+    from rocking_cli.plotting.quantiles import draw_quantiles
     from rocking_cli.studies.fragility.intensity import label
     from rocking_cli.views.fragility import limit_name
 
@@ -53,11 +55,20 @@ def draw_all(
     if definition.method == "ida":
         for structure in structures:
             add(f"{structure} ida", _increments(store, structure, definition))
+    for found in spread:
+        add(f"{found.structure} {found.measure} quantiles", draw_quantiles(found, label(found.measure)))
     for each in surfaces:
         name = f"{each.structure}, {limit_name(each.limit)}"
         one, other = each.measures
         figure = plotting.draw_surface(each, (label(one), label(other)), name)
         add(f"{name} {one} {other}", figure)
+    _save(folder, drawn)
+
+
+def _save(folder: Path, drawn: Mapping[str, Figure]) -> None:
+    """Write pictures by their names."""
+    from rocking_cli.cli.pictures import save
+
     with terminal.progress(len(drawn), "pictures") as advance:
         for file, figure in drawn.items():
             save(folder / file, figure)

@@ -76,7 +76,7 @@ class Watched:
     @cached_property
     def points(self) -> Mapping[str, Spot]:
         """The top, and where loads and ties are, by their names."""
-        return dict([_top(self.mechanism), *_where_it_bends(self.mechanism), *_hung(self.mechanism)])
+        return dict([top(self.mechanism), *_where_it_bends(self.mechanism), *_hung(self.mechanism)])
 
     @cached_property
     def ties(self) -> Sequence[Spring | SpringBed]:
@@ -218,7 +218,7 @@ def _landing(mechanism: Mechanism, direction: Direction) -> float:
     return max(abs(complex(follow(foot).dz[0])) for foot in feet)
 
 
-def _top(mechanism: Mechanism) -> tuple[str, Spot]:
+def top(mechanism: Mechanism) -> tuple[str, Spot]:
     """The middle of the highest corners of the highest body; its centroid, called so, where no shape is known."""
     sketch = mechanism.sketch()
     corners = {}
@@ -235,11 +235,15 @@ def _top(mechanism: Mechanism) -> tuple[str, Spot]:
 
 def _where_it_bends(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:
     """The hinges of a structure whose top is held sideways: there it moves most."""
-    joints = mechanism.joints(mechanism.directions[0])
-    if any(joint.is_guide for joint in joints):
-        for joint in joints:
+    if is_held(mechanism):
+        for joint in mechanism.joints(mechanism.directions[0]):
             if len(joint.bodies) == 2:
                 yield f"joint {joint.letter}", Spot(joint.bodies[0], joint.point)
+
+
+def is_held(mechanism: Mechanism) -> bool:
+    """Whether the top of a structure is held sideways, so that it moves most at a hinge below."""
+    return any(joint.is_guide for joint in mechanism.joints(mechanism.directions[0]))
 
 
 def _hung(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:

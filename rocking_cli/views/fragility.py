@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
+from math import isinf
 from typing import TYPE_CHECKING, Any
 
+from rocking_cli.studies.fragility.displacements import kept, metres
 from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.views.view import ABSENT, Table, View, number
 
@@ -55,6 +57,22 @@ def without_block(plan: Plan) -> list[str]:
     ]
 
 
+def out_of_reach(store: Store, plan: Plan, definition: Definition) -> list[str]:
+    """A sentence on each structure whose top does not move as far as a limit state says, before it overturns."""
+    found: dict[tuple[str, str], list[bool]] = {}
+    for limit, table in kept(store.fact, definition.limit_states).items():
+        for trial, pair in zip(plan.trials, table.tolist(), strict=True):
+            if trial.reason is None:
+                found.setdefault((trial.structure, limit), []).append(all(map(isinf, pair)))
+    return [
+        f"{structure}: its top never moves by {limit}"
+        + ("" if all(never) else f" in {sum(never)} of {len(never)} samples")
+        + ", however far it turns: there this limit is exceeded by overturning alone."
+        for (structure, limit), never in found.items()
+        if any(never)
+    ]
+
+
 def view(
     store: Store,
     plan: Plan,
@@ -93,7 +111,7 @@ def view(
     for structure, measures in dict.fromkeys((each.structure, each.measures) for each in surfaces):
         those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
         parts += _surfaces(structure, measures, those, confidence)
-    parts += without_block(plan)
+    parts += [*without_block(plan), *out_of_reach(store, plan, definition)]
     data = {
         "study": name,
         "store": str(store.path),
@@ -106,6 +124,7 @@ def view(
         "failed": failed,
         "left_out": left_out(plan),
         "without_block": without_block(plan),
+        "out_of_reach": out_of_reach(store, plan, definition),
         "records": [asdict(each) for each in plan.records],
         "curves": [_curve_data(each) for each in curves],
         "surfaces": [_surface_data(each) for each in surfaces],
@@ -176,7 +195,9 @@ def _in_years(rate: Rate | None) -> str:
 
 def limit_name(limit: Limit) -> str:
     """A limit state as people read it."""
-    return limit if isinstance(limit, str) else f"> {limit:g} phi_cr"
+    if isinstance(limit, float):
+        return f"> {limit:g} phi_cr"
+    return limit if metres(limit) is None else f"top > {limit}"
 
 
 def _estimate(estimate: Estimate | None) -> str:

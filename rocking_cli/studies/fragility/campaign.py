@@ -15,8 +15,10 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
+from rocking_cli.studies.fragility.displacements import FACT, asked_for
 from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
+from rocking_cli.studies.fragility.reached import rotations
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
@@ -86,9 +88,11 @@ def prepare(study: Study, store: Store, examined: Examined | None = None) -> Pre
     }
     if known is None:
         _refuse_useless(plan)
+        asked |= _displacements(study, plan, {})
         store.begin(plan, {**facts, **asked, "libraries": libraries()})
     else:
         _refuse_changes(store, facts, known, plan)
+        asked |= _displacements(study, plan, store.facts().get(FACT, {}))
         for k in mended:
             store.replace_record(k, records[k])
         store.note(asked)
@@ -209,6 +213,12 @@ def _hazard(study: Study) -> list[list[float]] | None:
     if study.hazard is None:
         return None
     return [list(map(float, study.hazard.intensity)), list(map(float, study.hazard.annual_rate))]
+
+
+def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:
+    """The rotations that limits on the displacement of the top stand for, as a fact; none where there is no such."""
+    limits = asked_for(study.definition.limit_states)
+    return {FACT: rotations(study.samples, plan.trials, limits, known)} if limits else {}
 
 
 def _refuse_useless(plan: Plan) -> None:

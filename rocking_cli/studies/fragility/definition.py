@@ -18,6 +18,7 @@ from rocking_cli.processing.entry import Entry, FloorText, Steps
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
+from rocking_cli.studies.fragility.displacements import is_quantity, spelt
 from rocking_cli.studies.fragility.distributions import Distribution, Positive
 from rocking_cli.studies.fragility.hazard import wrong_points
 from rocking_cli.studies.fragility.intensity import MEASURES, PGA
@@ -39,19 +40,23 @@ def _measure(value: object) -> object:
 
 
 def _limit(value: object) -> object:
-    """A limit state: a word, or a ratio of rotations."""
+    """A limit state: a word, a ratio of rotations, or a displacement of the top, in mm."""
     if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < float("inf"):
         return float(value)
     if value in (UPLIFT, OVERTURNING, SLIDING):
         return value
-    raise ValueError(f"must be uplift, overturning, sliding or a positive number, got {value!r}")
+    if isinstance(value, str) and is_quantity(value):
+        return spelt(value)
+    known = "uplift, overturning, sliding, a positive number or a displacement such as 25 mm"
+    raise ValueError(f"must be {known}, got {value!r}")
 
 
 def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
-    """The entries of a list that are right by themselves, measures in their own spelling."""
+    """The entries of a list that are right by themselves, measures and limit states in their own spelling."""
     values = given.get(name)
     entries = enumerate(values if isinstance(values, list) else [])
-    return [_measure(each) for k, each in entries if sound(name, k)]
+    own = _limit if name == "limit_states" else _measure
+    return [own(each) for k, each in entries if sound(name, k)]
 
 
 def _twice(given: dict[str, Any], name: str, sound: Sound) -> Iterator[tuple[Place, str]]:

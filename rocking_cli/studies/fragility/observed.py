@@ -127,6 +127,13 @@ class Observations:
         tenth = np.searchsorted(place, place) * GROUPS // place.size  # one intensity stays together
         return np.unique(tenth, return_inverse=True)[1].astype(np.int64)
 
+    def group_of(self, x: Reals, record: Integers, level: Integers | None = None) -> Integers:
+        """The group of each of the runs that were counted, by what was given for them: see `of`."""
+        place = np.searchsorted(self.x, one_of_each(x if level is None else _of_levels(x, level)))
+        who = np.unique(record, return_inverse=True)[1]
+        cells = self.counts.term * self.records + self.counts.record  # growing
+        return np.asarray(self.group[np.searchsorted(cells, place * self.records + who)])
+
     def parts(self, confidence: float) -> Parts:
         """The part of the runs that exceeds, in each group.
 

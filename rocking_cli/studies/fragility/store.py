@@ -161,11 +161,15 @@ COLUMNS = tuple(each.name for each in fields(Rows) if each.name != SLIDE)
 
 @dataclass(frozen=True, eq=False)
 class Endings:
-    """What fragility asks of finished runs, one a place: columns of `Rows`, and whether they uplift and slide."""
+    """What fragility asks of finished runs, one a place: columns of `Rows`, and whether they uplift and slide.
+
+    The largest rotations, shape (n, 2), stand as a pair, positive and negative.
+    """
 
     id: Integers
     outcome: Integers
     peak_ratio: Reals
+    peaks: Reals
     uplifts: NDArray[np.bool_]
     slides: NDArray[np.bool_]
 
@@ -313,7 +317,7 @@ class Store:
 
     def _rebuild(self) -> None:
         """Take the sound runs over into a new store that takes the place of this one."""
-        plan, facts = self.plan(), self._facts()
+        plan, facts = self.plan(), self.facts()
         for each in self.doubts():
             self._say(f"{self.path}: {each}")
         old = Store(self.path, self._connection)
@@ -418,7 +422,8 @@ class Store:
             found.update(repr(self._connection.execute(query).fetchall()).encode())
         return found.hexdigest()
 
-    def _facts(self) -> dict[str, Any]:
+    def facts(self) -> dict[str, Any]:
+        """All that was kept by name."""
         rows = self._connection.execute("SELECT key, value FROM study WHERE key NOT IN (?, ?)", (SEAL, AT_WORK))
         return {key: json.loads(value) for key, value in rows}
 
@@ -437,7 +442,7 @@ class Store:
                 if found is None or found[0] != self._digest():
                     raise damaged(self.path, "what its runs are runs of does not agree with its checksum")
             try:
-                self._salt = _salt(self._facts()["hash"])
+                self._salt = _salt(self.facts()["hash"])
                 self.columns = _columns(self.fact("description"))
                 Definition.model_validate(self.fact("definition"))
                 plan = self.plan()
@@ -568,7 +573,10 @@ class Store:
             Called with how many numbers have been looked at since the last call.
         """
         slides = SLIDE in self.columns
-        names = ("id", "outcome", "peak_ratio", "uplift_time", *([SLIDE] if slides else []))
+        names = (
+            "id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time",
+            *([SLIDE] if slides else []),
+        )  # fmt: skip
         query = f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?"
         for start in range(first, stop, READ):
             end = min(start + READ, stop)
@@ -578,9 +586,9 @@ class Store:
             else:  # all have been held against their checksums
                 found = self._connection.execute(query, (start, end)).fetchall()
                 table = np.array(found, dtype=np.float64).reshape(-1, len(names)).T
-            whole, happens = table[:2].astype(np.int64), np.isfinite(table[3:])
+            whole, happens = table[:2].astype(np.int64), np.isfinite(table[5:])
             slide = happens[1] if slides else np.zeros(happens.shape[1], dtype=bool)
-            yield Endings(whole[0], whole[1], table[2], happens[0], slide)
+            yield Endings(whole[0], whole[1], table[2], table[3:5].T, happens[0], slide)
             counted(end - start)
 
     def _blocks(self, first: int, stop: int) -> Iterator[Rows]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, Limit
+from rocking_cli.studies.fragility.displacements import kept
 from rocking_cli.studies.fragility.intensity import intensity, of_the_motion, proportional
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
@@ -175,6 +176,7 @@ def count(
         Told how far it is.
     """
     samples = samples_of(plan, structure)
+    reach = {limit: table[samples.start : samples.stop] for limit, table in kept(store.fact, limits).items()}
     _, records, etas, levels, polarities = plan.shape
     apart = any(_differs_between_samples(plan, samples, measure) for measure in measures)
     shape = (len(samples) if apart else 1, records, levels)
@@ -194,18 +196,20 @@ def count(
             there.ravel()[found.id - start] = True
             ladder = np.ravel_multi_index((sample, record, eta, polarity), rungs)
         for limit in limits:
-            beyond = exceeds(found, limit)
+            beyond = exceeds(found, limit, reach[limit][sample] if limit in reach else None)
             _add(exceeding[limit], cell[beyond])
             if ladders:
                 np.minimum.at(first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
     return Tally(plan, samples, runs, exceeding, Ladders(first, there) if ladders else None)
 
 
-def exceeds(found: Endings, limit: Limit) -> Bools:
-    """Which runs exceed a limit state."""
+def exceeds(found: Endings, limit: Limit, reach: Reals | None = None) -> Bools:
+    """Which runs exceed a limit state; of a displacement `reach` has the rotations of each run, shape (n, 2)."""
     overturned: Bools = found.outcome != STANDS
     if limit == SLIDING:
         return found.slides
+    if reach is not None:
+        return np.asarray(overturned | (found.peaks > reach).any(axis=1))  # NaN, where it overturned, exceeds nothing
     if isinstance(limit, str):
         return overturned if limit == OVERTURNING else found.uplifts
     with np.errstate(invalid="ignore"):
@@ -215,18 +219,25 @@ def exceeds(found: Endings, limit: Limit) -> Bools:
 
 def peaks(store: Store, plan: Plan, structure: str) -> Reals:
     """Peak phi/phi_cr of each ladder that is complete, shape (m, levels); NaN where it overturns."""
+    table = endings_of(store, plan, structure)
+    ladders = np.moveaxis(table, 3, -1).reshape(-1, table.shape[3])
+    complete = ladders[~np.isnan(ladders).any(axis=1)]
+    return np.where(np.isinf(complete), np.nan, complete)
+
+
+def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
+    """How the runs of a structure end, shape (samples, records, etas, levels, polarities).
+
+    The peak phi/phi_cr; 0 without uplift, infinite where it overturns, NaN where no run is that could be followed.
+    """
     samples = samples_of(plan, structure)
-    _, records, etas, levels, polarities = plan.shape
-    each = records * plan.block
-    table = np.full((len(samples), records, etas, levels, polarities), np.nan)
-    there = np.zeros(table.shape, dtype=bool)
-    for found in store.endings(samples.start * each, samples.stop * each):
+    table = np.full((len(samples), *plan.shape[1:]), np.nan)
+    start = samples.start * len(plan.records) * plan.block
+    for found in store.endings(start, start + table.size):
         found = found.select(found.outcome != FAILED)
-        place = found.id - samples.start * each
-        table.ravel()[place] = np.where(found.outcome == STANDS, found.peak_ratio, np.nan)
-        there.ravel()[place] = True
-    table, there = (np.moveaxis(of, 3, -1).reshape(-1, levels) for of in (table, there))
-    return np.asarray(table[there.all(axis=1)])
+        rocks = np.where(found.uplifts, np.maximum(found.peak_ratio, np.finfo(np.float64).tiny), 0.0)
+        table.ravel()[found.id - start] = np.where(found.outcome == STANDS, rocks, np.inf)
+    return table
 
 
 def _differs_between_samples(plan: Plan, samples: range, measure: str) -> bool:

@@ -1,0 +1,100 @@
+"""How far a structure rocks over the intensity, as quantiles, and what share of the runs has none."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import PercentFormatter
+from numpy.typing import NDArray
+
+from rocking_cli import names
+from rocking_cli.plotting import style
+from rocking_cli.studies.fragility.quantiles import Quantiles
+
+Reals = NDArray[np.float64]
+WIDEST = 30.0  # ratio of the ends of an axis from which on it is logarithmic
+SHADED = 0.16  # how dark the shade from the lowest quantile to the highest is
+HIGHEST = 0.85  # where in the band of overturning the lines end
+ORDER = (names.NO_UPLIFT, names.ROCKS, names.OVERTURNS)
+FALLEN = "#c46a1b"  # light enough for its line, and darker in grey than those that rock
+
+
+def draw_quantiles(found: Quantiles, label: str) -> Figure:
+    """Draw the quantiles of the peak rotation, and below them the shares that do not uplift, rock, and overturn.
+
+    Parameters
+    ----------
+    found : Quantiles
+        Of one structure over one measure.
+    label : str
+        The measure, with its unit in brackets.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Marked, over a shade: of the runs that rock and stand. Black: of all runs; such a line ends in the band of
+        overturning.
+    """
+    figure = style.new_figure(5.2)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))
+    style.heading(above, f"{found.structure}: how far it rocks")
+    x = np.array([each.x for each in found.groups])
+    handles = _peaks(above, x, found) + _shares(below, x, found)
+    if x[-1] > WIDEST * x[0]:
+        below.set_xscale("log")
+        style.plain_numbers(below.xaxis)
+    else:
+        below.set_xlim(0.0, 1.03 * x[-1])
+    below.set_xlabel(label + ("" if found.stripes else ", means of tenths of the runs"), fontsize=style.LABEL)
+    for axes in (above, below):
+        style.tidy(axes)
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=style.TICK, frameon=False)
+    return figure
+
+
+def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
+    """The quantiles of those that rock and stand, and of all."""
+    rocking, every = (np.array([getattr(each, of) for each in found.groups]).T for of in ("rocking", "every"))
+    largest = np.concatenate([rocking[np.isfinite(rocking)], every[np.isfinite(every)], [0.0]]).max()
+    falls = bool(np.isinf(every).any())
+    floor = 1.06 * max(1.0, largest) if falls or largest > 0.5 else 1.15 * max(largest, 1e-3)
+    top = 1.12 * floor if falls else floor
+    color = style.distinct(2)["color"]
+    shade = axes.fill_between(x, rocking[0], rocking[2], color=color, alpha=SHADED, linewidth=0.0)
+    shade.set_label("rock and stand, 16 to 84 %")
+    handles: list[Any] = [shade]
+    handles += axes.plot(x, rocking[1], color=color, linewidth=style.BOLD, marker="o", markersize=3.5,
+                         label="rock and stand, median", zorder=4)  # fmt: skip
+    handles.append(Line2D([], [], linestyle="none", label=""))  # so that each column is of one kind
+    for line, dash, name in zip(every, ("--", "-", "-."), ("16 %", "median", "84 %"), strict=True):
+        end = np.where(np.isinf(line), floor + HIGHEST * (top - floor), line)
+        end[1:][np.isinf(line[1:]) & np.isinf(line[:-1])] = np.nan
+        handles += axes.plot(x, end, color=style.INK, linestyle=dash, linewidth=style.MEDIUM, label=f"all, {name}")
+    ticks = np.arange(0.0, floor, 0.2 if floor > 0.5 else floor / 5).tolist()
+    if falls:
+        axes.axhspan(floor, top, color=style.SHADE, linewidth=0)
+        middle = (floor + top) / 2
+        axes.set_yticks([*ticks, middle], [*(f"{y:.2g}" for y in ticks), names.OVERTURNS])
+    axes.set_ylim(0.0, top)
+    axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=style.LABEL)
+    return handles
+
+
+def _shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
+    """The shares of the runs, one over the other."""
+    runs = np.array([each.runs for each in found.groups])
+    still, fallen = (
+        np.array([getattr(each, of) for each in found.groups]) / runs for of in ("no_uplift", "overturned")
+    )  # fmt: skip
+    colors = (style.REGIONS[names.NO_UPLIFT], style.REGIONS[names.ROCKS], FALLEN)
+    drawn = axes.stackplot(
+        x, still, 1 - still - fallen, fallen, labels=ORDER, colors=colors, edgecolor=style.INK, linewidth=style.THIN
+    )  # fmt: skip
+    axes.set_ylim(0.0, 1.0)
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_ylabel("runs", fontsize=style.LABEL)
+    return list(drawn)

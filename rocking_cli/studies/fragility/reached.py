@@ -1,0 +1,127 @@
+"""The rotations at which the top of a structure has moved to the side by as much as a limit state says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.studies.fragility.displacements import asked_for, metres
+from rocking_cli.studies.fragility.plan import Trial
+from rocking_cli.studies.fragility.study import Sample, Study
+from rocking_cli.studies.movements import is_held, top
+
+Reals = NDArray[np.float64]
+Pair = tuple[float | None, float | None]
+"""Rotations in the positive and the negative direction [rad]; None where the displacement is not reached."""
+
+WAY = 512  # rotations from rest to the end of a mechanism at which it is looked how far the top has moved
+CLOSER = 32  # of a step, in each look at it from closer by
+LOOKS = 10  # which are as many as leave no more than rounding
+
+
+def rotations(
+    samples: Sequence[Sample], trials: Sequence[Trial], limits: Sequence[str], known: Mapping[str, Sequence[Pair]]
+) -> dict[str, Sequence[Pair]]:
+    """The rotations that limits on the displacement of the top stand for, of each sample.
+
+    Parameters
+    ----------
+    samples : sequence of Sample
+        The structures.
+    trials : sequence of Trial
+        What is known of them: of those that cannot be run nothing is asked.
+    limits : sequence of str
+        Such as `25 mm`.
+    known : mapping of str to sequence of pair
+        What has been found before, which stays.
+
+    Returns
+    -------
+    dict of str to sequence of pair
+        By the limit; what is known with what was not.
+    """
+    missing = [limit for limit in limits if limit not in known]
+    wanted = [value for value in map(metres, missing) if value is not None]
+    found: dict[tuple[object, ...], list[Pair]] = {}
+    table: list[list[Pair]] = []
+    for sample, trial in zip(samples, trials, strict=True) if missing else ():
+        key = (sample.structure, *sample.geometry)
+        if trial.reason is None and key not in found:
+            found[key] = of_a_structure(sample.mechanism, wanted)
+        table.append(found.get(key, [(None, None)] * len(wanted)))
+    return {**known, **{limit: [row[k] for row in table] for k, limit in enumerate(missing)}}
+
+
+def held(study: Study) -> list[str]:
+    """A sentence on each structure whose top is held sideways, where limits ask for its displacement."""
+    limits = asked_for(study.definition.limit_states)
+    return [
+        f"{structure.name or structure.mechanism}: its top is held to the side and a hinge moves more, but limits "
+        f"such as {limits[0]} are of the top: ask for a ratio of rotations instead"
+        for structure in (study.structures if limits else ())
+        if is_held(structure)
+    ]
+
+
+def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list[Pair]:
+    """The rotations at which the top has first moved to the side by each of some displacements [m], either way."""
+    _, spot = top(mechanism)
+    sides: dict[Direction, list[float | None]] = {}
+    for direction in Direction:
+        if direction not in mechanism.directions:  # it never turns there
+            sides[direction] = [None] * len(displacements)
+            continue
+
+        def moved(phi: Reals, side: Direction = direction) -> Reals:
+            return np.abs((mechanism.followed(phi, side)(spot).z - spot.at).real)
+
+        end = float(np.nextafter(mechanism.limit(direction), 0.0))
+        phi = np.linspace(0.0, end, WAY + 1)
+        at = moved(phi)
+        sides[direction] = [first_reached(moved, phi, at, each) for each in displacements]
+    return list(zip(sides[Direction.POSITIVE], sides[Direction.NEGATIVE], strict=True))
+
+
+def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted: float) -> float | None:
+    """The first rotation at which a displacement is reached, although it may shrink again; None if there is none.
+
+    Parameters
+    ----------
+    moved : callable
+        The displacement [m] over rotations (n,).
+    phi, at : ndarray, shape (n,)
+        Rotations from rest on [rad], and the displacements there.
+    wanted : float
+        The displacement [m].
+    """
+    for k in range(1, len(phi)):
+        if at[k] >= wanted:
+            return _crossing(moved, phi[k - 1], phi[k], wanted)
+        turns_back = k + 1 < len(phi) and at[k - 1] <= at[k] > at[k + 1]
+        if turns_back and (peak := _peak(moved, phi[k - 1], phi[k + 1], wanted)) is not None:
+            return _crossing(moved, phi[k - 1], peak, wanted)
+    return None
+
+
+def _crossing(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float:
+    """Where between two rotations a displacement is first reached, looked at from ever closer by."""
+    for _ in range(LOOKS):
+        fine = np.linspace(low, high, CLOSER + 1)
+        k = max(int(np.argmax(moved(fine) >= wanted)), 1)
+        low, high = float(fine[k - 1]), float(fine[k])
+    return high
+
+
+def _peak(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float | None:
+    """A rotation between two at which a displacement is reached that neither reaches; None if there is none."""
+    for _ in range(LOOKS):
+        fine = np.linspace(low, high, CLOSER + 1)
+        at = moved(fine)
+        k = int(np.argmax(at))
+        if at[k] >= wanted:
+            return float(fine[k])
+        low, high = float(fine[max(k - 1, 0)]), float(fine[min(k + 1, CLOSER)])
+    return None

@@ -1,0 +1,40 @@
+"""Fragility curves as NRML 0.5, the XML that OpenQuake reads."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+from rocking_cli.studies.fragility.openquake import Model, identifier
+from rocking_cli.text import one_line
+
+NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
+
+
+def nrml(model: Model, name: str, description: str) -> bytes:
+    """The document.
+
+    Parameters
+    ----------
+    model : Model
+        The curves.
+    name : str
+        Of the study.
+    description : str
+        What it is, in a sentence; characters that are not ASCII become question marks.
+    """
+    root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
+    about = {"id": identifier(name), "assetCategory": "buildings", "lossCategory": "structural"}
+    whole = ElementTree.SubElement(root, "fragilityModel", about)
+    ElementTree.SubElement(whole, "description").text = one_line(description).encode("ascii", "replace").decode()
+    ElementTree.SubElement(whole, "limitStates").text = " ".join(model.limits)
+    for each in model.functions:
+        kind = {"id": each.name, "format": "continuous", "shape": "logncdf"}
+        function = ElementTree.SubElement(whole, "fragilityFunction", kind)
+        least, most = map(repr, each.ends)
+        ends = {"imt": each.intensity_type, "noDamageLimit": least, "minIML": least, "maxIML": most}
+        ElementTree.SubElement(function, "imls", ends)
+        for limit, (mean, deviation) in zip(model.limits, each.parameters, strict=True):
+            parameters = {"ls": limit, "mean": repr(mean), "stddev": repr(deviation)}
+            ElementTree.SubElement(function, "params", parameters)
+    ElementTree.indent(root)
+    return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"

@@ -1,0 +1,76 @@
+"""How far structures rock at an intensity, as people and programs read it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import isinf, isnan
+from typing import Any
+
+from rocking_cli.names import OVERTURNS, percent
+from rocking_cli.studies.fragility.intensity import MEASURES, label
+from rocking_cli.studies.fragility.quantiles import SHARES, Group, Quantiles
+from rocking_cli.views.view import ABSENT, Table, View, number
+
+
+def with_quantiles(shown: View, found: Sequence[Quantiles], *, in_words: bool) -> View:
+    """What was found of a study with the quantiles: as data always, and as tables if they are asked for."""
+    assert isinstance(shown.data, Mapping)
+    tables = [part for each in found for part in _tables(each)] if in_words else []
+    note = (
+        "Quantiles are of the peak phi/phi_cr. Of all runs, those without uplift count as 0, those that overturn as "
+        f"the largest: '{OVERTURNS}' where the quantile is one."
+    )
+    parts = [*shown.parts, *tables, *([note] if tables else [])]
+    return View({**shown.data, "quantiles": [_data(each) for each in found]}, parts)
+
+
+def _tables(found: Quantiles) -> Iterator[Table | str]:
+    """Those that rock and stand with the shares of the others, and all runs: in one they are wider than a terminal."""
+    over = f"over {label(found.measure)}{'' if found.stripes else ', in tenths'}"
+    shares = [f"{100 * share:g} %" for share in SHARES]
+    rocking = [
+        [
+            number(each.x, 4),
+            f"{each.runs}",
+            percent(each.no_uplift / each.runs),
+            percent(each.overturned / each.runs),
+            *(number(value, 3) for value in each.rocking),
+        ]
+        for each in found.groups
+    ]
+    names = [label(found.measure), "runs", "no\nuplift", "over-\nturned", *(f"rocking\n{share}" for share in shares)]
+    yield ""
+    yield Table(f"{found.structure}: how far it rocks, {over}", names, rocking, numbers=range(len(names)))
+    every = [[number(each.x, 4), *(_ratio(value) for value in each.every)] for each in found.groups]
+    names = [label(found.measure), *shares]
+    yield ""
+    yield Table(f"{found.structure}: all runs, {over}", names, every, numbers=range(len(names)))
+
+
+def _ratio(value: float) -> str:
+    return ABSENT if isnan(value) else OVERTURNS if isinf(value) else f"{value:.3g}"
+
+
+def _data(found: Quantiles) -> dict[str, Any]:
+    return {
+        "structure": found.structure,
+        "measure": found.measure,
+        "unit": MEASURES[found.measure].unit,
+        "groups": "stripes" if found.stripes else "tenths",
+        "shares": list(SHARES),
+        "intensities": [_group(each) for each in found.groups],
+    }
+
+
+def _group(each: Group) -> dict[str, Any]:
+    return {
+        "x": each.x,
+        "from": each.low,
+        "to": each.high,
+        "runs": each.runs,
+        "distinct_records": each.records,
+        "no_uplift": each.no_uplift / each.runs,
+        "overturned": each.overturned / each.runs,
+        "rocking": list(each.rocking),
+        "all": [OVERTURNS if isinf(value) else value for value in each.every],
+    }
