@@ -285,6 +285,8 @@ def test_periods_are_the_band_and_the_points_of_the_target():
     assert (np.diff(periods) > 1e-7).all()
     assert np.diff(np.log(periods)).max() <= 0.05 + 1e-9
     assert len(periods) >= 50
+    assert np.diff(np.log(periods_of((0.2, 2.0), target, 0.02))).max() <= 0.02 + 1e-9  # its peaks are narrower
+    assert len(periods_of((0.2, 2.0), target, 0.0)) < 250
     many = TargetSpectrum("t", np.linspace(0.1, 3.0, 2000), np.ones(2000))
     dense = periods_of((0.2, 2.0), many)
     assert 100 < len(dense) < 200

@@ -23,7 +23,7 @@ from rocking_cli.studies.target_spectrum import Reals, TargetSpectrum
 WITHIN = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has the lower one alone
 FACTORS = (0.2, 5.0)
 ONE_PER = ("event", "station", "none")
-SPACING = 0.05  # of ln T, at most: half the width of a resonance of 5 % damping
+SPACING = (0.01, 0.05)  # of ln T, at least and at most: the damping ratio is half the width of a resonance
 POINTS = 50  # periods of a band, at least
 OWN_POINTS = 100  # of the target within the band that are added to these, if there are no more
 SAME_PERIOD = 1e-6  # ratio, less one, of periods that are one
@@ -205,7 +205,7 @@ def candidates(
     target.check(wanted.band)
     names = [key_of(motion, wanted.one_per) for motion in motions]
     _check_enough(len(motions), len(motions), int(_groups(names).max(initial=-1)) + 1, wanted)  # before any work
-    periods = periods_of(wanted.band, target)
+    periods = periods_of(wanted.band, target, wanted.damping)
     spectra = np.zeros((len(motions), periods.size))
     for k, motion in enumerate(motions):
         spectra[k] = response_spectrum(motion, periods, wanted.damping).sa
@@ -213,9 +213,9 @@ def candidates(
     return Candidates(motions, periods, target.at(periods), spectra)
 
 
-def periods_of(band: tuple[float, float], target: TargetSpectrum) -> Reals:
+def periods_of(band: tuple[float, float], target: TargetSpectrum, damping: float = DAMPING) -> Reals:
     """Periods [s] at equal ratios over a band, and the target's own in it if they are not too many."""
-    count = max(POINTS, ceil(log(band[1] / band[0]) / SPACING) + 1)
+    count = max(POINTS, ceil(log(band[1] / band[0]) / min(max(damping, SPACING[0]), SPACING[1])) + 1)
     found = np.geomspace(*band, count)
     found[[0, -1]] = band
     own = target.periods[(target.periods > band[0]) & (target.periods < band[1])]

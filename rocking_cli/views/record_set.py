@@ -203,7 +203,7 @@ def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
         first, last = f"{periods[start]:.3g}", f"{periods[end - 1]:.3g}"
         said.append(f"at {first} s" if first == last else f"from {first} to {last} s")
     if len(said) > SPANS:
-        said = [*said[:SPANS], f"over {len(said) - SPANS} more"]
+        said = [*said[:SPANS], f"over {len(said) - SPANS} more stretches"]
     return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
 
 
