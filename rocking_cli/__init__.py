@@ -39,6 +39,7 @@ _HOME = {
         "write_report",
     ],
     "api.motions": ["correct", "on_floor", "respond_around"],
+    "api.selection": ["select"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
     "core.registry": ["Registry"],
     "dynamics.batch": ["Runs", "respond_many"],

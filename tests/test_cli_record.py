@@ -42,8 +42,8 @@ class TestWhatIsShown:
     def test_json_has_the_promised_keys_and_the_measures_of_the_library(self):
         data = run_json("record", ACCEL)
         assert list(data) == [
-            "file", "name", "format", "channel", "unit", "npts", "dt", "duration", "factor", "processing", "pga",
-            "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95", "mean_acceleration",
+            "file", "name", "format", "channel", "unit", "origin", "npts", "dt", "duration", "factor", "processing",
+            "pga", "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95", "mean_acceleration",
             "final_velocity", "final_displacement", "p_dt", "warnings",
         ]  # fmt: skip
         found = measure(read_record(ACCEL))

@@ -805,7 +805,7 @@ def test_the_checksum_of_a_pulse_is_of_all_its_digits_and_of_how_it_is_sampled(m
     """A store does not mix runs under pulses that differ in the seventh digit, or in their samples."""
 
     def checksum(text):
-        return Source(text, RecordEntry(pulse=text), Reading()).checksum()
+        return Source(text, RecordEntry(pulse=text), Reading(), text).checksum()
 
     one = checksum("sine:0.3g:1s")
     assert one == checksum("sine:0.3g:1.0s") != checksum("sine:0.30000001g:1s")

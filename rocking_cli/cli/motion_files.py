@@ -84,17 +84,33 @@ def read(record: Listed, reading: Reading) -> GroundMotion:
     from rocking_cli.excitation.records.opening import allow_again
 
     given = record.reading(reading)
-    typed = replace(
+    typed = _typed(given)
+    if typed != given:
+        with suppress(InputError):
+            return record.as_said(typed.read(record.path))
+        allow_again(record.path)
+    return record.as_said(given.read(record.path))
+
+
+def settled(record: Listed, reading: Reading) -> Reading:
+    """How `read` read a file, not standard input: without the defaults, unless the file needs them."""
+    given = record.reading(reading)
+    typed = _typed(given)
+    if typed != given:
+        with suppress(InputError):
+            typed.read(record.path)
+            return typed
+    return given
+
+
+def _typed(given: Reading) -> Reading:
+    """What of a reading is no default."""
+    return replace(
         given,
         dt=None if from_default("dt") else given.dt,
         units=None if from_default("units") else given.units,
         channel=None if from_default("channel") else given.channel,
     )
-    if typed != given:
-        with suppress(InputError):
-            return typed.read(record.path)
-        allow_again(record.path)
-    return given.read(record.path)
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
@@ -176,12 +192,12 @@ def gather(
     sources: list[Listed | Pulse] = [*records, *dict.fromkeys(parse_pulse(text) for text in pulses)]
     found: list[Scaled] = []
     doubtful: list[tuple[GroundMotion, list[Doubt]]] = []
-    for source in sources:
+    for place, source in enumerate(sources):
         try:
             if isinstance(source, tuple):
-                each = Scaled(read(source, reading), 1.0, file=source.path)
+                each = Scaled(read(source, reading), 1.0, file=source.path, place=place)
             else:
-                each = Scaled(reading.on_floor(source.sampled()), 1.0, pulse=source)
+                each = Scaled(reading.on_floor(source.sampled()), 1.0, pulse=source, place=place)
             motion = each.motion
             measured = measure(motion.of_ground)
             each = each._replace(factor=factor(motion, measured, *asked))

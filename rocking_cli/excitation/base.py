@@ -35,6 +35,30 @@ class Doubt(NamedTuple):
     text: str
 
 
+class Origin(NamedTuple):
+    """Which earthquake a record is of, and where it was taken, as far as its file says so for sure.
+
+    Parameters
+    ----------
+    event : str or None
+        The earthquake: its name, or when it was.
+    station : str or None
+        Name or code.
+    magnitude : float or None
+        Of the moment where the file gives several.
+    distance : float or None
+        From the epicentre, or as the file says [km].
+    """
+
+    event: str | None = None
+    station: str | None = None
+    magnitude: float | None = None
+    distance: float | None = None
+
+
+NOT_SAID = Origin()
+
+
 @dataclass(frozen=True, eq=False)
 class GroundMotion:
     """A ground acceleration history, positive to the right.
@@ -64,6 +88,8 @@ class GroundMotion:
         What was done to it since it was read, in order, as it would be asked for again: `"highpass 0.1"`.
     ground : GroundMotion, optional
         Of the motion of a floor, that of the ground below: its peaks are what a motion is scaled to.
+    origin : Origin, optional
+        The earthquake and the station, as far as its file says.
 
     Raises
     ------
@@ -82,6 +108,7 @@ class GroundMotion:
     remarks: tuple[Doubt, ...] = ()
     processing: tuple[str, ...] = ()
     ground: GroundMotion | None = None
+    origin: Origin = NOT_SAID
 
     def __post_init__(self) -> None:
         samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)

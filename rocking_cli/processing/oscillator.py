@@ -165,8 +165,11 @@ def _advance(growth: complex, forcing: NDArray[np.complex128]) -> NDArray[np.com
     padded = np.zeros(blocks * BLOCK, dtype=np.complex128)
     padded[: forcing.size] = forcing
     powers = growth ** np.arange(BLOCK + 1)
-    lag = np.subtract.outer(np.arange(BLOCK), np.arange(BLOCK))
-    within = padded.reshape(blocks, BLOCK) @ np.where(lag >= 0, powers[np.maximum(lag, 0)], 0.0).T
+    # All blocks go on side by side: no matrix, whose product many threads share, which a busy machine makes slow.
+    rows = np.ascontiguousarray(padded.reshape(blocks, BLOCK).T)
+    for k in range(1, BLOCK):
+        rows[k] += growth * rows[k - 1]
+    within = rows.T
     before = np.zeros(blocks, dtype=np.complex128)
     for k in range(1, blocks):
         before[k] = powers[BLOCK] * before[k - 1] + within[k - 1, -1]

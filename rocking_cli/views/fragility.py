@@ -7,6 +7,8 @@ from dataclasses import asdict
 from math import isinf
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rocking_cli.studies.fragility.displacements import kept, metres
 from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.views.view import ABSENT, Table, View, number
@@ -105,6 +107,7 @@ def view(
     parts: list[Table | str] = [
         f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}, seed {definition.seed}"
     ]
+    parts += sets_in_words(plan)
     for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):
         these = [each for each in curves if (each.structure, each.measure) == (structure, measure)]
         parts += _curves(structure, measure, these, confidence)
@@ -127,11 +130,39 @@ def view(
         "without_block": without_block(plan),
         "out_of_reach": out_of_reach(store, plan, definition),
         "without_curve": nowhere,
-        "records": [asdict(each) for each in plan.records],
+        "records": _records(plan),
         "curves": [_curve_data(each) for each in curves],
         "surfaces": [_surface_data(each) for each in surfaces],
     }
     return View(data, parts)
+
+
+def sets_in_words(plan: Plan) -> list[str]:
+    """A sentence on sets of records for levels, and one on weights, where there are any."""
+    sets, said = plan.of_sets, []
+    usable = np.array([each.reason is None for each in plan.records])
+    if (sets.level >= 0).any():
+        counts = [int((usable & ((sets.level == k) | (sets.level < 0))).sum()) for k in range(len(plan.levels))]
+        few, many = min(counts), max(counts)
+        each = f"{few}" if few == many else f"{few} to {many}"
+        used = "scaled to it" if sets.scaled else "used as they are"
+        said.append(f"Each level has a set of records of its own: {each} at a level, {used}.")
+    if sets.weighted:
+        low, high = float(sets.weight.min()), float(sets.weight.max())
+        said.append(
+            f"Records count by their weights, {low:.3g} to {high:.3g}: intervals, bands and tests take each record as "
+            "a cluster."
+        )
+    return said
+
+
+def _records(plan: Plan) -> list[dict[str, Any]]:
+    """What is known of each record, with the level that it is of a set for, and its weight."""
+    sets = plan.of_sets
+    return [
+        {**asdict(each), "level": plan.levels[sets.level[k]] if sets.level[k] >= 0 else None, "weight": weight}
+        for k, (each, weight) in enumerate(zip(plan.records, sets.weight.tolist(), strict=True))
+    ]
 
 
 def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) -> list[str]:

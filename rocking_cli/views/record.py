@@ -51,6 +51,7 @@ def data(record: Examined) -> dict[str, Any]:
         "format": motion.format,
         "channel": _channel(record),
         "unit": motion.unit,
+        "origin": motion.origin._asdict(),
         "npts": motion.npts,
         "dt": motion.dt,
         "duration": motion.duration,
@@ -112,6 +113,10 @@ def _rows(records: Sequence[Examined]) -> list[list[str]]:
         ("format", [_folded(r.motion.format) for r in records], ""),
         ("channel", [_channel(r) or ABSENT for r in records], ""),
         ("unit in the file", [r.motion.unit for r in records], ""),
+        ("earthquake", [_folded(r.motion.origin.event or ABSENT) for r in records], ""),
+        ("station", [_folded(r.motion.origin.station or ABSENT) for r in records], ""),
+        ("magnitude", [number(r.motion.origin.magnitude) for r in records], ""),
+        ("distance", [number(r.motion.origin.distance, 4) for r in records], "km"),
         ("points", [str(r.motion.npts) for r in records], ""),
         ("dt", [number(r.motion.dt) for r in records], "s"),
         ("duration", [number(r.motion.duration) for r in records], "s"),
@@ -129,6 +134,7 @@ def _rows(records: Sequence[Examined]) -> list[list[str]]:
         *((str(each), [number(r.asked[each], 4) for r in records], each.unit) for each in records[0].asked),
     ]
     silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
+    silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
     return [
         [label, *cells, unit]
         for label, cells, unit in rows

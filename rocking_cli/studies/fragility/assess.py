@@ -138,11 +138,12 @@ def curves(
         there = x > 0  # not of those that are not known, either
         if not there.any():
             continue
-        x, record, runs = x[there], cells.record[there], cells.runs[there]
+        x, runs = x[there], cells.runs[there]
+        record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
         level = cells.level[there] if tally.decided_by_level(measure) else None
         for limit in definition.limit_states:
             exceeding = cells.exceeding(limit) if tally.ladders is None else cells.of(tally.ladders.above(limit))
-            seen = Observations.of(x, exceeding[there], record, level=level, runs=runs)
+            seen = Observations.of(x, exceeding[there], record, level=level, runs=runs, weight=weight)
             if tally.ladders is None:
                 curve = fit_curve(seen, confidence=confidence)
             elif parse_measure(measure).power == 0:
@@ -150,9 +151,10 @@ def curves(
                 curve = Curve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
             else:
                 tried = np.unique(x) if level is not None else None
+                lower, upper, of = _capacities(tally, measure, limit, cells)
                 curve = fit_capacities(
-                    *_capacities(tally, measure, limit, cells), levels=tried, confidence=confidence
-                )  # fmt: skip
+                    lower, upper, tally.one(of), levels=tried, confidence=confidence, weight=tally.weight(of)
+                )
             rate = None
             if hazard is not None and curve.kind != "none" and definition.hazard_measure == measure:
                 rate = annual_rate(curve, hazard)
@@ -184,9 +186,10 @@ def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[B
         cells = tally.over(one, other)
         x1, x2 = cells.intensities(one), cells.intensities(other)
         there = (x1 > 0) & (x2 > 0)
-        x1, x2, record, runs = x1[there], x2[there], cells.record[there], cells.runs[there]
+        x1, x2, runs = x1[there], x2[there], cells.runs[there]
+        record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
         for limit in definition.limit_states if there.any() else []:
             exceeding = cells.exceeding(limit)[there]
-            surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence)
+            surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
             left_out = int(cells.runs[~there].sum())
             yield Bivariate(structure, limit, (one, other), x1, x2, runs, exceeding, surface, left_out)

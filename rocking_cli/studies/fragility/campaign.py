@@ -92,6 +92,7 @@ def prepare(
         "name": study.name,
         "definition": given.model_dump(mode="json", exclude_unset=True),
         "hazard": _hazard(study),
+        "weights": [source.entry.weight for source in study.sources],
     }
     if known is None:
         _refuse_useless(plan)
@@ -156,7 +157,8 @@ def survey(study: Study, examined: Examined | None = None, known: Plan | None = 
         tell(1)
     given = study.definition
     etas = given.eta if given.eta is not None else [nan]
-    plan = Plan(trials, records, etas, given.levels.measure, given.levels.levels(), given.polarities)
+    levels = given.levels.levels()
+    plan = Plan(trials, records, etas, given.levels.measure, levels, given.polarities, sets=study.sets)
     if known is not None and _of_one_kind(known, plan):
         plan = replace(plan, measured=known.measured)
     return measured(study, plan, motions, ()), motions

@@ -27,6 +27,7 @@ from rocking_cli.studies.fragility.hazard import wrong_points
 from rocking_cli.studies.fragility.intensity import PGA, no_levels, spelled
 from rocking_cli.studies.fragility.intensity import SCALE as SCALE
 from rocking_cli.studies.fragility.observed import SAME
+from rocking_cli.studies.fragility.sets import among
 from rocking_cli.studies.fragility.together import Part, Sound, between_fields
 from rocking_cli.studies.fragility.varied import in_units_of_fields
 
@@ -108,6 +109,7 @@ def _file(value: object) -> object:
     return {"file": value} if isinstance(value, str) else value
 
 
+Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
 Measure = Annotated[str, BeforeValidator(_measure)]
 LevelMeasure = Annotated[str, BeforeValidator(_level_measure)]
 Limit = Annotated[str | float, BeforeValidator(_limit)]
@@ -126,6 +128,7 @@ class RecordEntry(Entry, Part):
 
     pulse: str | None = Field(None, description="a pulse, such as sine:0.6g:0.8s")
     vertical: str | None = Field(None, description="the file of the vertical component")
+    level: Intensity | None = Field(None, description="the one level whose set of records it belongs to")
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -133,13 +136,10 @@ class RecordEntry(Entry, Part):
         there = {name for name in given if given.get(name) is not None}
         if len(there & {"file", "pulse"}) != 1:
             yield (), "give a file or a pulse"
-        elif "pulse" in there and there - {"pulse", "floor", "weight"}:
+        elif "pulse" in there and there - {"pulse", "floor", "weight", "level"}:
             yield (), "units, dt, channel, vertical and the like describe a file"
         if "azimuth" in there and not there & {"with", "other"}:
             yield ("azimuth",), "is between two components: give the file of the second with `with`"
-
-
-Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
 
 
 class Levels(Part):
@@ -151,6 +151,7 @@ class Levels(Part):
     most: Intensity | None = Field(None, description="the largest")
     count: int | None = Field(None, ge=2, le=MOST, description="how many")
     spacing: Literal["even", "log"] = Field("even", description="steps of equal size, or of equal ratio")
+    scaled: bool = Field(True, description="false: sets of records are used as they are, and a level names its set")
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -266,6 +267,7 @@ class Definition(Sampling, Common):
         scaled = isinstance(levels, dict) and sound("levels", "measure") and _spelled(levels["measure"]) != SCALE
         if method == "cloud" and scaled:
             yield ("levels",), f"a cloud scales records by factors: `measure: {SCALE}`"
+        yield from _wrong_sets(given, sound)
         if method in ("stripes", "ida") and "levels" not in given:
             yield ("levels",), "is missing: every record is scaled to levels of intensity"
         entries = structures if isinstance(structures, list) else []
@@ -305,6 +307,32 @@ class Definition(Sampling, Common):
     def hazard_measure(self) -> str | None:
         """What the hazard curve is of."""
         return self.hazard.measure if self.hazard is not None else None
+
+
+def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+    """Sets of records must be of levels that there are, in stripes; used as they are, every record is of one."""
+    entries, levels = given.get("records"), given.get("levels")
+    entries = entries if isinstance(entries, list) else []
+    of_sets = [k for k, each in enumerate(entries) if isinstance(each, dict) and each.get("level") is not None]
+    if isinstance(levels, dict) and levels.get("scaled") is False:
+        if levels.get("measure") == SCALE:
+            yield ("levels", "scaled"), f"levels of the measure {SCALE} are factors: leave scaled out"
+        if sound("records") and len(of_sets) < len(entries):
+            yield ("levels", "scaled"), "records are used as they are, so each needs the `level` whose set it is of"
+    if not of_sets:
+        return
+    if given.get("method") != "stripes" and sound("method"):
+        yield ("records", of_sets[0], "level"), "sets of records for levels are of `method: stripes`"
+    if not (isinstance(levels, dict) and sound("levels")):
+        return
+    known = Levels.model_validate(levels).levels()
+    for k in of_sets:
+        if sound("records", k) and not among(entries[k]["level"], known):
+            yield ("records", k, "level"), f"{entries[k]['level']:g} is none of the levels {_said(known)}"
+
+
+def _said(levels: list[float]) -> str:
+    return ", ".join(f"{each:g}" for each in levels[:10]) + (", ..." if len(levels) > 10 else "")
 
 
 def checks_sliding(given: dict[str, Any]) -> bool:

@@ -83,7 +83,7 @@ def complete(
             continue
         for name, values in new.items():
             if np.isnan(values[k]):
-                values[k] = bases[name].value(motions[k]) if name in bases else _stated(motions[k], name)
+                values[k] = bases[name].value(motions[k].of_ground) if name in bases else _stated(motions[k], name)
     plan = replace(plan, measured=replace(plan.measured, of_record={**plan.measured.of_record, **new}))
     plan = _without_unscalable(plan)
     for k, record in enumerate(plan.records):
@@ -149,6 +149,6 @@ def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int, usab
         for level, factor in enumerate(factors.tolist()):
             key = (factor, *structure)
             if key not in known:
-                known[key] = measure.value(motions[k].scaled(factor), Reference(*structure))
+                known[key] = measure.value(motions[k].of_ground.scaled(factor), Reference(*structure))
             found[sample, level] = known[key]
     return found

@@ -14,6 +14,7 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
 from rocking_cli.studies.fragility.measured import Measured
+from rocking_cli.studies.fragility.sets import Sets
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.under_pulses import uplift
 
@@ -87,6 +88,8 @@ class Plan:
         Of 1 and -1.
     measured : Measured
         What was measured beyond the peaks of the records.
+    sets : Sets, optional
+        Which records are run at which levels, and how much they count; without it all at all, and alike.
     """
 
     trials: Sequence[Trial]
@@ -96,6 +99,12 @@ class Plan:
     levels: Sequence[float]
     polarities: Sequence[int]
     measured: Measured = field(default_factory=Measured)
+    sets: Sets | None = None
+
+    @property
+    def of_sets(self) -> Sets:
+        """Which records are run at which levels, and how much they count."""
+        return self.sets if self.sets is not None else Sets.plain(len(self.records))
 
     @property
     def shape(self) -> tuple[int, int, int, int, int]:
@@ -110,8 +119,11 @@ class Plan:
     @property
     def total(self) -> int:
         """How many runs can be run: not those of samples and records that cannot be used."""
-        usable = [sum(each.reason is None for each in what) for what in (self.trials, self.records)]
-        return prod(usable) * self.block
+        _, _, etas, levels, polarities = self.shape
+        usable = sum(each.reason is None for each in self.trials)
+        places = [k for k, each in enumerate(self.records) if each.reason is None]
+        rungs = sum(int(self.of_sets.there(k, levels).sum()) for k in places)
+        return usable * rungs * etas * polarities
 
     @property
     def size(self) -> int:
@@ -161,6 +173,8 @@ class Plan:
     def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
         """Factors on the records that bring them to the levels, for places of one shape."""
         wanted = np.array(self.levels)[level]
+        if self.sets is not None and not self.sets.scaled:
+            return np.ones(wanted.shape)
         if self.measure == SCALE:
             return wanted
         power = parse_measure(self.measure).power

@@ -26,6 +26,7 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.measured import Measured, Value
 from rocking_cli.studies.fragility.plan import Plan, Trial
+from rocking_cli.studies.fragility.sets import described
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.fragility.store_file import (
     AT_WORK,
@@ -561,6 +562,7 @@ class Store:
             levels,
             column("polarity", int),
             self._measured((len(trials), len(records), len(levels))),
+            described(self.fact("description"), self.facts().get("weights")),
         )
 
     def replace_record(self, k: int, record: Record) -> None:

@@ -45,6 +45,15 @@ class Tally:
     exceeding: dict[Limit, Integers]
     ladders: Ladders | None
 
+    def one(self, record: Integers) -> Integers:
+        """The record that each is one with: the same may be in the sets of several levels."""
+        return np.asarray(self.plan.of_sets.one[record])
+
+    def weight(self, record: Integers) -> Reals | None:
+        """How much each counts; None where all count alike."""
+        sets = self.plan.of_sets
+        return np.asarray(sets.weight[record]) if sets.weighted else None
+
     def over(self, *measures: str) -> Cells:
         """The cells of runs that are alike in some measures, without the empty ones."""
         together = not any(_differs_between_samples(self.plan, self.samples, measure) for measure in measures)
