@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import statsmodels.api as sm
 
 from rocking_cli import fragility
-from rocking_cli.studies.fragility import ranking
+from rocking_cli.excitation.base import Origin
+from rocking_cli.studies.fragility import ranking, sources
 from rocking_cli.studies.fragility.campaign import prepare, steps
 from rocking_cli.studies.fragility.ranking import Ranked, Ranking, judge, line, serves
 from rocking_cli.studies.fragility.store import Store
@@ -145,6 +147,34 @@ class TestStudy:
         said = command("results", folder / "study.db", "--rank-measures").stdout
         for each in shown["ranking"]:
             assert all(sentence in " ".join(said.split()) for sentence in each["verdict"])
+
+    def test_records_that_state_magnitude_and_distance_are_held_against_these(self, tmp_path, monkeypatch):
+        read = sources.Source.read
+
+        def stated(source):
+            k = len(source.name) % 7
+            return replace(read(source), origin=Origin("event", "station", 5.0 + k, 10.0 + 3 * k))
+
+        path = tmp_path / "study.yaml"
+        path.write_text(STUDY, encoding="utf-8")
+        monkeypatch.setattr(sources.Source, "read", stated)
+        found = json.loads(command("fragility", path, "--rank-measures", "--json").stdout)["ranking"][0]
+        assert found["against"] == ["magnitude", "distance"]
+        assert "with magnitude or distance" in found["verdict"][1]
+        with Store.reading(tmp_path / "study.db") as kept:
+            plan = kept.plan()
+            values = {name: plan.of_records(name).tolist() for name in ("magnitude", "distance")}
+        k = [len(each.name) % 7 for each in plan.records]
+        assert values == {"magnitude": [5.0 + each for each in k], "distance": [10.0 + 3 * each for each in k]}
+
+    def test_a_record_of_several_sets_is_one(self, tmp_path):
+        motions = [(t, x) for t in (0.7, 0.9, 1.1) for x in (0.3, 0.4, 0.6)]
+        sets = "".join(f"  - {{pulse: 'ricker:1g:{t}s', level: {x}}}\n" for t, x in motions)
+        text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords:\n{sets}method: stripes\n"
+        path = tmp_path / "study.yaml"
+        path.write_text(f"{text}levels: {{measure: PGA, values: [0.3, 0.4, 0.6]}}\n", encoding="utf-8")
+        found = json.loads(command("fragility", path, "--rank-measures", "--json").stdout)["ranking"][0]
+        assert {(each["runs"], each["records"]) for each in found["measures"]} == {(9, 3)}
 
     def test_python_ranks_too(self, study):
         answer = fragility(study[0] / "study.yaml", store=study[0] / "study.db", rank_measures=True)

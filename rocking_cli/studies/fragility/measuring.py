@@ -96,7 +96,7 @@ def complete(
 
 def _stated(motion: GroundMotion, name: str) -> float:
     """What a record states of its earthquake; NaN where it does not."""
-    found = getattr(getattr(motion, "origin", None), name, None)
+    found: float | None = getattr(motion.origin, name)
     return nan if found is None else float(found)
 
 

@@ -205,7 +205,7 @@ def _rank(
     """The ranking of one structure."""
     runs, y = rocking(store, plan, structure)
     sample, record, _, level, _ = plan.places(runs)
-    factors = plan.factors(sample, record, level)
+    factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # alike in several sets
     ranked: list[Ranked] = []
     alike: dict[str, str] = {}
     left_out: dict[str, str] = {}
@@ -221,7 +221,7 @@ def _rank(
         if twin is not None:
             alike[name] = twin
             continue
-        served = serves(name, log[there], y[there], record[there], against)
+        served = serves(name, log[there], y[there], one[there], against)
         if served is None:
             left_out[name] = "the same in all runs that rock and stand, or these are fewer than three"
             continue
