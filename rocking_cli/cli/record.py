@@ -212,7 +212,12 @@ def _give_spectra(examined: Sequence[Examined], file: Path, plot: Path | None) -
     spectra: dict[str, ResponseSpectrum] = {}
     for each in examined:
         assert each.spectrum is not None
-        spectra[each.label if each.label not in spectra else f"{each.label} ({each.file})"] = each.spectrum
+        names = (
+            each.label,
+            f"{each.label} ({each.file})",
+            *(f"{each.label} ({k})" for k in range(2, len(examined) + 2)),
+        )
+        spectra[next(name for name in names if name not in spectra)] = each.spectrum
     table_files.write(file, [table(spectra)])
     if plot is not None:
         from rocking_cli.plotting.response_spectrum import draw_response_spectra
