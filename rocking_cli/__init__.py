@@ -34,10 +34,12 @@ _HOME = {
         "record",
         "respond",
         "respond_each",
+        "response_spectrum",
         "spectrum",
         "write_report",
     ],
     "api.motions": ["correct", "on_floor", "respond_around"],
+    "api.selection": ["select"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
     "core.registry": ["Registry"],
     "dynamics.batch": ["Runs", "respond_many"],
@@ -56,6 +58,8 @@ _HOME = {
     "excitation.records": ["read_record"],
     "processing.components": ["turned"],
     "processing.floor": ["Floor"],
+    "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],
+    "processing.oscillator": ["ResponseSpectrum"],
     "structure": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}

@@ -15,6 +15,7 @@ from rocking_cli.api.answer import MappingAnswer as MappingAnswer
 from rocking_cli.api.motions import correct as correct
 from rocking_cli.api.motions import on_floor as on_floor
 from rocking_cli.api.motions import respond_around as respond_around
+from rocking_cli.api.selection import select as select
 from rocking_cli.api.verbs import draw as draw
 from rocking_cli.api.verbs import equiv as equiv
 from rocking_cli.api.verbs import equivalent as equivalent
@@ -26,6 +27,7 @@ from rocking_cli.api.verbs import overturning_map as overturning_map
 from rocking_cli.api.verbs import record as record
 from rocking_cli.api.verbs import respond as respond
 from rocking_cli.api.verbs import respond_each as respond_each
+from rocking_cli.api.verbs import response_spectrum as response_spectrum
 from rocking_cli.api.verbs import spectrum as spectrum
 from rocking_cli.api.verbs import write_report as write_report
 from rocking_cli.core import Body as Body
@@ -63,6 +65,12 @@ from rocking_cli.excitation.pulses import parse_pulse as parse_pulse
 from rocking_cli.excitation.records import read_record as read_record
 from rocking_cli.processing.components import turned as turned
 from rocking_cli.processing.floor import Floor as Floor
+from rocking_cli.processing.intensity import Measure as Measure
+from rocking_cli.processing.intensity import MotionMeasure as MotionMeasure
+from rocking_cli.processing.intensity import RelativeMeasure as RelativeMeasure
+from rocking_cli.processing.intensity import RunMeasure as RunMeasure
+from rocking_cli.processing.intensity import parse_measure as parse_measure
+from rocking_cli.processing.oscillator import ResponseSpectrum as ResponseSpectrum
 from rocking_cli.structure import load_structure as load_structure
 
 __version__: str

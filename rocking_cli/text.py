@@ -33,6 +33,11 @@ def _spelled(found: re.Match[str]) -> str:
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
 
 
+def seen(text: str) -> str:
+    """A text without the characters that `printable` spells out, in one line with single blanks."""
+    return " ".join(_UNSEEN.sub("", " ".join(text.split())).split())
+
+
 def one_line(text: str) -> str:
     """A text as `printable` shows it, with its tabs and line feeds spelled out too: a file name may hold any."""
     return printable(text).replace("\t", r"\t").replace("\n", r"\n")

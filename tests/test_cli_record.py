@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 import shutil
@@ -19,6 +20,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.record_csv import write_record_csv
 from rocking_cli.excitation.records import read_record
+from rocking_cli.processing.oscillator import response_spectrum
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -40,8 +42,8 @@ class TestWhatIsShown:
     def test_json_has_the_promised_keys_and_the_measures_of_the_library(self):
         data = run_json("record", ACCEL)
         assert list(data) == [
-            "file", "name", "format", "channel", "unit", "npts", "dt", "duration", "factor", "processing", "pga",
-            "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95", "mean_acceleration",
+            "file", "name", "format", "channel", "unit", "origin", "npts", "dt", "duration", "factor", "processing",
+            "pga", "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95", "mean_acceleration",
             "final_velocity", "final_displacement", "p_dt", "warnings",
         ]  # fmt: skip
         found = measure(read_record(ACCEL))
@@ -256,3 +258,67 @@ def test_record_does_without_the_compiler_and_scipy():
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stderr.strip() == "[]"
+
+
+class TestSpectrum:
+    def test_the_file_the_picture_and_json_are_of_the_scaled_record(self, tmp_path):
+        result = run(
+            "record", ACCEL, "--scale", 2, "--spectrum", "s.csv", "--plot", "s.png", "--json", "--damping", "2%"
+        )
+        found = json.loads(result.stdout)["spectrum"]
+        period, damping = np.array(found["period"]), found["damping"]
+        assert (period.size, damping) == (200, 0.02) and (period[0], period[-1]) == pytest.approx((0.02, 10))
+        expected = response_spectrum(read_record(ACCEL).scaled(2), period, 0.02)
+        np.testing.assert_allclose(found["sd"], expected.sd, rtol=1e-12)
+        np.testing.assert_allclose(found["sv"], 2 * np.pi / period * found["sd"], rtol=1e-12)
+        np.testing.assert_allclose(found["sa"], (2 * np.pi / period) ** 2 * found["sd"] / 9.80665, rtol=1e-12)
+        rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
+        assert list(rows[0]) == ["record", "damping", "period [s]", "pseudo Sa [g]", "pseudo Sv [m/s]", "Sd [m]"]
+        for key, name in (("pseudo Sa [g]", "sa"), ("pseudo Sv [m/s]", "sv"), ("Sd [m]", "sd")):
+            np.testing.assert_allclose([float(row[key]) for row in rows], found[name], rtol=1e-8)
+        assert (tmp_path / "s.png").stat().st_size > 10_000
+
+    def test_several_records_and_periods(self, tmp_path):
+        asked = ("--spectrum", "s.csv", "--plot", "s.svg", "--period", "0.1:1s")
+        run("record", ACCEL, ACCEL, ACCEL, "--polarity", "both", *asked)
+        rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
+        names = list(dict.fromkeys(row["record"] for row in rows))
+        assert len(rows) == 200 * len(names) and len(names) == 6 and (tmp_path / "s.svg").exists()
+        assert {row["period [s]"] for row in rows[::200]} == {"0.1"}
+
+    def test_python_gives_the_same(self, tmp_path):
+        run("record", ACCEL, "--spectrum", "s.csv")
+        answer = read_record(ACCEL).response_spectrum()
+        rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
+        np.testing.assert_allclose([float(row["Sd [m]"]) for row in rows], answer.sd, rtol=1e-8)
+        assert "with 5 % damping Sa is largest" in repr(answer) or "Sa is largest" in answer.sentences[0]
+        answer.plot(tmp_path / "p.png")
+        assert (tmp_path / "p.png").exists() and answer.to_dict()["name"] == "accel.csv"
+
+    @pytest.mark.parametrize("option", [("--damping", "2%"), ("--period", "1:2")])
+    def test_options_that_need_it(self, option):
+        result = CliRunner().invoke(main, ["record", str(ACCEL), *option])
+        assert result.exit_code == 2 and "--spectrum FILE.csv" in result.stderr
+
+
+class TestMeasures:
+    def test_they_stand_in_the_table_and_in_json(self):
+        asked = ("--measures", "sa(1), cav, PGV/v_imp", "--structure", EXAMPLES / "block.yaml", "--target-pga", "0.3")
+        found = json.loads(run("record", ACCEL, *asked, "--json").stdout)["measures"]
+        assert list(found) == ["Sa(1.0)", "CAV", "PGV/v_imp"]
+        expected = response_spectrum(read_record(ACCEL).scaled(0.3 / 0.55), 1.0).sa[0]
+        assert found["Sa(1.0)"] == pytest.approx(expected)
+        said = run("record", ACCEL, *asked).stdout
+        for name, value in found.items():
+            assert re.search(rf"{re.escape(name)} +{value:.4g}", said)
+
+    def test_all_without_a_structure_are_those_of_the_motion(self):
+        found = json.loads(run("record", ACCEL, "--measures", "all", "--json").stdout)["measures"]
+        assert {"Tm", "Sa_avg(0.2:2.0)", "D5-75"} <= set(found) and "Du" not in found
+        with_one = run("record", ACCEL, "--measures", "all", "--structure", EXAMPLES / "frame.yaml", "--json")
+        assert {*found, "Du", "PGA/(g lambda)"} <= set(json.loads(with_one.stdout)["measures"])
+
+    def test_what_is_wrong_is_said_before_anything_is_read(self):
+        for asked, said in (("Saa(1)", "did you mean Sa?"), ("Du", "give a --structure")):
+            result = CliRunner().invoke(main, ["record", str(ACCEL), "--measures", asked])
+            assert result.exit_code == 2 and said in result.stderr and not result.stdout

@@ -137,6 +137,6 @@ def test_hints_name_the_keys_of_a_study(tmp_path):
     from rocking_cli.studies.fragility.definition import RecordEntry
     from rocking_cli.studies.fragility.sources import Source
 
-    source = Source("column", RecordEntry(file="column.txt"), Reading(), tmp_path / "column.txt")
+    source = Source("column", RecordEntry(file="column.txt"), Reading(), "column.txt", tmp_path / "column.txt")
     with pytest.raises(InputError, match="give it with `dt`,"):
         source.read()

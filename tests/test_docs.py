@@ -16,6 +16,7 @@ import rocking_cli
 from rocking_cli import Registry
 from rocking_cli.cli.main import COMMANDS
 from rocking_cli.core import Angle, Length, Line, box
+from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.testing import contract
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
@@ -193,6 +194,25 @@ def test_the_hollow_body_of_the_guide_holds_the_contract():
     inertia = sum(each.inertia + each.mass * abs(each.centroid - centroid) ** 2 for each in boxes) / mass
     (body,) = chimney.bodies()
     assert (body.mass, body.centroid, body.inertia) == pytest.approx((1.0, centroid, inertia), rel=1e-12)
+
+
+def test_the_measure_of_the_guide_is_what_it_says():
+    section = text_of("plugins.md").partition("## A measure of intensity\n")[2].partition("\n## ")[0]
+    code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
+    head = "from dataclasses import dataclass, field\nfrom rocking_cli.processing.intensity import MotionMeasure\n"
+    names = {"__name__": "guide"}
+    exec(compile(head + code, "guide", "exec", dont_inherit=True), names)
+    measure = names["Bracketed"].read(["2", "8 s"])
+    motion = rocking_cli.read_record(PROJECT / "examples" / "accel.csv")
+    expected = sum((a / 9.80665) ** 2 for a in motion.acceleration[200:801]) / 601
+    assert (str(measure), measure.value(motion)) == ("RMS(2.0:8.0)", pytest.approx(expected**0.5))
+    assert measure.usually() == ("RMS(0:10)",)
+
+
+def test_every_measure_is_explained():
+    page = text_of("measures.md")
+    for name in IntensityMeasures():
+        assert re.search(rf"^\|.*`{re.escape(name)}[`(]", page, re.M), name
 
 
 def test_the_guide_gives_the_signatures_of_what_a_sketch_shows():

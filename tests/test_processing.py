@@ -13,6 +13,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
+from rocking_cli.processing.entry import Entry, of_reading
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import STEPS, parse_step, parse_steps, process
 from tests.conftest import EXAMPLES
@@ -297,6 +298,12 @@ class TestCommands:
         asked = ("--with", ACCEL, "--azimuth", 40, "--neighbours", 0)
         found = run_json("respond", "--record", tmp_path / "set.yaml", *asked)["record"]
         assert found["processing"] == ["with accel_transverse.csv", "azimuth 40"]
+
+    def test_what_is_written_of_a_reading_reads_so_again(self, tmp_path):
+        for azimuth in (0.0, 30.0):
+            asked = Reading(other=TRANSVERSE, azimuth=azimuth, steps=parse_steps(["highpass 0.2"]))
+            entry = Entry.model_validate({"file": ACCEL.name, **of_reading(asked, ACCEL.parent)})
+            assert entry.reading(ACCEL.parent).read(ACCEL).processing == asked.read(ACCEL).processing
 
     def test_a_structure_is_no_list(self, tmp_path):
         said = run("respond", "--record", EXAMPLES / "block.yaml", code=2).stderr

@@ -11,7 +11,6 @@ import yaml
 
 from rocking_cli.plotting.quantiles import draw_quantiles
 from rocking_cli.studies.fragility import assess
-from rocking_cli.studies.fragility.intensity import intensity
 from rocking_cli.studies.fragility.quantiles import Group, Quantiles, all_quantiles, quantiles
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
@@ -54,9 +53,9 @@ def ranked(place, plan, structure, measure):
     """Intensity and peak of every run of a structure, one by one."""
     with Store.reading(place) as store:
         rows = store.runs(0, plan.size)
-    sample, record, *_ = plan.places(rows.id)
+    sample, record, _, level, _ = plan.places(rows.id)
     own = np.array([plan.trials[k].structure == structure for k in sample])
-    x = intensity(measure, plan.motion(record, rows.scale), plan.reference(sample))
+    x = plan.intensities(measure, sample, record, level, rows.scale)
     peak = np.where(rows.outcome != 0, np.inf, np.where(np.isnan(rows.uplift_time), 0.0, rows.peak_ratio))
     return x[own], peak[own], record[own]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import re
@@ -154,6 +155,30 @@ def sniff(content):
 def read(content, file, **options):
     return {}["lost"]
 """
+MEASURES = """
+from dataclasses import dataclass, field
+from rocking_cli.processing.intensity import MotionMeasure
+
+@dataclass(frozen=True)
+class Squared(MotionMeasure):
+    times: float = field(default=1.0)
+    name, title, unit, power = "PGA squared", "a test", "g2", 2.0
+
+    def of(self, motion):
+        return self.times * motion.pga**2
+
+class Divides(MotionMeasure):
+    name, title, power = "Divides", "a test", 1.0
+
+    def of(self, motion):
+        return 1 / 0
+
+class NoPower(MotionMeasure):
+    name, title = "NoPower", "a test"
+
+    def of(self, motion):
+        return 1.0
+"""
 MODULES = {
     "odd.py": ODD,
     "odd_leaves.py": "import sys\nsys.exit(0)\n",
@@ -180,7 +205,14 @@ sniffing_format = odd_sniffer
 
 [rocking.pulses]
 leaving_pulse = odd_leaves:Leaver
+
+[rocking.measures]
+PGA squared = odd_measures:Squared
+Divides = odd_measures:Divides
+Leaves = odd_leaves:Leaver
+NoPower = odd_measures:NoPower
 """,
+    "odd_measures.py": MEASURES,
 }
 
 
@@ -192,6 +224,47 @@ def odd_plugin(tmp_path_factory):
         (site / name).parent.mkdir(exist_ok=True)
         (site / name).write_text(text, encoding="utf-8")
     return {**os.environ, "PYTHONPATH": str(site), "PYTHONWARNINGS": "default"}
+
+
+class TestMeasuresOfOthers:
+    def test_one_is_listed_printed_and_taken_by_a_study(self, odd_plugin, tmp_path):
+        listed = json.loads(rocking(odd_plugin, "measures", "--json").stdout)["measures"]
+        found = {each["name"]: each for each in listed}
+        assert found["PGA squared"]["package"] == "odd 1.0" and found["PGA squared"]["power"] == 2
+        assert found["Leaves"]["title"] is None and found["Sa"]["package"].startswith("rocking-cli ")
+        run = rocking(odd_plugin, "record", str(EXAMPLES / "accel.csv"), "--measures", "pga SQUARED( 3 )", "--json")
+        assert json.loads(run.stdout)["measures"] == {"PGA squared(3.0)": pytest.approx(3 * 0.55**2)}
+        study = tmp_path / "study.yaml"
+        study.write_text(
+            f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: ['{EXAMPLES / 'accel.csv'}']\nmethod: stripes\n"
+            "levels: {measure: PGA squared, values: [0.3025, 1.21]}\n",
+            encoding="utf-8",
+        )
+        run = rocking(odd_plugin, "fragility", str(study), "--json")
+        assert run.returncode == 0 and json.loads(run.stdout)["curves"][0]["measure"] == "PGA squared"
+        rocking(odd_plugin, "results", str(tmp_path / "study.db"), "--out", str(tmp_path / "runs.csv"))
+        rows = list(csv.DictReader((tmp_path / "runs.csv").read_text(encoding="utf-8").splitlines()))
+        assert [float(row["scale"]) for row in rows] == pytest.approx([1.0, 2.0])
+
+    @pytest.mark.parametrize(
+        ("name", "said"),
+        [
+            ("divides", r"the measure Divides failed in of: ZeroDivisionError: .* \(.*odd_measures\.py:\d+\)"),
+            ("leaves", r"plugin Leaves of odd 1\.0 .* cannot be loaded: SystemExit"),
+            ("nopower", r"plugin NoPower of odd 1\.0 .* is no measure: it must derive"),
+        ],
+    )
+    def test_what_goes_wrong_is_its_own(self, odd_plugin, name, said):
+        run = rocking(odd_plugin, "record", str(EXAMPLES / "accel.csv"), "--measures", name)
+        assert run.returncode == 3 and re.search(said, run.stderr) and "Traceback" not in run.stderr
+        broken = json.loads(rocking(odd_plugin, "info", "--json").stdout)["plugins"]["measures"]
+        assert {each["name"] for each in broken if each["broken"]} == {"Leaves", "NoPower"}
+
+    def test_one_that_cannot_be_loaded_leaves_all_others(self, odd_plugin):
+        code = "from rocking_cli.processing.intensity import all_measures; print(*map(str, all_measures()), sep=',')"
+        run = subprocess.run([sys.executable, "-c", code], env=odd_plugin, capture_output=True, text=True, check=True)
+        assert {"PGA", "PGA squared", "Divides"} <= set(run.stdout.strip().split(",")) and "Leaves" not in run.stdout
+        assert "it is left out" in run.stderr
 
 
 class TestPluginsThatGoWrong:

@@ -104,7 +104,7 @@ records:
   - {{pulse: sine:0.6g:1s, dt: 0.1}}
   - 3
 method: strips
-levels: {{measure: PGD, values: [0.1, -1, 0.1, x]}}
+levels: {{measure: PGX, values: [0.1, -1, 0.1, x]}}
 polarities: [1, 2]
 eta: [1.2]
 samples: 1e3
@@ -221,7 +221,7 @@ method: cloud
 levels: {{measure: pga, least: 4, most: 1, count: x}}
 hazard: {{points: [[1, 2], [0.5, 1], [2, x], [3, 5], [1]]}}
 limit_states: [uplift, -1, 0.5, uplift, 0.5]
-bivariate: [[PGA, pga], [PGA, PGV], [PGA, PGD], [pgv, PGA], [PGA, PGV]]
+bivariate: [[PGA, pga], [PGA, PGV], [PGA, PGX], [pgv, PGA], [PGA, PGV]]
 seed: -1
 """
 
@@ -256,7 +256,7 @@ def test_no_mistake_hides_another(tmp_path):
         ("limit_states[2]", 16, "must be uplift"),
         ("bivariate", 17, "PGA and PGV is given twice"),
         ("bivariate[1]", 17, "PGA is paired with itself"),
-        ("bivariate[3][2]", 17, "must be PGA"),
+        ("bivariate[3][2]", 17, "unknown measure: PGX"),
         ("seed", 18, "must be at least 0"),
     } | {("limit_states", 16, "0.5 is given twice")}
 

@@ -170,7 +170,7 @@ def test_all_else_is_as_without_it(whole, tmp_path):
         connection = sqlite3.connect(place)
         versions.append(connection.execute("PRAGMA user_version").fetchone()[0])
         connection.close()
-    assert versions == [store_file.VERSION, 2]
+    assert versions == [store_file.WITHOUT_MEASURED, store_file.WITHOUT_SLIDING] == [3, 2]
 
 
 @pytest.mark.parametrize("size", [1, 7, 1000])

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
+    from rocking_cli.processing.oscillator import ResponseSpectrum
     from rocking_cli.studies.equivalent import EquivalentResponses
     from rocking_cli.studies.fragility.assess import Fragility
     from rocking_cli.studies.linearisation import Linearisation
@@ -215,6 +216,58 @@ def record(motion: Motion, *, scale: float = 1.0) -> Answer[Measures]:
 
     said = f"{read.name}: PGA {found.pga:.3g} g, PGV {found.pgv:.3g} m/s."
     return Answer("record", found, View(lambda: data(seen), [*parts([seen], 100), said]), columns, figure)
+
+
+def response_spectrum(
+    motion: Motion, periods: ArrayLike | None = None, *, damping: float = 0.05, scale: float = 1.0
+) -> Answer[ResponseSpectrum]:
+    """The response spectrum of a ground motion: the largest responses of linear oscillators.
+
+    Parameters
+    ----------
+    motion : GroundMotion, Pulse, str or Path
+        The motion, its file, or a pulse as text.
+    periods : array_like, shape (n,), optional
+        Undamped periods of the oscillators [s]; 200 from 0.02 to 10 s at equal ratios, unless given.
+    damping : float
+        Their damping ratio, from 0 to below 1.
+    scale : float
+        Factor on the motion.
+
+    Returns
+    -------
+    Answer of ResponseSpectrum
+        `periods`, and over them `sd`, the displacement [m], `sv` [m/s] and `sa` [standard gravity], the pseudo-velocity
+        and the pseudo-acceleration.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+
+    Notes
+    -----
+    Exact for the straight lines between samples, while the motion lasts and after it.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> rk.response_spectrum("sine:0.2g:0.8s", [0.8]).sa.round(2).tolist()
+    [0.54]
+    """
+    from rocking_cli.processing.oscillator import response_spectrum as respond_linearly
+    from rocking_cli.views import response_spectrum as views
+
+    scaled = _motion(motion).scaled(scale)
+    found = respond_linearly(scaled, periods, damping)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.response_spectrum import draw_response_spectra
+
+        return draw_response_spectra({scaled.name: found})
+
+    said = views.view(scaled.name, found)
+    return Answer("response spectrum", found, said, lambda: views.table({scaled.name: found}), figure)
 
 
 def respond(
@@ -757,7 +810,11 @@ def equivalent(
 
 
 def fragility(
-    study: str | Path | Mapping[str, Any], *, store: str | Path | None = None, threads: int | None = None
+    study: str | Path | Mapping[str, Any],
+    *,
+    store: str | Path | None = None,
+    threads: int | None = None,
+    rank_measures: bool = False,
 ) -> Answer[list[Fragility]]:
     """Run a fragility study, or go on with it, and fit its curves.
 
@@ -770,6 +827,8 @@ def fragility(
         Where the runs are kept; beside the study, unless given; of one given in Python study.db in this folder.
     threads : int, optional
         Histories at a time; without it, one for each processor.
+    rank_measures : bool
+        Whether to say which of all measures of intensity serves, too.
 
     Returns
     -------
@@ -805,7 +864,7 @@ def fragility(
         place = Path(store) if store is not None else Path(study).with_suffix(".db")
     asked = load_study(study)
     with Store.writing(place, anew=False, say=lambda text: None) as kept:
-        prepared = campaign.prepare(asked, kept)
+        prepared = campaign.prepare(asked, kept, rank_measures=rank_measures)
         with engines.threads(threads) as engine:
             campaign.run(prepared, kept, engine)
     with Store.reading(place) as kept:
@@ -816,7 +875,12 @@ def fragility(
         curves, surfaces = assess.fitted(counted, definition, hazard, lambda count: None)
         shown = view(kept, plan, definition, *kept.count(), curves, surfaces)
         shown = with_quantiles(shown, list(all_quantiles(kept, plan, definition)), in_words=False)
-        blocks = list(table.blocks(kept, plan))
+        if rank_measures:
+            from rocking_cli.studies.fragility.ranking import rank
+            from rocking_cli.views.ranking import added
+
+            shown = added(shown, rank(kept, plan, definition))
+        blocks = list(table.blocks(kept, plan, definition.asked_measures))
 
     def columns() -> Columns:
         return {name: [value for block in blocks for value in block[name]] for name in blocks[0]}

@@ -54,6 +54,7 @@ class Running:
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the dask.distributed cluster of this scheduler.")
 @click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
 @click.option("--restart", is_flag=True, help="Begin anew; the present store is kept under another name.")
+@click.option("--rank-measures", is_flag=True, help="Also say which of all measures serves: `rocking measures`.")
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
 @options.nrml
 @options.quantiles
@@ -79,7 +80,7 @@ def command(
     \b
     Example:
       rocking fragility study.yaml --check
-      rocking fragility study.yaml --plot pictures
+      rocking fragility study.yaml --plot pictures --rank-measures
       rocking fragility study.yaml --scheduler tcp://10.0.0.1:8786
       rocking results study.db --out runs.csv
     """
@@ -108,7 +109,7 @@ def command(
             check_writable(place)
             if shown.plot is not None:
                 folder(shown.plot)
-            _bring_up_to_date(study, place, running)
+            _bring_up_to_date(study, place, running, rank_measures=shown.rank_measures)
             with Store.reading(place) as kept:
                 complete = show_study(kept, shown, as_json=as_json)
     except KeyboardInterrupt as stopped:
@@ -130,10 +131,10 @@ def _check(study: Study, *, as_json: bool) -> bool:
     return not left_out(plan)
 
 
-def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
+def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measures: bool) -> None:
     """Run what the store does not hold; to begin anew all, and the old store is kept under another name."""
     from rocking_cli.cli import waiting
-    from rocking_cli.studies.fragility.campaign import prepare, run
+    from rocking_cli.studies.fragility.campaign import prepare, run, steps
     from rocking_cli.studies.fragility.store import Store
 
     with ExitStack() as stack:
@@ -141,8 +142,8 @@ def _bring_up_to_date(study: Study, place: Path, running: Running) -> None:
         engine = stack.enter_context(running.engine()) if running.restart else None
         say = terminal.note if running.restart else terminal.warning
         store = stack.enter_context(Store.writing(place, anew=running.restart, say=say))
-        with terminal.progress(len(study.sources) + len(study.samples), "records and structures") as examined:
-            prepared = prepare(study, store, examined)
+        with terminal.progress(steps(study, rank_measures=rank_measures), "records and structures") as examined:
+            prepared = prepare(study, store, examined, rank_measures=rank_measures)
         _report(prepared)
         if prepared.finished == prepared.plan.total:
             return

@@ -82,27 +82,42 @@ def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
 def read(record: Listed, reading: Reading) -> GroundMotion:
     """Read a record; what of its reading is a default, and was not typed, holds only where the file does not say."""
     from rocking_cli.excitation.records.opening import allow_again
-    from rocking_cli.excitation.records.sensor import size_of
 
-    if from_default("units") and reading.units is not None:
-        read_as = record.reading(reading)
-        of = read_as.quantity or "acceleration"
-        if read_as.gain is not None or (read_as.units == reading.units and size_of(reading.units, of) is None):
-            reading = replace(reading, units=None)  # it says nothing of such a record
-    given = record.reading(reading)
-    typed = record.reading(
-        replace(
-            reading,
-            dt=None if from_default("dt") else reading.dt,
-            units=None if from_default("units") else reading.units,
-            channel=None if from_default("channel") else reading.channel,
-        )
-    )
+    given, typed = _given_and_typed(record, reading)
     if typed != given:
         with suppress(InputError):
-            return typed.read(record.path)
+            return record.as_said(typed.read(record.path))
         allow_again(record.path)
-    return given.read(record.path)
+    return record.as_said(given.read(record.path))
+
+
+def settled(record: Listed, reading: Reading) -> Reading:
+    """How `read` read a file, not standard input: without the defaults, unless the file needs them."""
+    given, typed = _given_and_typed(record, reading)
+    if typed != given:
+        with suppress(InputError):
+            typed.read(record.path)
+            return typed
+    return given
+
+
+def _given_and_typed(record: Listed, reading: Reading) -> tuple[Reading, Reading]:
+    """How to read a record with the defaults of options, and without: what a list says of it is no default."""
+    from rocking_cli.excitation.records.sensor import size_of
+
+    given = record.reading(reading)
+    if from_default("units") and reading.units is not None:
+        of = given.quantity or "acceleration"
+        if given.gain is not None or (given.units == reading.units and size_of(reading.units, of) is None):
+            reading = replace(reading, units=None)  # it says nothing of such a record
+            given = record.reading(reading)
+    typed = replace(
+        reading,
+        dt=None if from_default("dt") else reading.dt,
+        units=None if from_default("units") else reading.units,
+        channel=None if from_default("channel") else reading.channel,
+    )
+    return given, record.reading(typed)
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
@@ -187,12 +202,12 @@ def gather(
     sources: list[Listed | Pulse] = [*records, *dict.fromkeys(parse_pulse(text) for text in pulses)]
     found: list[Scaled] = []
     doubtful: list[tuple[GroundMotion, list[Doubt]]] = []
-    for source in sources:
+    for place, source in enumerate(sources):
         try:
             if isinstance(source, tuple):
-                each = Scaled(read(source, reading), 1.0, file=source.path)
+                each = Scaled(read(source, reading), 1.0, file=source.path, place=place)
             else:
-                each = Scaled(reading.on_floor(source.sampled()), 1.0, pulse=source)
+                each = Scaled(reading.on_floor(source.sampled()), 1.0, pulse=source, place=place)
             motion = each.motion
             measured = measure(motion.of_ground)
             each = each._replace(factor=factor(motion, measured, *asked))

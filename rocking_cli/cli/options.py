@@ -38,9 +38,9 @@ def restitution(ctx: click.Context, param: click.Parameter, value: float | None)
     return value
 
 
-def share(ctx: click.Context, param: click.Parameter, value: float) -> float:
+def share(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
     """A callback for a number from 0 to below 1."""
-    if not 0 <= value < 1:
+    if value is not None and not 0 <= value < 1:
         raise click.BadParameter(f"{value:g} is not a number from 0 to below 1.", ctx, param)
     return value
 

@@ -14,14 +14,47 @@ import click
 from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import Output, Reading, Scaling
 from rocking_cli.cli.pictures import write_picture
+from rocking_cli.cli.quantities import PERIOD, Range, Share
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
 
 if TYPE_CHECKING:
+    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.pulse_fit import PulseFit
+    from rocking_cli.processing.intensity import Measure
+    from rocking_cli.processing.oscillator import ResponseSpectrum
     from rocking_cli.views.record import Examined
 
 PATIENCE = 1.0  # s without a word
+
+
+@dataclass(frozen=True)
+class More:
+    """What is asked of records beside what is always said."""
+
+    structure: str | None
+    fit_pulse: bool
+    measures: str | None
+    spectrum: Path | None
+    period: tuple[float, float] | None
+    damping: float | None
+
+    def __post_init__(self) -> None:
+        if self.spectrum is None and (self.period is not None or self.damping is not None):
+            raise click.UsageError("--period and --damping are of a response spectrum: give --spectrum FILE.csv.")
+        if self.measures is not None:  # before any record is read
+            from rocking_cli.processing.intensity import parse_measures
+
+            parse_measures(self.measures)
+
+    @property
+    def prepared(self) -> Prepared | None:
+        """The structure, made ready."""
+        if self.structure is None:
+            return None
+        from rocking_cli.cli import structures
+
+        return structures.prepared([self.structure])
 
 
 def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
@@ -52,18 +85,28 @@ def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | No
     metavar="PLACE",
     help="Write each as a clean file of t and a: FILE.csv, or a folder, made if absent, for NAME.csv.",
 )
+@click.option("--measures", metavar="M,M,...", help="Also these measures: `rocking measures` lists them; or all.")
+@click.option(
+    "--spectrum",
+    callback=options.output_path(".csv"),
+    metavar="FILE.csv",
+    help="Write the response spectrum of each; --plot draws it, --json has it.  - is standard output.",
+)
+@click.option(
+    "--period", type=Range(PERIOD), metavar="LOW:HIGH", help="Periods of the spectrum, in s.  [default: 0.02:10]"
+)
+@click.option("--damping", type=Share(), callback=options.share, help="Damping of the spectrum.  [default: 5%]")
 @click.option("--to", type=click.Choice(["csv"]), hidden=True, expose_value=False, callback=_folder_of_today)
-@options.plot("Draw one record")
+@options.plot("Draw one record, or spectra")
 @options.as_json
 @click.pass_context
-@options.grouped(reading=Reading, scaling=Scaling, output=Output)
+@options.grouped(reading=Reading, scaling=Scaling, more=More, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
     reading: Reading,
     scaling: Scaling,
-    structure: str | None,
-    fit_pulse: bool,
+    more: More,
     output: Output,
 ) -> None:
     """What was read of records, and how strong they are: peaks, Arias intensity, durations.
@@ -83,18 +126,21 @@ def command(
       rocking record station.V2 --channel 2 --out clean.csv
       rocking record table.csv --channel "acc x" --units g
       rocking record accel.csv --fit-pulse --plot pulse.png
+      rocking record "north.AT2" "east.AT2" --spectrum spectra.csv --plot spectra.png
+      rocking record accel.csv --measures "Sa(1.0), CAV, PGV/v_imp" --structure frame.yaml
     """
     out, plot = output.out, output.plot
-    if plot is not None and (len(files) > 1 or scaling.polarity == "both"):
+    if plot is not None and more.spectrum is None and (len(files) > 1 or scaling.polarity == "both"):
         raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
     from rocking_cli.io.files import keep_apart
     from rocking_cli.views.record import data, parts
     from rocking_cli.views.view import View
 
     clean = _clean_paths(out, files, reading.channel, scaling.signs) if out is not None else {}
-    keep_apart([("--plot", plot), *(("--out", path) for path in clean.values())], [*files, structure])
+    kept = [("--plot", plot), ("--spectrum", more.spectrum), *(("--out", path) for path in clean.values())]
+    keep_apart(kept, [*files, more.structure])
     _make_room(out, clean.values())
-    asked = _Asked(reading, scaling, _frequency(structure) if structure is not None else None, fit_pulse, clean, plot)
+    asked = _Asked(reading, scaling, more, more.prepared, clean, plot if more.spectrum is None else None)
     examined: list[Examined] = []
     for file in files:
         try:
@@ -108,6 +154,8 @@ def command(
             for one in found:
                 terminal.print_json(data(one))
         motion_files.warn(found[0].motion, found[0].doubts)
+    if examined and more.spectrum is not None:
+        _give_spectra(examined, more.spectrum, plot)
     if examined and not output.as_json:
         terminal.show(View({}, list(parts(examined, terminal.width()))), as_json=False)
     if len(examined) < len(files) * len(scaling.signs):
@@ -156,14 +204,28 @@ def _make_room(out: Path | None, paths: Iterable[Path]) -> None:
         check_writable(path)
 
 
-def _frequency(structure: str) -> float:
-    """The larger frequency parameter of a structure [rad/s]."""
-    from rocking_cli.cli import structures
+def _give_spectra(examined: Sequence[Examined], file: Path, plot: Path | None) -> None:
+    """Write the spectra of all records into one file, and draw them in one picture."""
+    from rocking_cli.cli import table_files
+    from rocking_cli.views.response_spectrum import table
 
-    return structures.prepared([structure]).p
+    spectra: dict[str, ResponseSpectrum] = {}
+    for each in examined:
+        assert each.spectrum is not None
+        names = (
+            each.label,
+            f"{each.label} ({each.file})",
+            *(f"{each.label} ({k})" for k in range(2, len(examined) + 2)),
+        )
+        spectra[next(name for name in names if name not in spectra)] = each.spectrum
+    table_files.write(file, [table(spectra)])
+    if plot is not None:
+        from rocking_cli.plotting.response_spectrum import draw_response_spectra
+
+        write_picture(plot, draw_response_spectra(spectra))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Asked:
     """What is asked of every record.
 
@@ -171,10 +233,10 @@ class _Asked:
     ----------
     reading, scaling : Reading, Scaling
         How it is read and scaled.
-    p : float or None
-        The frequency parameter to hold its interval against [rad/s].
-    fit_pulse : bool
-        Whether to fit pulses.
+    more : More
+        What is asked besides.
+    structure : Prepared or None
+        What its interval is held against, and what relative measures refer to.
     clean : mapping of (str, int) to Path
         Where its clean file goes, by the record and the polarity; empty for none.
     plot : Path or None
@@ -183,8 +245,8 @@ class _Asked:
 
     reading: Reading
     scaling: Scaling
-    p: float | None
-    fit_pulse: bool
+    more: More
+    structure: Prepared | None
     clean: Mapping[tuple[str, int], Path]
     plot: Path | None
 
@@ -225,13 +287,35 @@ class _Asked:
         from rocking_cli.excitation.measures import measure
         from rocking_cli.views.record import Examined
 
-        own, p = measure(motion.of_ground), self.p
+        own, p = measure(motion.of_ground), self.structure.p if self.structure is not None else None
         found = doubts(motion.of_ground, own) + (coarse_for(motion, p) if p is not None else [])
         factor = polarity * motion_files.factor(motion, own, *self.scaling.scaling)
         scaled = motion.scaled(factor)
-        fits = _fit(scaled) if self.fit_pulse else []
+        fits = _fit(scaled) if self.more.fit_pulse else []
         p_dt = p * motion.dt if p is not None else None
-        return Examined(file, motion.name, motion, factor, measure(scaled), found, p_dt, fits), scaled
+        seen = Examined(file, motion.name, motion, factor, measure(scaled), found, p_dt, fits)
+        return seen._replace(asked=self._measured(scaled), spectrum=self._spectrum(scaled)), scaled
+
+    def _measured(self, motion: GroundMotion) -> dict[Measure, float]:
+        """The measures that are asked for by name; of all there are those that can be had without a structure."""
+        if self.more.measures is None:
+            return {}
+        from rocking_cli.processing.intensity import ALL, parse_measures
+        from rocking_cli.studies.strength import intensities, reference_of
+
+        asked = parse_measures(self.more.measures)
+        if self.structure is None and self.more.measures.strip().lower() == ALL:
+            asked = [each for each in asked if not each.is_relative]
+        return intensities(motion, asked, reference_of(self.structure) if self.structure is not None else None)
+
+    def _spectrum(self, motion: GroundMotion) -> ResponseSpectrum | None:
+        if self.more.spectrum is None:
+            return None
+        from rocking_cli.processing import oscillator
+
+        low, high = self.more.period or (oscillator.SHORTEST, oscillator.LONGEST)
+        damping = oscillator.DAMPING if self.more.damping is None else self.more.damping
+        return oscillator.response_spectrum(motion, oscillator.periods_between(low, high), damping)
 
 
 def _fit(motion: GroundMotion) -> list[PulseFit]:

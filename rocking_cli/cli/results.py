@@ -26,6 +26,7 @@ from rocking_cli.errors import INCOMPLETE
 @options.nrml
 @options.quantiles
 @click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@click.option("--rank-measures", is_flag=True, help="Also say which of the measures that it knows serves.")
 @options.as_json
 @click.pass_context
 @options.grouped(shown=Shown, tables=Tables)
@@ -39,6 +40,7 @@ def command(ctx: click.Context, file: str, shown: Shown, tables: Tables, as_json
       rocking results study.db
       rocking results study.db --out runs.parquet --plot pictures
       rocking results study.db --curves curves.csv --nrml fragility.xml
+      rocking results study.db --rank-measures
     """
     from rocking_cli.io.files import folder, keep_apart
     from rocking_cli.io.tables import check_table

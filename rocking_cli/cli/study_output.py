@@ -15,15 +15,17 @@ if TYPE_CHECKING:
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store
+    from rocking_cli.views.view import View
 
 
 @dataclass(frozen=True)
 class Shown:
-    """How curves are shown besides as a table: drawn in a folder, for OpenQuake, and with quantiles."""
+    """How curves are shown besides as a table: drawn in a folder, for OpenQuake, with quantiles and by measure."""
 
     plot: str | None
     nrml: Path | None
     quantiles: bool
+    rank_measures: bool
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json
     finished, failed = store.count()
     curves, surfaces = _fitted(store, plan, definition)
     if tables.out is not None:
-        _write(tables.out, store, plan)
+        _write(tables.out, store, plan, definition)
     if tables.curves is not None:
         _write_curves(tables.curves, curves)
     asked = shown.quantiles or as_json or shown.plot is not None
@@ -60,7 +62,10 @@ def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json
 
         draw_all(Path(shown.plot), store, definition, curves, surfaces, spread)
     result = view(store, plan, definition, finished, failed, curves, surfaces)
-    terminal.show(with_quantiles(result, spread, in_words=shown.quantiles), as_json=as_json)
+    result = with_quantiles(result, spread, in_words=shown.quantiles)
+    if shown.rank_measures:
+        result = _with_ranking(result, store, plan, definition, shown)
+    terminal.show(result, as_json=as_json)
     if shown.nrml is not None:  # last: whatever OpenQuake does not take has been shown
         _write_nrml(shown.nrml, store, str(result.parts[0]), curves)
     if failed:
@@ -81,6 +86,20 @@ def _definition(store: Store) -> Definition:
         raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
 
 
+def _with_ranking(result: View, store: Store, plan: Plan, definition: Definition, shown: Shown) -> View:
+    """What is shown, and which measures serve; drawn too if there are to be pictures."""
+    from rocking_cli.studies.fragility.ranking import rank
+    from rocking_cli.views.ranking import added
+
+    with terminal.progress(plan.size, "runs ranked") as counted:
+        rankings = rank(store, plan, definition, counted)
+    if shown.plot is not None:
+        from rocking_cli.cli.study_pictures import draw_rankings
+
+        draw_rankings(Path(shown.plot), rankings)
+    return added(result, rankings)
+
+
 def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Fragility], list[Bivariate]]:
     """Count the runs of a store, and fit what its study asks for."""
     import numpy as np
@@ -97,11 +116,11 @@ def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Frag
         return assess.fitted(found, definition, hazard, advance)
 
 
-def _write(out: Path, store: Store, plan: Plan) -> None:
+def _write(out: Path, store: Store, plan: Plan, definition: Definition) -> None:
     from rocking_cli.cli import table_files
     from rocking_cli.studies.fragility.table import blocks
 
-    table_files.write(out, blocks(store, plan))
+    table_files.write(out, blocks(store, plan, definition.asked_measures))
 
 
 def _write_curves(out: Path, curves: Sequence[Fragility]) -> None:

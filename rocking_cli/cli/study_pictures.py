@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.quantiles import Quantiles
+    from rocking_cli.studies.fragility.ranking import Ranking
     from rocking_cli.studies.fragility.store import Store
 
 
@@ -74,6 +75,23 @@ def _save(folder: Path, drawn: Mapping[str, Figure]) -> None:
             save(folder / file, figure)
             advance(1)
     terminal.note(f"wrote {len(drawn)} pictures to {folder}")
+
+
+def draw_rankings(folder: Path, rankings: Sequence[Ranking]) -> None:
+    """Draw which measures serve, a picture for each structure."""
+    from rocking_cli.cli.pictures import save
+    from rocking_cli.plotting.ranking import draw_ranking
+
+    drawn: dict[str, Ranking] = {}
+    for each in rankings:
+        if each.measures:
+            plain = re.sub(r"[^\w>.]+", "-", f"{each.structure} which measure serves").strip("-")
+            names = (f"{plain}{'-' + str(k) if k > 1 else ''}.png" for k in count(1))
+            taken = {name.lower() for name in drawn}  # many file systems are blind to case
+            drawn[next(name for name in names if name.lower() not in taken)] = each
+    for file, ranking in drawn.items():
+        save(folder / file, draw_ranking(ranking))
+    terminal.note(f"wrote {len(drawn)} picture{'s' * (len(drawn) != 1)} of measures to {folder}")
 
 
 def _increments(store: Store, structure: str, definition: Definition) -> Figure:

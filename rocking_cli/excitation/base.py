@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.errors import InputError
 
@@ -33,6 +33,30 @@ class Doubt(NamedTuple):
     kind: str
     value: float
     text: str
+
+
+class Origin(NamedTuple):
+    """Which earthquake a record is of, and where it was taken, as far as its file says so for sure.
+
+    Parameters
+    ----------
+    event : str or None
+        The earthquake: its name, or when it was.
+    station : str or None
+        Name or code.
+    magnitude : float or None
+        Of the moment where the file gives several.
+    distance : float or None
+        From the epicentre, or as the file says [km].
+    """
+
+    event: str | None = None
+    station: str | None = None
+    magnitude: float | None = None
+    distance: float | None = None
+
+
+NOT_SAID = Origin()
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +88,8 @@ class GroundMotion:
         What was done to it since it was read, in order, as it would be asked for again: `"highpass 0.1"`.
     ground : GroundMotion, optional
         Of the motion of a floor, that of the ground below: its peaks are what a motion is scaled to.
+    origin : Origin, optional
+        The earthquake and the station, as far as its file says.
 
     Raises
     ------
@@ -82,6 +108,7 @@ class GroundMotion:
     remarks: tuple[Doubt, ...] = ()
     processing: tuple[str, ...] = ()
     ground: GroundMotion | None = None
+    origin: Origin = NOT_SAID
 
     def __post_init__(self) -> None:
         samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)
@@ -155,6 +182,24 @@ class GroundMotion:
         from rocking_cli import record  # by its public name: a motion knows nothing of pictures
 
         return record(self).plot(file)
+
+    def response_spectrum(self, periods: ArrayLike | None = None, damping: float = 0.05) -> Any:
+        """Its response spectrum, as `rocking_cli.response_spectrum` gives it.
+
+        Parameters
+        ----------
+        periods : array_like, shape (n,), optional
+            Of the oscillators [s]; 200 from 0.02 to 10 s at equal ratios, unless given.
+        damping : float
+            Their damping ratio.
+
+        Returns
+        -------
+        Answer of ResponseSpectrum
+        """
+        from rocking_cli import response_spectrum  # by its public name: a motion knows nothing of oscillators
+
+        return response_spectrum(self, periods, damping=damping)
 
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion with every acceleration multiplied by `factor`, named so.

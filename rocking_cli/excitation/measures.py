@@ -35,7 +35,9 @@ class Measures:
     t_5, t_95 : float or None
         When 5 and 95 % of it have built up [s]; None without any.
     mean_period : float or None
-        2 pi times the rms acceleration over the rms of its rate [s]; None where the acceleration never changes.
+        2 pi times the rms acceleration over the rms of its rate [s]; None where the acceleration never changes. It is
+        the square root of a mean of squared frequencies turned over, and so shorter than the mean period `Tm` of
+        `processing.intensity`, a mean of periods over the Fourier spectrum.
     """
 
     pga: float
@@ -59,6 +61,12 @@ class Measures:
 def arias_build_up(motion: GroundMotion) -> Reals:
     """Arias intensity of the motion up to each sample [m/s]; over its last value, a Husid plot."""
     return from_zero(_squared(motion)) * (pi / (2 * STANDARD_GRAVITY))
+
+
+def time_of_share(motion: GroundMotion, share: float) -> float | None:
+    """When a share of the Arias intensity has built up [s]; None of a motion that is zero throughout."""
+    built = arias_build_up(motion)
+    return _time_of(motion, built, share * float(built[-1])) if built[-1] > 0 else None
 
 
 def measure(motion: GroundMotion) -> Measures:

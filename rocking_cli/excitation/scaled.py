@@ -11,9 +11,10 @@ if TYPE_CHECKING:
 
 
 class Scaled(NamedTuple):
-    """A ground motion as read, the factor on it, and the pulse or the file that it comes from."""
+    """A ground motion as read, the factor on it, the pulse or file it comes from, and its place among those asked."""
 
     motion: GroundMotion
     factor: float
     pulse: Pulse | None = None
     file: Path | None = None
+    place: int = 0

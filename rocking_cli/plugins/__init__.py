@@ -1,1 +1,1 @@
-"""What other packages add: mechanisms, record readers and pulse shapes."""
+"""What other packages add: mechanisms, record readers, pulse shapes and measures of intensity."""

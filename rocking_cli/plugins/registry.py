@@ -1,4 +1,4 @@
-"""Plugins of one kind by name, whatever they are: mechanisms, record readers, pulse shapes."""
+"""Plugins of one kind by name, whatever they are: mechanisms, record readers, pulse shapes, measures of intensity."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -70,6 +71,8 @@ class Entry(BaseModel):
     processing: Steps | None = Field(None, description="corrections in their order, such as `- highpass: 0.1`")
     floor: FloorText | None = Field(None, description="the floor that the structure stands on, such as {T1: 0.4, ...}")
     factor: float | None = Field(None, description="factor on the record, as one of a set")
+    event: str | None = Field(None, description="the earthquake, where its file does not say")
+    station: str | None = Field(None, description="the station, where its file does not say")
     weight: Positive = Field(1.0, description="how much it counts beside others")
 
     def reading(self, folder: Path, common: Reading = Reading()) -> Reading:  # noqa: B008 - it does not change
@@ -113,3 +116,36 @@ def _first(own: Any, common: Any) -> Any:
 def as_written(entry: Entry) -> Mapping[str, Any]:
     """What an entry says, apart from its file, by the names that it is written with."""
     return entry.model_dump(exclude={"file"}, exclude_defaults=True, by_alias=True)
+
+
+def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
+    """What an entry says for its record to be read so, by the names that it is written with.
+
+    Parameters
+    ----------
+    reading : Reading
+        How it is read.
+    folder : Path
+        What its files are to be relative to.
+    """
+    said = {
+        "units": reading.units,
+        "dt": reading.dt,
+        "channel": reading.channel,
+        "from": reading.quantity,
+        "gain": str(reading.gain) if reading.gain is not None else None,
+        "with": relative(Path(reading.other), folder) if reading.other is not None else None,
+        "with_channel": reading.other_channel,
+        "azimuth": reading.azimuth if reading.other is not None else None,
+        "processing": [str(step) for step in reading.steps] or None,
+        "floor": str(reading.floor) if reading.floor is not None else None,
+    }
+    return {key: value for key, value in said.items() if value is not None}
+
+
+def relative(file: Path, folder: Path) -> str:
+    """A file as seen from a folder; of another drive of Windows its whole path."""
+    try:
+        return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
+    except ValueError:
+        return str(file.resolve())

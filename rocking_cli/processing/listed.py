@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.origins import name
 from rocking_cli.processing.reading import Reading
 
 if TYPE_CHECKING:  # pydantic is for who gives a list
@@ -34,7 +35,15 @@ class Listed(NamedTuple):
 
     def read(self, common: Reading) -> GroundMotion:
         """The motion. Raises `InputError` if it cannot be read."""
-        return self.reading(common).read(self.path)
+        return self.as_said(self.reading(common).read(self.path))
+
+    def as_said(self, motion: GroundMotion) -> GroundMotion:
+        """The motion with the earthquake and the station that the list gives, in the place of those of its file."""
+        if self.entry is None:
+            return motion
+        own = motion.origin
+        event, station = name(self.entry.event) or own.event, name(self.entry.station) or own.station
+        return replace(motion, origin=own._replace(event=event, station=station))
 
 
 def is_list(path: Path) -> bool:

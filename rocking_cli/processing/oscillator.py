@@ -27,6 +27,11 @@ BLOCK = 64  # samples advanced at once
 SMALL = 0.5  # of |m|: below it phi_1 and phi_2 come from their series, without a difference of close numbers
 TERMS = 18
 DAMPING = 0.05
+SHORTEST, LONGEST, PERIODS = (
+    0.02,
+    10.0,
+    200,
+)  # of a spectrum unless asked otherwise: s, s, and how many
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,15 +102,17 @@ def relative_response(motion: GroundMotion, period: float, damping: float) -> tu
     return -z.imag / w_d, -(mu * z).imag / w_d, parts
 
 
-def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float = DAMPING) -> ResponseSpectrum:
+def response_spectrum(
+    motion: GroundMotion, periods: ArrayLike | None = None, damping: float = DAMPING
+) -> ResponseSpectrum:
     """Spectrum of the responses of linear oscillators to a ground motion, while it lasts and after it.
 
     Parameters
     ----------
     motion : GroundMotion
         Straight between its samples.
-    periods : array_like, shape (n,)
-        Undamped periods [s], positive.
+    periods : array_like, shape (n,), optional
+        Undamped periods [s], positive; 200 from 0.02 to 10 s at equal ratios, unless given.
     damping : float
         Damping ratio, from 0 to below 1.
 
@@ -118,8 +125,15 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     InputError
         If a period is not positive, or the damping ratio is out of range.
     """
+    if periods is None:
+        periods = periods_between(SHORTEST, LONGEST)
     asked = np.atleast_1d(np.asarray(periods, dtype=np.float64))
     return ResponseSpectrum(asked, damping, np.array([_peak(motion, float(period), damping) for period in asked]))
+
+
+def periods_between(low: float, high: float) -> Reals:
+    """The periods of a spectrum [s], at equal ratios."""
+    return np.geomspace(low, high, PERIODS)
 
 
 def check_oscillator(period: float, damping: float) -> None:
@@ -157,8 +171,11 @@ def _advance(growth: complex, forcing: NDArray[np.complex128]) -> NDArray[np.com
     padded = np.zeros(blocks * BLOCK, dtype=np.complex128)
     padded[: forcing.size] = forcing
     powers = growth ** np.arange(BLOCK + 1)
-    lag = np.subtract.outer(np.arange(BLOCK), np.arange(BLOCK))
-    within = padded.reshape(blocks, BLOCK) @ np.where(lag >= 0, powers[np.maximum(lag, 0)], 0.0).T
+    # All blocks go on side by side: no matrix, whose product many threads share, which a busy machine makes slow.
+    rows = np.ascontiguousarray(padded.reshape(blocks, BLOCK).T)
+    for k in range(1, BLOCK):
+        rows[k] += growth * rows[k - 1]
+    within = rows.T
     before = np.zeros(blocks, dtype=np.complex128)
     for k in range(1, blocks):
         before[k] = powers[BLOCK] * before[k - 1] + within[k - 1, -1]

@@ -16,6 +16,7 @@ from rocking_cli.errors import RockingError
 from rocking_cli.excitation.pulses import PulseShapes
 from rocking_cli.excitation.records.registry import Readers
 from rocking_cli.plugins.registry import Plugins
+from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.studies.compiling import CALLED
 
 OURS = "rocking-cli"
@@ -25,7 +26,7 @@ WITHOUT = ("dev", "docs", "bench", "release")
 
 @dataclass(frozen=True)
 class Plugin:
-    """An installed mechanism, record reader or pulse shape.
+    """An installed mechanism, record reader, pulse shape or measure of intensity.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ class Installation:
     extras : mapping of str to mapping
         For each extra of the package, those packages likewise.
     plugins : mapping of str to tuple of Plugin
-        Under `mechanisms`, `records` and `pulses`.
+        Under `mechanisms`, `records`, `pulses` and `measures`.
     cache : str
         The folder of the compiled kernels.
     unwritable : str or None
@@ -90,6 +91,7 @@ def examine() -> Installation:
             "mechanisms": _plugins(Registry()),
             "records": _plugins(Readers()),
             "pulses": _plugins(PulseShapes()),
+            "measures": _plugins(IntensityMeasures()),
         },
         str(cache_folder()),
         unwritable(),

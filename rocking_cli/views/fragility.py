@@ -7,6 +7,8 @@ from dataclasses import asdict
 from math import isinf
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rocking_cli.studies.fragility.displacements import kept, metres
 from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.views.view import ABSENT, Table, View, number
@@ -105,6 +107,7 @@ def view(
     parts: list[Table | str] = [
         f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}, seed {definition.seed}"
     ]
+    parts += sets_in_words(plan)
     for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):
         these = [each for each in curves if (each.structure, each.measure) == (structure, measure)]
         parts += _curves(structure, measure, these, confidence)
@@ -112,6 +115,7 @@ def view(
         those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
         parts += _surfaces(structure, measures, those, confidence)
     parts += [*without_block(plan), *out_of_reach(store, plan, definition)]
+    parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
         "store": str(store.path),
@@ -125,11 +129,51 @@ def view(
         "left_out": left_out(plan),
         "without_block": without_block(plan),
         "out_of_reach": out_of_reach(store, plan, definition),
-        "records": [asdict(each) for each in plan.records],
+        "without_curve": nowhere,
+        "records": _records(plan),
         "curves": [_curve_data(each) for each in curves],
         "surfaces": [_surface_data(each) for each in surfaces],
     }
     return View(data, parts)
+
+
+def sets_in_words(plan: Plan) -> list[str]:
+    """A sentence on sets of records for levels, and one on weights, where there are any."""
+    sets, said = plan.of_sets, []
+    usable = np.array([each.reason is None for each in plan.records])
+    if (sets.level >= 0).any():
+        counts = [int((usable & ((sets.level == k) | (sets.level < 0))).sum()) for k in range(len(plan.levels))]
+        few, many = min(counts), max(counts)
+        each = f"{few}" if few == many else f"{few} to {many}"
+        used = "scaled to it" if sets.scaled else "used as they are"
+        said.append(f"Each level has a set of records of its own: {each} at a level, {used}.")
+    if sets.weighted:
+        low, high = float(sets.weight.min()), float(sets.weight.max())
+        said.append(
+            f"Records count by their weights, {low:.3g} to {high:.3g}: intervals, bands and tests take each record as "
+            "a cluster."
+        )
+    return said
+
+
+def _records(plan: Plan) -> list[dict[str, Any]]:
+    """What is known of each record, with the level that it is of a set for, and its weight."""
+    sets = plan.of_sets
+    return [
+        {**asdict(each), "level": plan.levels[sets.level[k]] if sets.level[k] >= 0 else None, "weight": weight}
+        for k, (each, weight) in enumerate(zip(plan.records, sets.weight.tolist(), strict=True))
+    ]
+
+
+def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) -> list[str]:
+    """A sentence on each measure that no run of a structure has above zero, so that there is no curve over it."""
+    known = {(each.structure, each.measure) for each in curves}
+    return [
+        f"{structure}: no run has a {measure} above zero, and there is no curve over it."
+        for structure in dict.fromkeys(each.structure for each in plan.trials if each.reason is None)
+        for measure in definition.fitted_measures
+        if (structure, measure) not in known
+    ]
 
 
 def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidence: float) -> Iterator[Table | str]:
@@ -153,6 +197,7 @@ def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidenc
     yield Table(f"{structure}, over {label(measure)}", columns, rows, numbers=range(2, len(columns)))
     for each in curves:
         yield f"{limit_name(each.limit)}: {each.curve.why}.{_in_years(each.rate)}"
+    yield from _left_out(measure, curves[0].left_out)
     yield from _warnings([each.curve for each in curves])
 
 
@@ -175,7 +220,14 @@ def _surfaces(
     )
     for each in surfaces:
         yield f"{limit_name(each.limit)}: {each.surface.why}."
+    yield from _left_out(" or ".join(measures), surfaces[0].left_out)
     yield from _warnings([each.surface for each in surfaces])
+
+
+def _left_out(measure: str, runs: int) -> Iterator[str]:
+    """How many runs are in no fit over a measure."""
+    if runs:
+        yield f"{runs:,} run{'s have' if runs > 1 else ' has'} no {measure} above zero, and no part in this."
 
 
 def _warnings(fitted: Sequence[Curve | Surface]) -> Iterator[str]:
@@ -222,6 +274,7 @@ def _curve_data(found: Fragility) -> dict[str, Any]:
         "aic": curve.aic,
         "runs": curve.runs,
         "exceedances": curve.exceedances,
+        "left_out": found.left_out,
         "distinct_records": curve.records,
         "warning": curve.warning or None,
         "annual_rate": None if found.rate is None else asdict(found.rate),
@@ -241,6 +294,7 @@ def _surface_data(found: Bivariate) -> dict[str, Any]:
         "p_values": surface.p_values,
         "runs": surface.runs,
         "exceedances": surface.exceedances,
+        "left_out": found.left_out,
         "distinct_records": surface.records,
         "warning": surface.warning or None,
     }

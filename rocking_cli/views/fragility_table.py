@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.assess import Fragility
-from rocking_cli.studies.fragility.intensity import MEASURES
 
 POINTS = 101  # of a curve
 WIDEST = 30.0  # ratio of the least and the largest intensity from which on steps are of equal ratio
@@ -32,7 +32,7 @@ def blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[object
         curve = each.curve
         x = _intensities(each)
         low, high = curve.band(x)
-        words = (each.structure, f"{each.limit}", each.measure, MEASURES[each.measure].unit, curve.kind)
+        words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, curve.kind)
         found = [curve.median, curve.dispersion, curve.scale]
         same = [np.full(x.size, np.nan if one is None else one.value) for one in found]
         columns = zip(NUMBERS, [*same, x, curve.probability(x), low, high], strict=True)

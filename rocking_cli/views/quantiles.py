@@ -7,7 +7,8 @@ from math import isinf, isnan
 from typing import Any
 
 from rocking_cli.names import OVERTURNS, percent
-from rocking_cli.studies.fragility.intensity import MEASURES, label
+from rocking_cli.processing.intensity import parse_measure
+from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.studies.fragility.quantiles import SHARES, Group, Quantiles
 from rocking_cli.views.view import ABSENT, Table, View, number
 
@@ -55,7 +56,7 @@ def _data(found: Quantiles) -> dict[str, Any]:
     return {
         "structure": found.structure,
         "measure": found.measure,
-        "unit": MEASURES[found.measure].unit,
+        "unit": parse_measure(found.measure).unit,
         "groups": "stripes" if found.stripes else "tenths",
         "shares": list(SHARES),
         "intensities": [_group(each) for each in found.groups],

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli.views import processing
+from rocking_cli.views import response_spectrum as spectra
 from rocking_cli.views.view import ABSENT, Table, number
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import Doubt, GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulse_fit import PulseFit
+    from rocking_cli.processing.intensity import Measure
+    from rocking_cli.processing.oscillator import ResponseSpectrum
 
 HEADING = 14  # characters of a line of a record's name above its column, where blanks in it allow
 LEFT = 26  # characters that labels and units take of a table
@@ -23,7 +26,8 @@ BESIDE = 3  # blanks between columns
 class Examined(NamedTuple):
     """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses.
 
-    `label` is what to call it: of both polarities the reversed one says so.
+    `label` is what to call it: of both polarities the reversed one says so. `asked` are measures that were asked for by
+    name, `spectrum` its response spectrum.
     """
 
     file: str
@@ -34,6 +38,8 @@ class Examined(NamedTuple):
     doubts: list[Doubt]
     p_dt: float | None
     pulses: list[PulseFit]
+    asked: Mapping[Measure, float] = {}
+    spectrum: ResponseSpectrum | None = None
 
 
 def data(record: Examined) -> dict[str, Any]:
@@ -45,6 +51,7 @@ def data(record: Examined) -> dict[str, Any]:
         "format": motion.format,
         "channel": _channel(record),
         "unit": motion.unit,
+        "origin": motion.origin._asdict(),
         "npts": motion.npts,
         "dt": motion.dt,
         "duration": motion.duration,
@@ -67,6 +74,10 @@ def data(record: Examined) -> dict[str, Any]:
         from rocking_cli.views.pulse_fits import fits_data
 
         found["pulses"] = fits_data(record.pulses)
+    if record.asked:
+        found["measures"] = {str(measure): value for measure, value in record.asked.items()}
+    if record.spectrum is not None:
+        found["spectrum"] = spectra.data(record.spectrum)
     return found
 
 
@@ -93,6 +104,7 @@ def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | st
             from rocking_cli.views import pulse_fits
 
             yield from pulse_fits.parts(record.label, record.pulses)
+    yield from (spectra.peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
 
 
 def _rows(records: Sequence[Examined]) -> list[list[str]]:
@@ -101,6 +113,10 @@ def _rows(records: Sequence[Examined]) -> list[list[str]]:
         ("format", [_folded(r.motion.format) for r in records], ""),
         ("channel", [_channel(r) or ABSENT for r in records], ""),
         ("unit in the file", [r.motion.unit for r in records], ""),
+        ("earthquake", [_folded(r.motion.origin.event or ABSENT) for r in records], ""),
+        ("station", [_folded(r.motion.origin.station or ABSENT) for r in records], ""),
+        ("magnitude", [number(r.motion.origin.magnitude) for r in records], ""),
+        ("distance", [number(r.motion.origin.distance, 4) for r in records], "km"),
         ("points", [str(r.motion.npts) for r in records], ""),
         ("dt", [number(r.motion.dt) for r in records], "s"),
         ("duration", [number(r.motion.duration) for r in records], "s"),
@@ -115,8 +131,10 @@ def _rows(records: Sequence[Examined]) -> list[list[str]]:
         ("to", [number(r.measures.t_95, 4) for r in records], "s"),
         ("mean acceleration", [number(r.measures.mean, 2) for r in records], "g"),
         ("p dt", [number(r.p_dt, 2) for r in records], ""),
+        *((str(each), [number(r.asked[each], 4) for r in records], each.unit) for each in records[0].asked),
     ]
     silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
+    silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
     return [
         [label, *cells, unit]
         for label, cells, unit in rows

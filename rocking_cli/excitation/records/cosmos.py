@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import Doubt, GroundMotion
+from rocking_cli.excitation.base import Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.layout import (
     Block,
     Channel,
@@ -22,6 +23,7 @@ from rocking_cli.excitation.records.layout import (
     whole_number,
 )
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.origins import first_match, magnitude, origin
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.excitation.records.text import numbers_in
 
@@ -46,19 +48,25 @@ _END = re.compile(r"End-of-data for Chan *(\S+)", re.I)
 # Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
 _DT_MS, _DT_RAW = 62, 34
 _PEAK, _PEAK_TIME = 64, 65  # of the values, and when [s]
+_DISTANCE = 17  # from the epicentre [km]
 _UNSET = -999
+_EVENT = re.compile(r"^\s*(?:Rec(?:or)?d of )?(.*\b(?:19|20)\d\d\b.*)", re.I)
+_STATION = re.compile(
+    r"Statn No: *\S+ +Code: *(\S+)(?: +[A-Z]{2,5} +(\S.*))?"
+)  # the code, and the name behind the agency
 _LINE = 10_000  # characters looked at of the first line
 _TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # more than any header has
 
 
 @dataclass(frozen=True)
 class _Headers:
-    """What the headers of a channel say: name, real numbers and where they begin, index of the first data line."""
+    """What the headers of a channel say: name, real numbers and where they begin, first data line, where it is from."""
 
     name: str
     reals: NDArray[np.float64]
     reals_line: int
     data: int
+    origin: Origin
 
 
 def sniff(text: str) -> bool:
@@ -100,7 +108,8 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
         hint = "the file may have been cut or edited: download it again"
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
     index = start + whole_number(file, start + 1, lines[start], first[3], "number of text lines", most=_TEXT_LINES)
-    azimuth = next((match[1] for line in lines[start:index] if (match := _AZIMUTH.match(line))), "")
+    text = lines[start:index]
+    azimuth = next((match[1] for line in text if (match := _AZIMUTH.match(line))), "")
     reals, reals_line = np.array([]), start + 1
     for kind in ("integer", "real"):
         match = _NUMBERS.match(lines[index]) if index < len(lines) else None
@@ -116,7 +125,16 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
     if index < len(lines) and (match := _COMMENTS.match(lines[index])):
         what = "number of comment lines"
         index += 1 + whole_number(file, index + 1, lines[index], match[1], what, least=0, most=_COMMENT_LINES)
-    return _Headers(azimuth, reals, reals_line, index)
+    return _Headers(azimuth, reals, reals_line, index, _origin(text, reals))
+
+
+def _origin(text: Sequence[str], reals: NDArray[np.float64]) -> Origin:
+    """The earthquake, in the second line if that has a year, the station, the magnitude and the distance."""
+    station = next((match for line in text if (match := _STATION.match(line))), None)
+    hypocentre = next((line for line in text if line.startswith("Hypocenter")), "")
+    distance = reals[_DISTANCE - 1] if reals.size >= _DISTANCE else None
+    where = (station[2] or station[1]) if station is not None else None
+    return origin(first_match(_EVENT, text[1:2]), where, magnitude(hypocentre), distance)
 
 
 def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str | None) -> tuple[Channel | str, int]:
@@ -148,7 +166,9 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
     mark = _END.match(lines[end]) if end < len(lines) else None
     name = mark[1] if mark and not mark[1].isdecimal() else headers.name
     remarks += _peak(headers, values, own, unit)
-    return Channel(name, own, in_si(values, unit), unit, headers.reals_line, remarks=remarks), end
+    return Channel(
+        name, own, in_si(values, unit), unit, headers.reals_line, remarks=remarks, origin=headers.origin
+    ), end
 
 
 def _peak(headers: _Headers, values: NDArray[np.float64], dt: float, unit: str) -> tuple[Doubt, ...]:

@@ -20,12 +20,15 @@ from rocking_cli.excitation.records.layout import (
     stated_unit,
     whole_number,
 )
+from rocking_cli.excitation.records.origins import of_csmip
 from rocking_cli.excitation.records.stated import peak_doubts
 
 TITLE = "CSMIP V2"
 SIGN = "a line such as 3251 POINTS OF ACCEL DATA EQUALLY SPACED AT .020 SEC"
 
 _DATA = re.compile(r"\s*(\d+) +POINTS OF (ACCEL|VELOC|DISPL)\w* +DATA EQUALLY SPACED AT +(\S+?) *SEC\b(.*)", re.I)
+_FIRST = re.compile(r"\s*CORRECTED ACCELEROGRAM\b", re.I)
+_TEXT_LINES = 25
 _UNIT = re.compile(r"(?:\bunits:|\bin) *([^,()]*?\w)\.? *(?:[,()]|$|format)", re.I)
 _FORMAT = re.compile(r"\b\d+F(\d+)\.\d+", re.I)
 _CHANNEL = re.compile(r"\bCHAN(?:NEL)? +\d+: *(.*\S)", re.I)
@@ -47,11 +50,13 @@ def read(
     channels = []
     name = ""
     peak: tuple[int, str, str] | None = None
-    index = 0
+    index = start = 0
     while index < len(lines):
         line = lines[index]
         index += 1
         # The first line of a channel has it too, followed by more; the one that begins with it comes later.
+        if _FIRST.match(line):
+            start = index - 1
         if match := _CHANNEL.match(line.strip()):
             name = match[1]
         if match := _PEAK.match(line.strip()):
@@ -70,7 +75,9 @@ def read(
             unit = stated_unit(file, block.header_line, spelling[1] if spelling else "", units)
             if peak is not None:
                 remarks += peak_doubts(100 * in_si(values, unit), own, "cm/s2", *peak)
-            channels.append(Channel(name, own, in_si(values, unit), unit, block.header_line, remarks=remarks))
+            origin = of_csmip(lines[start : min(start + _TEXT_LINES, block.header_line)])
+            line_number = block.header_line
+            channels.append(Channel(name, own, in_si(values, unit), unit, line_number, remarks=remarks, origin=origin))
             peak = None
         elif channels and not math.isclose(own, channels[-1].dt):
             message = f"the interval is {own:g} s, but that of its accelerations {channels[-1].dt:g} s"

@@ -22,6 +22,7 @@ from rocking_cli.excitation.records.layout import (
     whole_number,
 )
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.origins import of_csmip
 from rocking_cli.excitation.records.stated import length_doubts
 
 TITLE = "CSMIP V1"
@@ -62,8 +63,9 @@ def read(
     start = 0
     while start < len(lines):
         if lines[start].strip() and not lines[start].startswith("/&"):
+            head = lines[start : start + _TEXT_LINES]
             found, start = _channel(file, lines, start, units)
-            channels.append(found)
+            channels.append(replace(found, origin=of_csmip(head)))
         else:
             start += 1
     return choose(file, TITLE, channels, channel, dt)

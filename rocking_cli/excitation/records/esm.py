@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records.layout import (
     Block,
     Channel,
@@ -17,12 +18,14 @@ from rocking_cli.excitation.records.layout import (
     stated_unit,
     whole_number,
 )
+from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
 
 TITLE = "ESM ASCII"
 SIGN = "header lines SAMPLING_INTERVAL_S: and NDATA:"
 
 _KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(.*)")
+_DAY, _TIME = re.compile(r"(\d{4})(\d{2})(\d{2})"), re.compile(r"(\d{2})(\d{2})(\d{2})")
 _HEAD = 20_000  # characters the header is sought in
 
 
@@ -66,5 +69,18 @@ def read(
     length_line, length = header.get("DURATION_S", (0, ""))
     remarks += length_doubts(count * own, length_line, length, own)
     _, stream = header.get("STREAM", (0, ""))
-    found = Channel(stream, own, in_si(values, unit), unit, dt_line, remarks=remarks)
+    found = Channel(stream, own, in_si(values, unit), unit, dt_line, remarks=remarks, origin=_origin(header))
     return choose(file, TITLE, [found], channel, dt)
+
+
+def _origin(header: Mapping[str, tuple[int, str]]) -> Origin:
+    """The earthquake by its name, which others have too, and its time."""
+    said = {key: value for key, (_, value) in header.items()}
+    day, time = _DAY.fullmatch(said.get("EVENT_DATE_YYYYMMDD", "")), _TIME.fullmatch(said.get("EVENT_TIME_HHMMSS", ""))
+    when = [sign.join(match.groups()) for sign, match in (("-", day), (":", time)) if match is not None]
+    event = " ".join([said.get("EVENT_NAME", ""), *when]) if day is not None else said.get("EVENT_ID", "")
+    station = said.get("STATION_CODE", "")
+    if station and said.get("NETWORK"):
+        station = f"{said['NETWORK']}.{station}"
+    magnitude = said.get("MAGNITUDE_W") or said.get("MAGNITUDE_L")
+    return origin(event, station, magnitude, said.get("EPICENTRAL_DISTANCE_KM"))

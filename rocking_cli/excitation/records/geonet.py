@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records.layout import (
     Block,
     Channel,
@@ -19,6 +19,7 @@ from rocking_cli.excitation.records.layout import (
     whole_number,
 )
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
 
 TITLE = "GeoNet V2A"
@@ -34,6 +35,10 @@ _DURATION = re.compile(r"Duration\s+(\S+)\s+sec")
 _DT = re.compile(r"data at\s+(\S+)\s+sec intervals")
 _COMPONENT = re.compile(r"Component\s+(\S+)")
 _UNIT = re.compile(r"Acceleration:\s+peak\s+\S+\s+(\S+)")
+_STATION = re.compile(r"^Site +(\S+)")
+_EVENT = re.compile(r"^(\d{4} [A-Z][a-z]+ +\d{1,2} +\d{2}:\d{2}:\d{2}(?: UT)?)")
+_DISTANCE = re.compile(r"^Epicentre .*\bDist +(\S+?) *km\b")
+_MAGNITUDE = re.compile(r"^Epicentre .*\bM +(\S+)")
 _PEAK = re.compile(r"Acceleration:\s+peak\s+(\S+)")
 
 
@@ -91,7 +96,14 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
         remarks += peak_doubts(values, own, unit, unit_line, match[1])
     if match := _DURATION.search(lines[count_line - 1]):
         remarks += length_doubts((npts - 1) * own, count_line, match[1], own)
-    return Channel(name, own, in_si(values, unit), unit, dt_line, remarks=remarks), end
+    origin = _origin(lines[start : start + _TEXT_LINES])
+    return Channel(name, own, in_si(values, unit), unit, dt_line, remarks=remarks, origin=origin), end
+
+
+def _origin(head: Sequence[str]) -> Origin:
+    """The earthquake, which has no name there but its time, and the site."""
+    patterns = (_EVENT, _STATION, _MAGNITUDE, _DISTANCE)
+    return origin(*(first_match(pattern, head) for pattern in patterns))
 
 
 def _find(file: str, lines: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:

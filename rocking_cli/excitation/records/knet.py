@@ -20,6 +20,7 @@ from rocking_cli.excitation.records.layout import (
     stated_unit,
     whole_number,
 )
+from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.excitation.records.text import sensible
 
@@ -31,6 +32,9 @@ _DURATION = re.compile(r"Duration Time *\(s\)\s+(\S+)\s*$")
 _SCALE = re.compile(r"Scale Factor\s+([\d.]+) *\((.*?)\) */ *([\d.]+)\s*$")
 _PEAK = re.compile(r"Max\. Acc\. *\(.*?\)\s+(\S+)\s*$")
 _DIRECTION = re.compile(r"Dir\.\s+(\S+)")
+_EVENT = re.compile(r"^Origin Time\s+(\d{4}/\d{2}/\d{2} \d{2}:\d{2}:\d{2})")
+_MAGNITUDE = re.compile(r"^Mag\.\s+(\S+)")
+_STATION = re.compile(r"^Station Code\s+(\S+)")
 _HEADER_LINES = 17
 _WIDTH, _AFTER = 9, 1  # characters to a number, the last of them a blank
 
@@ -70,9 +74,11 @@ def read(
     if peak is not None:
         remarks += peak_doubts(scaled, 1 / rate, scale[1], *peak)
     direction = next((match[1] for line in head if (match := _DIRECTION.match(line))), "")
-    return choose(
-        file, TITLE, [Channel(direction, 1 / rate, acceleration, unit, rate_line, remarks=remarks)], channel, dt
+    event, station, magnitude = (first_match(pattern, head) for pattern in (_EVENT, _STATION, _MAGNITUDE))
+    found = Channel(
+        direction, 1 / rate, acceleration, unit, rate_line, remarks=remarks, origin=origin(event, station, magnitude)
     )
+    return choose(file, TITLE, [found], channel, dt)
 
 
 def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, tuple[str, ...]]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
+from rocking_cli.excitation.base import NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
 from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, resolve_unit
@@ -84,6 +84,8 @@ class Channel:
         Indexes of the samples that were recorded, if not all of them.
     remarks : tuple of Doubt, optional
         What is doubtful about its place in the file.
+    origin : Origin, optional
+        The earthquake and the station.
     """
 
     name: str
@@ -94,6 +96,7 @@ class Channel:
     flaw: Problem | None = None
     points: NDArray[np.intp] | None = None
     remarks: tuple[Doubt, ...] = ()
+    origin: Origin = NOT_SAID
 
 
 class Numbers(NamedTuple):
@@ -369,7 +372,14 @@ def choose(
     if len(channels) > 1:
         name += f" channel {chosen.name or 1 + list(channels).index(chosen)}"
     return GroundMotion(
-        name, chosen.dt, chosen.acceleration, chosen.unit, form, points=chosen.points, remarks=chosen.remarks
+        name,
+        chosen.dt,
+        chosen.acceleration,
+        chosen.unit,
+        form,
+        points=chosen.points,
+        remarks=chosen.remarks,
+        origin=chosen.origin,
     )
 
 

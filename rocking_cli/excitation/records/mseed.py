@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import Channel, choose
-from rocking_cli.excitation.records.seismo import channel_of, traces, velocity_code
+from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
 from rocking_cli.excitation.records.sensor import Wanted
 
 TITLE = "miniSEED"
@@ -76,7 +77,8 @@ def _joined(file: str, name: str, segments: Sequence[Any], unit: tuple[str, floa
     segments = sorted(segments, key=lambda segment: segment.stats.starttime)
     flaw = velocity_code(file, segments[0].stats.channel, wanted) or _gap(file, name, segments)
     samples = np.concatenate([segment.data for segment in segments])
-    return channel_of(file, name, segments[0].stats.delta, samples, unit, flaw)
+    found = channel_of(file, name, segments[0].stats.delta, samples, unit, flaw)
+    return replace(found, origin=origin_of(segments[0]))
 
 
 def _gap(file: str, name: str, segments: Sequence[Any]) -> Problem | None:

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import NOT_SAID, GroundMotion, Origin
 from rocking_cli.excitation.records.layout import lines_of, whole_number
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.origins import of_peer
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
 from rocking_cli.excitation.records.widths import Rows, odd_digits, odd_row, split_numbers
@@ -73,7 +74,13 @@ def read(
         message = f"a record needs at least two samples, this has {header.npts}"
         raise InputError(Problem(message, file=file, line=header.npts_line))
     remarks = tuple(odd_digits(rows))
-    return GroundMotion(Path(file).name, header.dt, values * UNITS[unit], unit, TITLE, remarks=remarks)
+    name, origin = Path(file).name, _origin(lines)
+    return GroundMotion(name, header.dt, values * UNITS[unit], unit, TITLE, remarks=remarks, origin=origin)
+
+
+def _origin(lines: Sequence[str]) -> Origin:
+    """The earthquake and the station: below the title of the database alone, as others write what they like there."""
+    return of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
 
 
 def _header(file: str, lines: Sequence[str]) -> _Header:

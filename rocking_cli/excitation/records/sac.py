@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import choose
-from rocking_cli.excitation.records.seismo import channel_of, traces, velocity_code
+from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
 from rocking_cli.excitation.records.sensor import Wanted
 
 TITLE = "SAC"
@@ -82,7 +82,8 @@ def read(
     flaw = None if header.quantity == _ACCELERATION else velocity_code(file, name, wanted)
     # 0.005 is stored as the nearest float of 32 bits, 0.004999999888: the shortest decimal of that was meant.
     own = float(str(np.float32(header.delta)))
-    found = replace(channel_of(file, name, own, trace.data, unit, flaw), remarks=_extremes(header, trace.data))
+    found = channel_of(file, name, own, trace.data, unit, flaw)
+    found = replace(found, remarks=_extremes(header, trace.data), origin=origin_of(trace))
     return choose(file, TITLE, [found], channel, dt)
 
 

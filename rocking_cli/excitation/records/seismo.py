@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.base import STANDARD_GRAVITY, Origin
 from rocking_cli.excitation.records.layout import Channel
+from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.sensor import Wanted
 from rocking_cli.excitation.records.text import sensible, usable
 from rocking_cli.excitation.records.units import UNITS
@@ -65,6 +66,14 @@ def traces(data: bytes, file: str, form: str) -> list[Any]:
         hint = "it may be damaged: download it again; if you know it is whole, write it anew with obspy"
         raise InputError(Problem(message, file, hint=hint))
     return found
+
+
+def origin_of(trace: Any) -> Origin:
+    """Network and station of a trace; of SAC also the name of the event, its magnitude and its distance [km]."""
+    stats = trace.stats
+    station = ".".join(part for part in (str(stats.network).strip(), str(stats.station).strip()) if part)
+    sac = stats.get("sac", {})
+    return origin(str(sac.get("kevnm", "")), station, sac.get("mag"), sac.get("dist"))
 
 
 def channel_of(

@@ -14,6 +14,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import in_si
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.origins import of_info
 from rocking_cli.excitation.records.text import check_interval, only_channel, sensible
 from rocking_cli.excitation.records.units import resolve_unit
 from rocking_cli.excitation.records.widths import Rows, odd_digits
@@ -76,7 +77,8 @@ def read(
     remarks = _one_missing(stated) if one_too_many else ()
     remarks += _digits(text)
     acceleration = in_si(np.array(values, dtype=np.float64), unit)
-    return GroundMotion(Path(file).name, float(own), acceleration, unit, TITLE, remarks=remarks)
+    origin = of_info(info)
+    return GroundMotion(Path(file).name, float(own), acceleration, unit, TITLE, remarks=remarks, origin=origin)
 
 
 class _TwiceError(Exception):

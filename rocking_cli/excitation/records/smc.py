@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records.layout import (
     Block,
     Channel,
@@ -19,6 +20,7 @@ from rocking_cli.excitation.records.layout import (
     stated_unit,
     whole_number,
 )
+from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import peak_doubts
 
 TITLE = "USGS SMC"
@@ -32,6 +34,10 @@ _TEXT_LINES = 11
 _INTEGERS = Block(_TEXT_LINES, 48, 10, 1)
 _REALS = Block(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
 _DATA_WIDTH = 10
+_EVENT = re.compile(r" *(\d{4}) +(\d{1,2}) +(\d{1,2}) +(\d{4}) +(\S.*)")  # year, month, day, time, name
+_MOMENT, _LOCAL, _SURFACE = (re.compile(rf"{kind}= *([\d.]+)") for kind in ("Moment Mag", r"\bMl", r"\bMs"))
+_STATION = re.compile(r"^station *= *(.*?),? *\bcomponent *=")
+_DISTANCE = re.compile(r"^epicentral dist *= *([\d.]+)")
 
 
 def sniff(text: str) -> bool:
@@ -78,5 +84,17 @@ def read(
         time, peak = max(extremes, key=lambda each: abs(each[1]))
         remarks += peak_doubts(values, 1 / rate, unit, _REALS.start + 6, f"{peak:.7E}", f"{time:.7E}")
     component = re.search(r"component *= *(-?\w+)", "\n".join(lines[:_TEXT_LINES]))
-    found = Channel(component[1] if component else "", 1 / rate, in_si(values, unit), unit, rate_line, remarks=remarks)
+    name, origin = component[1] if component else "", _origin(lines[:_TEXT_LINES])
+    found = Channel(name, 1 / rate, in_si(values, unit), unit, rate_line, remarks=remarks, origin=origin)
     return choose(file, TITLE, [found], channel, dt)
+
+
+def _origin(head: Sequence[str]) -> Origin:
+    """The earthquake by its name and time, the station, the magnitude and the distance of the text header."""
+    match = _EVENT.fullmatch(head[3][:200].rstrip()) if len(head) > 3 else None
+    event = None
+    if match is not None:
+        year, month, day, time, name = match.groups()
+        event = f"{name} {year}-{month:0>2}-{day:0>2} {time[:2]}:{time[2:]}"
+    magnitude = next((found for each in (_MOMENT, _LOCAL, _SURFACE) if (found := first_match(each, head))), None)
+    return origin(event, first_match(_STATION, head), magnitude, first_match(_DISTANCE, head))

@@ -18,6 +18,7 @@ from rocking_cli.excitation.records.layout import (
     straight_lines,
     whole_number,
 )
+from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import length_doubts
 
 TITLE = "USC V1"
@@ -28,6 +29,8 @@ _COUNT = re.compile(r"NO\. OF POINTS *= *(\d+)")
 _DURATION = re.compile(r"DURATION *= *(\S+) *SEC")
 _UNITS = re.compile(r"UNITS ARE SEC AND (.*?)(?:\s+\d+|\s{2,}.*)?$")
 _COMPONENT = re.compile(r"COMP\s+(\S+)")
+_EVENT = re.compile(r"^(.*\bEARTHQUAKE\b.*?)(?:\s+\d+)?\s*$")
+_STATION = re.compile(r"^STATION (USC# *\d+)")
 _INTEGERS, _REALS = 100, 50
 
 
@@ -60,7 +63,9 @@ def read(
     if match := _DURATION.search(lines[count_line - 1]):
         remarks += length_doubts(float(pairs[-2]), count_line, match[1], 0.0)
     name = next((match[1] for line in lines[:15] if (match := _COMPONENT.match(line))), "")
-    return choose(file, TITLE, [Channel(name, step, acceleration, unit, points=points, remarks=remarks)], channel, dt)
+    where = origin(first_match(_EVENT, lines[7:8]), first_match(_STATION, lines[:15]))
+    found = Channel(name, step, acceleration, unit, points=points, remarks=remarks, origin=where)
+    return choose(file, TITLE, [found], channel, dt)
 
 
 def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, str]:

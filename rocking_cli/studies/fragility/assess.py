@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.curves import (
     Curve,
     Observations,
@@ -39,6 +40,8 @@ class Fragility:
         The fit.
     rate : Rate or None
         How often it is exceeded a year, where the hazard is known.
+    left_out : int
+        Runs whose intensity is not above zero, or not known, and which no curve over its logarithm can hold.
     """
 
     structure: str
@@ -47,6 +50,7 @@ class Fragility:
     seen: Observations
     curve: Curve
     rate: Rate | None
+    left_out: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +68,7 @@ class Bivariate:
     runs: Integers
     exceeding: Integers
     surface: Surface
+    left_out: int = 0
 
 
 def structures(plan: Plan) -> list[str]:
@@ -125,25 +130,35 @@ def fitted(
 def curves(
     tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None
 ) -> Iterator[Fragility]:  # fmt: skip
-    """The fragility curves of a structure: each limit state over each measure."""
+    """The fragility curves of a structure: each limit state over each measure that is above zero in any run."""
     confidence = definition.confidence
     for measure in definition.fitted_measures:
         cells = tally.over(measure)
-        x, level = cells.intensities(measure), cells.level if tally.decided_by_level(measure) else None
+        x = cells.intensities(measure)
+        there = x > 0  # not of those that are not known, either
+        if not there.any():
+            continue
+        x, runs = x[there], cells.runs[there]
+        record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+        level = cells.level[there] if tally.decided_by_level(measure) else None
         for limit in definition.limit_states:
             exceeding = cells.exceeding(limit) if tally.ladders is None else cells.of(tally.ladders.above(limit))
-            seen = Observations.of(x, exceeding, cells.record, level=level, runs=cells.runs)
+            seen = Observations.of(x, exceeding[there], record, level=level, runs=runs, weight=weight)
             if tally.ladders is None:
                 curve = fit_curve(seen, confidence=confidence)
+            elif parse_measure(measure).power == 0:
+                why = f"{measure} is the same at every level, so that no record has a capacity in it"
+                curve = Curve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
             else:
                 tried = np.unique(x) if level is not None else None
+                lower, upper, of = _capacities(tally, measure, limit, cells)
                 curve = fit_capacities(
-                    *_capacities(tally, measure, limit, cells), levels=tried, confidence=confidence
-                )  # fmt: skip
+                    lower, upper, tally.one(of), levels=tried, confidence=confidence, weight=tally.weight(of)
+                )
             rate = None
             if hazard is not None and curve.kind != "none" and definition.hazard_measure == measure:
                 rate = annual_rate(curve, hazard)
-            yield Fragility(structure, limit, measure, seen, curve, rate)
+            yield Fragility(structure, limit, measure, seen, curve, rate, int(cells.runs[~there].sum()))
 
 
 def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple[Reals, Reals, Integers]:
@@ -160,7 +175,9 @@ def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple
     def at(level: Integers) -> Reals:
         return intensities(tally.plan, measure, sample + tally.samples.start, record, np.clip(level, 0, levels - 1))
 
-    return np.where(last >= 0, at(last), 0.0), np.where(began < levels, at(began), np.inf), record
+    lower, upper = np.where(last >= 0, at(last), 0.0), np.where(began < levels, at(began), np.inf)
+    sound = lower < upper  # else it does not grow with the level, or is not known
+    return lower[sound], upper[sound], record[sound]
 
 
 def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[Bivariate]:
@@ -168,9 +185,11 @@ def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[B
     for one, other in definition.bivariate:
         cells = tally.over(one, other)
         x1, x2 = cells.intensities(one), cells.intensities(other)
-        for limit in definition.limit_states:
-            exceeding = cells.exceeding(limit)
-            surface = fit_surface(
-                x1, x2, exceeding, cells.record, runs=cells.runs, confidence=definition.confidence
-            )  # fmt: skip
-            yield Bivariate(structure, limit, (one, other), x1, x2, cells.runs, exceeding, surface)
+        there = (x1 > 0) & (x2 > 0)
+        x1, x2, runs = x1[there], x2[there], cells.runs[there]
+        record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+        for limit in definition.limit_states if there.any() else []:
+            exceeding = cells.exceeding(limit)[there]
+            surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
+            left_out = int(cells.runs[~there].sum())
+            yield Bivariate(structure, limit, (one, other), x1, x2, runs, exceeding, surface, left_out)

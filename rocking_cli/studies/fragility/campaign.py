@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from math import isclose, nan
@@ -14,9 +14,12 @@ from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equival
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.displacements import FACT, asked_for
 from rocking_cli.studies.fragility.engines import Engine
+from rocking_cli.studies.fragility.intensity import PGA, PGV
+from rocking_cli.studies.fragility.measuring import complete
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
 from rocking_cli.studies.fragility.reached import rotations
 from rocking_cli.studies.fragility.sources import KeptMotions
@@ -57,7 +60,9 @@ class Prepared:
     mended: tuple[str, ...]
 
 
-def prepare(study: Study, store: Store, examined: Examined | None = None) -> Prepared:
+def prepare(
+    study: Study, store: Store, examined: Examined | None = None, *, rank_measures: bool = False
+) -> Prepared:  # fmt: skip
     """Examine what a study runs, and begin its store or hold it against what the store was begun with.
 
     Parameters
@@ -68,6 +73,8 @@ def prepare(study: Study, store: Store, examined: Examined | None = None) -> Pre
         Open to write.
     examined : callable, optional
         Called with the number of records and structures examined since the last call.
+    rank_measures : bool
+        Whether to measure and keep all that the measures which are installed need, besides what the study asks for.
 
     Raises
     ------
@@ -85,20 +92,38 @@ def prepare(study: Study, store: Store, examined: Examined | None = None) -> Pre
         "name": study.name,
         "definition": given.model_dump(mode="json", exclude_unset=True, by_alias=True),
         "hazard": _hazard(study),
+        "weights": [source.entry.weight for source in study.sources],
     }
     if known is None:
         _refuse_useless(plan)
+    else:
+        _refuse_changes(store, facts, known, plan)
+    every = [str(each) for each in all_measures()] if rank_measures else []
+    told = examined if examined is not None and _measures(study, rank_measures=rank_measures) else lambda count: None
+    plan = measured(study, plan, motions, [*given.asked_measures, *every], told, origins=rank_measures)
+    if known is None:
         asked |= _displacements(study, plan, {})
         store.begin(plan, {**facts, **asked, "libraries": libraries()})
     else:
-        _refuse_changes(store, facts, known, plan)
         asked |= _displacements(study, plan, store.facts().get(FACT, {}))
         for k in mended:
             store.replace_record(k, records[k])
         store.note(asked)
+        store.keep(plan.measured)
         store.commit()
     finished, failed = store.count()
     return Prepared(study, plan, motions, finished, failed, tuple(records[k].name for k in mended))
+
+
+def steps(study: Study, *, rank_measures: bool = False) -> int:
+    """How much `prepare` tells: of structures and records, and of records again where more than peaks are measured."""
+    return len(study.samples) + len(study.sources) * (1 + _measures(study, rank_measures=rank_measures))
+
+
+def _measures(study: Study, *, rank_measures: bool) -> bool:
+    """Whether records are measured beyond their peaks."""
+    bases = (parse_measure(name).base for name in study.definition.asked_measures)
+    return rank_measures or any(base is None or str(base) not in (PGA, PGV) for base in bases)
 
 
 def survey(study: Study, examined: Examined | None = None, known: Plan | None = None) -> tuple[Plan, KeptMotions]:
@@ -132,7 +157,35 @@ def survey(study: Study, examined: Examined | None = None, known: Plan | None = 
         tell(1)
     given = study.definition
     etas = given.eta if given.eta is not None else [nan]
-    return Plan(trials, records, etas, given.levels.measure, given.levels.levels(), given.polarities), motions
+    levels = given.levels.levels()
+    plan = Plan(trials, records, etas, given.levels.measure, levels, given.polarities, sets=study.sets)
+    if known is not None and _of_one_kind(known, plan):
+        plan = replace(plan, measured=known.measured)
+    return measured(study, plan, motions, ()), motions
+
+
+def measured(
+    study: Study,
+    plan: Plan,
+    motions: KeptMotions,
+    measures: Sequence[str],
+    told: Examined = lambda count: None,
+    *,
+    origins: bool = False,
+) -> Plan:
+    """The plan with what its levels and some measures need, and with what records state of their earthquake."""
+    mechanisms = [sample.mechanism for sample in study.samples]
+    return complete(plan, mechanisms, study.definition.model, motions, measures, told, origins=origins)
+
+
+def _of_one_kind(one: Plan, other: Plan) -> bool:
+    """Whether what was measured for a plan holds for another: same records, samples and levels in their order."""
+    return (
+        [each.name for each in one.records] == [each.name for each in other.records]
+        and [(each.structure, each.number) for each in one.trials]
+        == [(each.structure, each.number) for each in other.trials]
+        and (one.measure, list(one.levels)) == (other.measure, list(other.levels))
+    )
 
 
 def run(prepared: Prepared, store: Store, engine: Engine, progress: Progress | None = None) -> None:
@@ -200,7 +253,7 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
     try:
         found = equivalent_block(mechanism)
     except NoEquivalentBlock as error:
-        needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else asked.measures_in_p
+        needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else asked.measures_of_a_block
         if needs:
             raise NoEquivalentBlock(f"{' and '.join(needs)} cannot be had of it: {error}") from error
         sides = both_statics(mechanism)

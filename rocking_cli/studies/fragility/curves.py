@@ -10,7 +10,7 @@ import numpy as np
 from rocking_cli.errors import InputError
 from rocking_cli.studies.fragility.fit import Counts, Estimate, Fit, fit_brackets, fit_outcomes, too_few
 from rocking_cli.studies.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
-from rocking_cli.studies.fragility.likelihood import Integers, Link, Reals
+from rocking_cli.studies.fragility.likelihood import Integers, Link, Reals, totals
 from rocking_cli.studies.fragility.observed import Observations, few_records, one_of_each
 from rocking_cli.studies.fragility.surfaces import Surface, fit_surface
 
@@ -171,6 +171,7 @@ def fit_capacities(
     *,
     levels: Reals | None = None,
     confidence: float = 0.95,
+    weight: Reals | None = None,
 ) -> Curve:
     """Fit a lognormal curve to the capacities of records: incremental dynamic analysis.
 
@@ -185,6 +186,8 @@ def fit_capacities(
         The levels that were tried, where they are the same for all; without them the curve is not tested.
     confidence : float
         Of the intervals and the band.
+    weight : ndarray, shape (n,), optional
+        How much each counts beside the others; alike unless given.
 
     Returns
     -------
@@ -206,8 +209,9 @@ def fit_capacities(
     who = np.unique(np.arange(lower.size) if record is None else record, return_inverse=True)[1]
     bounds, place = np.unique(ends, return_inverse=True)
     pairs, place = np.unique(place[: lower.size] * bounds.size + place[lower.size :], return_inverse=True)
-    cells, number = np.unique(who * pairs.size + place, return_counts=True)
-    seen = Counts(cells // pairs.size, cells % pairs.size, number.astype(np.float64))
+    cells, cell = np.unique(who * pairs.size + place, return_inverse=True)
+    each = np.ones(lower.size) if weight is None else weight * lower.size / weight.sum()
+    seen = Counts(cells // pairs.size, cells % pairs.size, totals(cell, each), weight is not None)
     above = np.isfinite(upper)
     bare = Curve("none", "", confidence, lower.size, int(above.sum()), records=seen.records)
     if not bare.exceedances:

@@ -9,34 +9,64 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError
+from pydantic_core import PydanticCustomError
 
 from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.errors import InputError
 from rocking_cli.io.field_problems import place_of, problems
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.processing.entry import Entry, FloorText, Steps
 from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.studies.fragility.displacements import is_quantity, spelt
 from rocking_cli.studies.fragility.distributions import Distribution, Positive
 from rocking_cli.studies.fragility.hazard import wrong_points
-from rocking_cli.studies.fragility.intensity import MEASURES, PGA
+from rocking_cli.studies.fragility.intensity import PGA, no_levels, spelled
+from rocking_cli.studies.fragility.intensity import SCALE as SCALE
 from rocking_cli.studies.fragility.observed import SAME
+from rocking_cli.studies.fragility.sets import among
 from rocking_cli.studies.fragility.together import Part, Sound, between_fields
 from rocking_cli.studies.fragility.varied import in_units_of_fields
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
-SCALE = "scale"
 MOST = 100_000  # levels or samples: more is a slip of the keyboard
 
 
 def _measure(value: object) -> object:
-    """A measure, or a list of them, as it is spelt here, from any case and spacing."""
+    """A measure as it is spelt here, from any case and spacing."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return spelled(value)
+    except InputError as error:
+        (problem,) = error.problems
+        said = {"reason": problem.message, "hint": problem.hint}
+        raise PydanticCustomError("unit", "{reason}", said) from None
+
+
+def _level_measure(value: object) -> object:
+    """What levels may be of: the factor on the records, or a measure that goes with it."""
+    if isinstance(value, str) and value.strip().lower() == SCALE:
+        return SCALE
+    found = _measure(value)
+    if isinstance(found, str) and (why := no_levels(found)):
+        raise ValueError(why)
+    return found
+
+
+def _spelled(value: object) -> object:
+    """An entry of a list that was found right: measures in their own spelling, all else as it is."""
     if isinstance(value, list):
-        return [_measure(each) for each in value]
-    plain = {name.replace(" ", "").lower(): name for name in (*MEASURES, SCALE)}
-    return plain.get(value.replace(" ", "").lower(), value) if isinstance(value, str) else value
+        return [_spelled(each) for each in value]
+    if isinstance(value, str) and value.strip().lower() == SCALE:
+        return SCALE
+    try:
+        return _measure(value)
+    except ValueError:
+        return value
 
 
 def _limit(value: object) -> object:
@@ -55,7 +85,7 @@ def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
     """The entries of a list that are right by themselves, measures and limit states in their own spelling."""
     values = given.get(name)
     entries = enumerate(values if isinstance(values, list) else [])
-    own = _limit if name == "limit_states" else _measure
+    own = _limit if name == "limit_states" else _spelled
     return [own(each) for k, each in entries if sound(name, k)]
 
 
@@ -79,9 +109,9 @@ def _file(value: object) -> object:
     return {"file": value} if isinstance(value, str) else value
 
 
-_Names = Literal["PGA", "PGV", "PGA/(g lambda)", "p PGV/(g lambda)"]  # types must be written out: a test holds it
-Measure = Annotated[_Names, BeforeValidator(_measure)]
-LevelMeasure = Annotated[_Names | Literal["scale"], BeforeValidator(_measure)]
+Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
+Measure = Annotated[str, BeforeValidator(_measure)]
+LevelMeasure = Annotated[str, BeforeValidator(_level_measure)]
 Limit = Annotated[str | float, BeforeValidator(_limit)]
 
 
@@ -98,6 +128,7 @@ class RecordEntry(Entry, Part):
 
     pulse: str | None = Field(None, description="a pulse, such as sine:0.6g:0.8s")
     vertical: str | None = Field(None, description="the file of the vertical component")
+    level: Intensity | None = Field(None, description="the one level whose set of records it belongs to")
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -105,7 +136,7 @@ class RecordEntry(Entry, Part):
         there = {name for name in given if given.get(name) is not None}
         if len(there & {"file", "pulse"}) != 1:
             yield (), "give a file or a pulse"
-        elif "pulse" in there and there - {"pulse", "floor", "weight"}:
+        elif "pulse" in there and there - {"pulse", "floor", "weight", "level"}:
             yield (), "units, dt, channel, vertical and the like describe a file"
         pair = bool(there & {"with", "other"})
         if "azimuth" in there and not pair:
@@ -114,9 +145,6 @@ class RecordEntry(Entry, Part):
             yield ("with_channel",), "is of a second component: give its file with `with`"
         if pair and "azimuth" not in there:
             yield (), "azimuth is missing: 0 for the record, 90 for that of `with`, or what is between them"
-
-
-Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
 
 
 class Levels(Part):
@@ -128,6 +156,7 @@ class Levels(Part):
     most: Intensity | None = Field(None, description="the largest")
     count: int | None = Field(None, ge=2, le=MOST, description="how many")
     spacing: Literal["even", "log"] = Field("even", description="steps of equal size, or of equal ratio")
+    scaled: bool = Field(True, description="false: sets of records are used as they are, and a level names its set")
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -240,9 +269,10 @@ class Definition(Sampling, Common):
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Levels must suit the method, samples what varies, and the model what is asked."""
         method, levels, structures = (given.get(name) for name in ("method", "levels", "structures"))
-        scaled = isinstance(levels, dict) and sound("levels", "measure") and _measure(levels["measure"]) != SCALE
+        scaled = isinstance(levels, dict) and sound("levels", "measure") and _spelled(levels["measure"]) != SCALE
         if method == "cloud" and scaled:
             yield ("levels",), f"a cloud scales records by factors: `measure: {SCALE}`"
+        yield from _wrong_sets(given, sound)
         if method in ("stripes", "ida") and "levels" not in given:
             yield ("levels",), "is missing: every record is scaled to levels of intensity"
         entries = structures if isinstance(structures, list) else []
@@ -268,15 +298,46 @@ class Definition(Sampling, Common):
         return list(dict.fromkeys([*found, *([self.hazard.measure] if self.hazard is not None else [])]))
 
     @property
-    def measures_in_p(self) -> list[str]:
-        """The measures asked for that need a frequency parameter."""
+    def asked_measures(self) -> list[str]:
+        """All measures that it names, each once: of levels, curves, surfaces and hazard."""
         asked = [self.levels.measure, *self.fitted_measures, *(one for pair in self.bivariate for one in pair)]
-        return [name for name in dict.fromkeys(asked) if name in MEASURES and MEASURES[name].needs_p]
+        return [name for name in dict.fromkeys(asked) if name != SCALE]
+
+    @property
+    def measures_of_a_block(self) -> list[str]:
+        """The measures asked for that need an equivalent block."""
+        return [name for name in self.asked_measures if parse_measure(name).needs]
 
     @property
     def hazard_measure(self) -> str | None:
         """What the hazard curve is of."""
         return self.hazard.measure if self.hazard is not None else None
+
+
+def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+    """Sets of records must be of levels that there are, in stripes; used as they are, every record is of one."""
+    entries, levels = given.get("records"), given.get("levels")
+    entries = entries if isinstance(entries, list) else []
+    of_sets = [k for k, each in enumerate(entries) if isinstance(each, dict) and each.get("level") is not None]
+    if isinstance(levels, dict) and levels.get("scaled") is False:
+        if levels.get("measure") == SCALE:
+            yield ("levels", "scaled"), f"levels of the measure {SCALE} are factors: leave scaled out"
+        if sound("records") and len(of_sets) < len(entries):
+            yield ("levels", "scaled"), "records are used as they are, so each needs the `level` whose set it is of"
+    if not of_sets:
+        return
+    if given.get("method") != "stripes" and sound("method"):
+        yield ("records", of_sets[0], "level"), "sets of records for levels are of `method: stripes`"
+    if not (isinstance(levels, dict) and sound("levels")):
+        return
+    known = Levels.model_validate(levels).levels()
+    for k in of_sets:
+        if sound("records", k) and not among(entries[k]["level"], known):
+            yield ("records", k, "level"), f"{entries[k]['level']:g} is none of the levels {_said(known)}"
+
+
+def _said(levels: list[float]) -> str:
+    return ", ".join(f"{each:g}" for each in levels[:10]) + (", ..." if len(levels) > 10 else "")
 
 
 def checks_sliding(given: dict[str, Any]) -> bool:

@@ -119,11 +119,14 @@ class Counts:
         What it says: a place among the terms of a likelihood.
     number : ndarray
         How often.
+    weighted : bool
+        Whether some records count more than others, so that what is said is no number of times.
     """
 
     record: Integers
     term: Integers
     number: Reals
+    weighted: bool = False
 
     @property
     def records(self) -> int:
@@ -132,8 +135,8 @@ class Counts:
 
     @property
     def repeated(self) -> bool:
-        """Whether a record says several things."""
-        return bool(self.records < self.number.sum())
+        """Whether a record says several things, or counts otherwise than once: it is the cluster then."""
+        return self.weighted or bool(self.records < self.number.sum())
 
 
 def too_few(seen: Counts, coefficients: int, what: str = "runs") -> str:
@@ -184,7 +187,7 @@ def fit_outcomes(link: Link, design: Reals, seen: Counts, exceeding: Reals, conf
     told, term = np.unique(term[there], return_inverse=True)
     terms = Outcomes(link, design[told % len(design)], told < len(design))
     start, degrees = np.zeros(design.shape[1]), seen.records - 1.0 if seen.repeated else np.inf
-    return _fitted(link, terms, Counts(record[there], term, number[there]), start, confidence, degrees)
+    return _fitted(link, terms, Counts(record[there], term, number[there], seen.weighted), start, confidence, degrees)
 
 
 def fit_brackets(lower: Reals, upper: Reals, seen: Counts, confidence: float) -> Fit | str:

@@ -31,11 +31,14 @@ class Observations:
         How many runs each record has at each of them: n cells.
     exceeding : ndarray, shape (n,)
         How many runs of each cell exceed.
+    whole : (int, int), optional
+        How many runs there are and how many exceed, where records count more or less than once in the cells.
     """
 
     x: Reals
     counts: Counts
     exceeding: Reals
+    whole: tuple[int, int] | None = None
 
     @classmethod
     def of(
@@ -46,6 +49,7 @@ class Observations:
         *,
         level: Integers | None = None,
         runs: Reals | Integers | None = None,
+        weight: Reals | None = None,
     ) -> Observations:
         """Count runs, each by itself or several alike.
 
@@ -61,6 +65,8 @@ class Observations:
             The level to which it was scaled, where that decides its intensity.
         runs : ndarray, shape (n,), optional
             How many runs are alike; one unless given.
+        weight : ndarray, shape (n,), optional
+            How much each counts beside the others; alike unless given. On average over the runs it is made one.
 
         Raises
         ------
@@ -81,19 +87,24 @@ class Observations:
         levels, place = np.unique(one_of_each(x if level is None else _of_levels(x, level)), return_inverse=True)
         names, who = np.unique(record, return_inverse=True)
         cells, cell = np.unique(place * names.size + who, return_inverse=True)
-        number = np.bincount(cell, runs)
-        counts = Counts(cells % names.size, cells // names.size, number.astype(np.float64))
-        return cls(levels, counts, totals(cell, exceeding.astype(np.float64)))
+        alike = np.ones(x.size) if runs is None else runs.astype(np.float64)
+        beyond = exceeding.astype(np.float64)
+        if weight is None:
+            counts = Counts(cells % names.size, cells // names.size, totals(cell, alike))
+            return cls(levels, counts, totals(cell, beyond))
+        each = weight * alike.sum() / (weight * alike).sum()
+        counts = Counts(cells % names.size, cells // names.size, totals(cell, alike * each), weighted=True)
+        return cls(levels, counts, totals(cell, beyond * each), (int(alike.sum()), int(beyond.sum())))
 
     @property
     def runs(self) -> int:
         """How many there are."""
-        return int(self.counts.number.sum())
+        return self.whole[0] if self.whole is not None else int(self.counts.number.sum())
 
     @property
     def exceedances(self) -> int:
         """How many of them exceed."""
-        return int(self.exceeding.sum())
+        return self.whole[1] if self.whole is not None else int(self.exceeding.sum())
 
     @property
     def records(self) -> int:
@@ -175,8 +186,8 @@ class Observations:
             part,
             np.where(alone, 0.0, np.clip(middle - half, 0.0, part)),
             np.where(alone, 1.0, np.clip(middle + half, part, 1.0)),
-            runs.astype(np.int64),
-            exceeding.astype(np.int64),
+            np.rint(runs).astype(np.int64),
+            np.rint(exceeding).astype(np.int64),
             records,
         )
 

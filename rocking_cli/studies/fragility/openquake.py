@@ -28,7 +28,7 @@ TYPES: Mapping[str, tuple[str, float]] = {
     "PGA": ("PGA", 1.0),
     "PGV": ("PGV", 100.0),
     "PGD": ("PGD", 100.0),
-    "IA": ("IA", 1.0),
+    "Arias": ("IA", 1.0),
     "CAV": ("CAV", 1 / STANDARD_GRAVITY),
 }
 SPECTRAL = re.compile(r"SA\(\s*([0-9.]+)\s*s?\s*\)", re.IGNORECASE)  # g here and there

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import prod
+from dataclasses import dataclass, field
+from math import nan, prod
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Equivalence
+from rocking_cli.core import Equivalence, EquivalentBlock
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.studies.fragility.definition import SCALE
-from rocking_cli.studies.fragility.intensity import Reference, intensity, quantities
+from rocking_cli.processing.intensity import Reference, parse_measure
+from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
+from rocking_cli.studies.fragility.measured import Measured
+from rocking_cli.studies.fragility.sets import Sets
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.under_pulses import uplift
 
@@ -57,8 +59,13 @@ class Trial:
 
 def weaker(equivalence: Equivalence, model: ModelName) -> tuple[float, float]:
     """p and lambda of the direction that uplifts first: what the dimensionless measures refer to."""
-    block = min((equivalence.positive, equivalence.negative), key=lambda each: uplift(each, model))
+    block = weaker_block(equivalence, model)
     return block.p, uplift(block, model)
+
+
+def weaker_block(equivalence: Equivalence, model: ModelName) -> EquivalentBlock:
+    """The equivalent block of the direction that uplifts first."""
+    return min((equivalence.positive, equivalence.negative), key=lambda each: uplift(each, model))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +81,15 @@ class Plan:
     etas : sequence of float
         Restitutions; NaN for the structure's own.
     measure : str
-        What the levels are of: one of `intensity.MEASURES`, or "scale".
+        What the levels are of: a measure, or "scale".
     levels : sequence of float
         The levels.
     polarities : sequence of int
         Of 1 and -1.
+    measured : Measured
+        What was measured beyond the peaks of the records.
+    sets : Sets, optional
+        Which records are run at which levels, and how much they count; without it all at all, and alike.
     """
 
     trials: Sequence[Trial]
@@ -87,6 +98,13 @@ class Plan:
     measure: str
     levels: Sequence[float]
     polarities: Sequence[int]
+    measured: Measured = field(default_factory=Measured)
+    sets: Sets | None = None
+
+    @property
+    def of_sets(self) -> Sets:
+        """Which records are run at which levels, and how much they count."""
+        return self.sets if self.sets is not None else Sets.plain(len(self.records))
 
     @property
     def shape(self) -> tuple[int, int, int, int, int]:
@@ -101,8 +119,11 @@ class Plan:
     @property
     def total(self) -> int:
         """How many runs can be run: not those of samples and records that cannot be used."""
-        usable = [sum(each.reason is None for each in what) for what in (self.trials, self.records)]
-        return prod(usable) * self.block
+        _, _, etas, levels, polarities = self.shape
+        usable = sum(each.reason is None for each in self.trials)
+        places = [k for k, each in enumerate(self.records) if each.reason is None]
+        rungs = sum(int(self.of_sets.there(k, levels).sum()) for k in places)
+        return usable * rungs * etas * polarities
 
     @property
     def size(self) -> int:
@@ -129,17 +150,34 @@ class Plan:
         """What the dimensionless measures refer to, for samples by their places."""
         columns = np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])[sample]
         p = np.where(columns[:, 0] > 0, columns[:, 0], np.nan)
-        return Reference(p, columns[:, 1], columns[:, 2])
+        steps = self.measured.of_sample.get("v_imp", np.full(len(self.trials), nan))
+        return Reference(p, columns[:, 1], columns[:, 2], steps[sample])
 
-    def motion(self, record: Integers, factor: float | Reals = 1.0) -> dict[str, Reals]:
-        """The quantities that measures are of, of records by their places, times factors."""
-        return {
-            name: factor * np.array([getattr(each, name) for each in self.records])[record] for name in quantities()
-        }
+    def of_records(self, measure: str) -> Reals:
+        """A measure of the motions as they are, shape (records,); NaN of those of which it is not known."""
+        if measure in (PGA, PGV):
+            return np.array([each.pga if measure == PGA else each.pgv for each in self.records])
+        return self.measured.of_record.get(measure, np.full(len(self.records), nan))
+
+    def intensities(
+        self, measure: str, sample: Integers, record: Integers, level: Integers, factor: float | Reals
+    ) -> Reals:
+        """The intensity of runs, by their places and the factors on the records; NaN where it is not known."""
+        asked = parse_measure(measure)
+        if asked.base is None or asked.power is None:
+            table = self.measured.of_run.get(str(asked), np.full((len(self.trials), len(self.records), 1), nan))
+            return np.asarray(table[sample, record, np.minimum(level, table.shape[2] - 1)])
+        value = self.of_records(str(asked.base))[record] * np.power(factor, asked.power)
+        return np.asarray(asked.relative(value, self.reference(sample)), dtype=np.float64)
 
     def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
         """Factors on the records that bring them to the levels, for places of one shape."""
         wanted = np.array(self.levels)[level]
+        if self.sets is not None and not self.sets.scaled:
+            return np.ones(wanted.shape)
         if self.measure == SCALE:
             return wanted
-        return np.asarray(wanted / intensity(self.measure, self.motion(record), self.reference(sample)))
+        power = parse_measure(self.measure).power
+        assert power is not None
+        ratio = wanted / self.intensities(self.measure, sample, record, level, 1.0)
+        return np.asarray(ratio if power == 1 else ratio ** (1 / power))

@@ -105,11 +105,16 @@ def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str])
     counted = Tally(plan, samples_of(plan, structure), runs, {}, None)
     for measure in measures if runs.any() else ():
         cells = counted.over(measure)
-        x, level = cells.intensities(measure), cells.level if counted.decided_by_level(measure) else None
-        seen = Observations.of(x, np.zeros(x.size), cells.record, level=level, runs=cells.runs)
-        of_cell = seen.group_of(x, cells.record, level)
+        x = cells.intensities(measure)
+        there = x > 0  # not of those that are not known, either
+        if not there.any():
+            continue
+        x, record = x[there], cells.record[there]
+        level = cells.level[there] if counted.decided_by_level(measure) else None
+        seen = Observations.of(x, np.zeros(x.size), record, level=level, runs=cells.runs[there])
+        of_cell = seen.group_of(x, record, level)
         groups = np.full((1, *runs.shape[1:]) if cells.together else runs.shape, -1, dtype=np.int16)
-        groups[cells.place] = of_cell
+        groups[tuple(each[there] for each in cells.place)] = of_cell
         whole = np.broadcast_to(groups, runs.shape)
         parts = seen.parts(0.95)
         yield Quantiles(structure, measure, seen.stripes, [

@@ -32,6 +32,8 @@ class Source:
         What the study says of it.
     reading : Reading
         How to read it, and what to make of it.
+    file : str
+        The file as the study names it, or the pulse's specification: the name, but for the set it is in.
     path, vertical : Path, optional
         Its files.
     """
@@ -39,6 +41,7 @@ class Source:
     name: str
     entry: RecordEntry
     reading: Reading
+    file: str
     path: Path | None = None
     vertical: Path | None = None
 

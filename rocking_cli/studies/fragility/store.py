@@ -19,18 +19,21 @@ from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.json_text import json_text
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
+from rocking_cli.studies.fragility.measured import Measured, Value
 from rocking_cli.studies.fragility.plan import Plan, Trial
+from rocking_cli.studies.fragility.sets import described
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.fragility.store_file import (
     AT_WORK,
     CHECKED,
     MARK,
     VERSION,
+    WITHOUT_MEASURED,
     WITHOUT_SLIDING,
     damaged,
     exchange,
@@ -52,6 +55,7 @@ READ = 100_000  # runs read at a time
 STANDS, FAILED = 0, 2  # outcomes; 1 and -1 for overturning in the positive and the negative direction
 OUTCOMES = (STANDS, FAILED, 1, -1)
 SEAL = "seal"  # the name in the table `study` of the checksum of all but the runs
+ASKED = ("unit", "value_error")  # what is wrong with a measure that is not known, or no level can be of
 NAMED = 5  # damaged runs named one by one
 SLIDE = "slide_time"  # the column of runs that only studies have which ask for sliding
 
@@ -74,6 +78,10 @@ CREATE TABLE run (
     checksum INTEGER NOT NULL
 );
 """
+# What was measured, beyond the peaks of the records; the places that a value does not depend on are NULL.
+MEASURED = """CREATE TABLE measured (
+    id INTEGER PRIMARY KEY, measure TEXT NOT NULL, sample INTEGER, record INTEGER, level INTEGER, value REAL
+)"""
 PLAN = ("sample", "record", "eta", "level", "polarity")  # what a run is of
 # Numbers of runs become words and values again for whoever opens the file with another program.
 VIEW = """
@@ -395,14 +403,40 @@ class Store:
             )
         )
         self._connection.execute(f"PRAGMA application_id = {MARK}")
-        self._connection.execute(f"PRAGMA user_version = {VERSION if slides else WITHOUT_SLIDING}")
+        self._connection.execute(f"PRAGMA user_version = {WITHOUT_MEASURED if slides else WITHOUT_SLIDING}")
         self._insert("sample", [_as_row(each) for each in plan.trials])
         self._insert("record", [tuple(asdict(each).values()) for each in plan.records])
         self._insert("eta", [(None if eta != eta else eta,) for eta in plan.etas])
         self._insert("level", [(each,) for each in plan.levels])
         self._insert("polarity", [(each,) for each in plan.polarities])
         self.note(facts)
+        self.keep(plan.measured)
         self._salt = _salt(self.fact("hash"))
+
+    def keep(self, measured: Measured) -> None:
+        """Keep what was measured, in place of what was there."""
+        if not measured:
+            return
+        if self._has_measured():
+            self._connection.execute("DELETE FROM measured")
+        else:
+            self._connection.execute(MEASURED)
+            self._connection.execute(f"PRAGMA user_version = {VERSION}")  # earlier programs would not know it
+        self._connection.executemany(
+            "INSERT INTO measured (measure, sample, record, level, value) VALUES (?, ?, ?, ?, ?)", measured.values()
+        )
+        self._seal()
+
+    def _has_measured(self) -> bool:
+        names = self._connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
+        return ("measured",) in names.fetchall()
+
+    def _measured(self, shape: tuple[int, int, int]) -> Measured:
+        """What was measured, of so many samples, records and levels."""
+        if not self._has_measured():
+            return Measured()
+        rows = self._connection.execute("SELECT measure, sample, record, level, value FROM measured ORDER BY id")
+        return Measured.of((Value(*row) for row in rows), shape)
 
     def note(self, facts: Mapping[str, Any]) -> None:
         """Keep plain data by name, in place of what was there."""
@@ -420,6 +454,9 @@ class Store:
         queries = [f"SELECT * FROM {table} ORDER BY id" for table in PLAN]
         for query in (*queries, f"SELECT * FROM study WHERE key NOT IN ('{SEAL}', '{AT_WORK}') ORDER BY key"):
             found.update(repr(self._connection.execute(query).fetchall()).encode())
+        if self._has_measured():
+            for row in self._connection.execute("SELECT * FROM measured ORDER BY id"):  # there may be millions
+                found.update(repr(row).encode())
         return found.hexdigest()
 
     def facts(self) -> dict[str, Any]:
@@ -444,7 +481,7 @@ class Store:
             try:
                 self._salt = _salt(self.facts()["hash"])
                 self.columns = _columns(self.fact("description"))
-                Definition.model_validate(self.fact("definition"))
+                self._check_definition()
                 plan = self.plan()
             except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError) as error:
                 raise damaged(self.path, "what its runs are runs of cannot be read") from error
@@ -455,6 +492,14 @@ class Store:
         finally:
             if not alone and self._connection.in_transaction:
                 self._connection.execute("COMMIT")
+
+    def _check_definition(self) -> None:
+        """Refuse a definition that is none; one that asks for what is not installed any more is not damaged."""
+        try:
+            Definition.model_validate(self.fact("definition"))
+        except ValidationError as error:
+            if not self.checked or any(each["type"] not in ASKED for each in error.errors(include_url=False)):
+                raise
 
     def _check_pages(self) -> None:
         """Find out whether the file can be written to: what is damaged would get worse."""
@@ -508,13 +553,16 @@ class Store:
                 each["drawn"] = json.loads(each["drawn"])
             return TypeAdapter(list[kind]).validate_python(found)
 
+        trials, records, levels = table("sample", Trial), table("record", Record), column("level", float)
         return Plan(
-            table("sample", Trial),
-            table("record", Record),
+            trials,
+            records,
             [float("nan") if eta is None else eta for eta in column("eta", float | None)],
             self.fact("description")["levels"]["measure"],
-            column("level", float),
+            levels,
             column("polarity", int),
+            self._measured((len(trials), len(records), len(levels))),
+            described(self.fact("description"), self.facts().get("weights")),
         )
 
     def replace_record(self, k: int, record: Record) -> None:

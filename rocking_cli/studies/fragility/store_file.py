@@ -18,8 +18,9 @@ from rocking_cli.errors import InputError, Problem, Refused
 from rocking_cli.studies.fragility.engines import GOES_ON
 
 MARK = 0x526F636B  # "Rock", in the header of the file
-VERSION = 3  # of the tables of a store with the times at which runs slide
-WITHOUT_SLIDING = 2  # of those without
+VERSION = 4  # of the tables of a store with measured values
+WITHOUT_MEASURED = 3  # of those without, with the times at which runs slide
+WITHOUT_SLIDING = 2  # of those without either
 CHECKED = 2  # the first version with checksums
 WAITING = 60.0  # s for somebody who reads the store meanwhile
 AT_WORK = "at work"  # the name in the table `study` under which the process is that adds runs

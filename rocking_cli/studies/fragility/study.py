@@ -39,6 +39,7 @@ from rocking_cli.studies.fragility.definition import (
 )
 from rocking_cli.studies.fragility.distributions import Distribution, draw
 from rocking_cli.studies.fragility.hazard import HazardCurve, read_hazard
+from rocking_cli.studies.fragility.sets import Sets
 from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.text import did_you_mean, one_line
 
@@ -104,6 +105,18 @@ class Study:
     sources: tuple[Source, ...]
     hazard: HazardCurve | None
 
+    @property
+    def sets(self) -> Sets:
+        """Which of its records are run at which levels, and how much they count."""
+        levels, entries = self.definition.levels, [source.entry for source in self.sources]
+        return Sets.of(
+            levels.levels(),
+            [each.level for each in entries],
+            [each.weight for each in entries],
+            [source.file for source in self.sources],
+            scaled=levels.scaled,
+        )
+
     def description(self) -> dict[str, Any]:
         """All that decides what is run, apart from what is in the records, as plain data."""
         given = self.definition
@@ -117,10 +130,14 @@ class Study:
                 for structure, entry in zip(self.structures, given.structures, strict=True)
             },
             "order of structures": [structure.name for structure in self.structures],
-            "records": [{"name": source.name, **as_written(source.entry)} for source in self.sources],
+            "records": [_described(source) for source in self.sources],
             **({"processing": given.processing} if given.processing else {}),
             **({"floor": str(Floor.parse(given.floor))} if given.floor is not None else {}),
-            "levels": {"measure": given.levels.measure, "values": given.levels.levels()},
+            "levels": {
+                "measure": given.levels.measure,
+                "values": given.levels.levels(),
+                **({} if given.levels.scaled else {"scaled": False}),
+            },
             "polarities": list(given.polarities),
             "eta": given.eta,
             "model": given.model,
@@ -129,6 +146,12 @@ class Study:
             "seed": given.seed,
             **({SLIDING: "checked in every run"} if SLIDING in given.limit_states else {}),
         }
+
+
+def _described(source: Source) -> dict[str, Any]:
+    """What decides the runs under a record: not how much they count, and of a set also which file it is."""
+    said = {key: value for key, value in as_written(source.entry).items() if key != "weight"}
+    return {"name": source.name, **said, **({"file": source.file} if source.entry.level is not None else {})}
 
 
 def digest(description: dict[str, Any]) -> str:
@@ -161,9 +184,7 @@ def load_study(path: str | Path) -> Study:
         for k, entry in usable_entries(document, "records", RecordEntry)
         for source in _sources(document, ("records", k), path.parent, entry, common or Common())
     ]
-    _refuse_repeated(
-        document, "records", [source.path.resolve().as_posix() if source.path else source.name for source in sources]
-    )
+    _refuse_repeated(document, "records", [_unlike_others(source) for source in sources])
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
     if checks_sliding(document.data):
         for (_, entry), structure in zip(entries, structures, strict=True):
@@ -229,7 +250,7 @@ def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry,
         except (InputError, MechanismError) as error:
             document.problems.append(document.at(_within(document, place, "pulse"), str(error)))
             return []
-        return [Source(entry.pulse, entry, entry.reading(folder, common.reading))]
+        return [Source(_at_level(entry.pulse, entry), entry, entry.reading(folder, common.reading), entry.pulse)]
     assert entry.file is not None
     files = _select(document, _within(document, place, "file"), entry.file, folder)
     other = _select(document, (*place, "with"), entry.other, folder) if entry.other is not None else []
@@ -260,7 +281,8 @@ def _of_file_or_list(
     """The records of a file: itself, or those of a list, which are read as each says, and else as the entry does."""
     reading = entry.reading(folder, common.reading)
     if not is_list(file):
-        return [Source(_shown(file, folder), entry, reading, file, vertical)]
+        shown = _shown(file, folder)
+        return [Source(_at_level(shown, entry), entry, reading, shown, file, vertical)]
     if vertical is not None:
         what = "a vertical component belongs to one record, and this is a list of them: give each an entry of its own"
         document.problems.append(document.at((*place, "vertical"), what))
@@ -274,7 +296,8 @@ def _of_file_or_list(
     for each in listed:
         assert each.entry is not None
         own = RecordEntry.model_validate(_together(entry, each.entry))
-        found.append(Source(_shown(each.path, folder), own, each.reading(reading), each.path))
+        shown = _shown(each.path, folder)
+        found.append(Source(_at_level(shown, own), own, each.reading(reading), shown, each.path))
     return found
 
 
@@ -286,6 +309,17 @@ def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
         steps.insert(len(listed.processing or []), {"factor": listed.factor})
         said["factor"] = entry.factor
     return {**said, "processing": steps or None}
+
+
+def _at_level(name: str, entry: RecordEntry) -> str:
+    """What to call a record: one of a set may be in others too."""
+    return name if entry.level is None else f"{name} at {entry.level:g}"
+
+
+def _unlike_others(source: Source) -> str:
+    """What may stand in a study once only: a file, or a pulse; of a set, in it."""
+    place = source.path.resolve().as_posix() if source.path else source.file
+    return _at_level(place, source.entry)
 
 
 def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:

@@ -77,6 +77,7 @@ def fit_surface(
     *,
     runs: Integers | None = None,
     confidence: float = 0.95,
+    weight: Reals | None = None,
 ) -> Surface:
     """Fit the probability of exceedance over two measures of intensity.
 
@@ -92,6 +93,8 @@ def fit_surface(
         How many runs there are at each of them; one unless given.
     confidence : float
         Of the intervals.
+    weight : ndarray, shape (n,), optional
+        How much each counts beside the others; alike unless given.
 
     Returns
     -------
@@ -108,10 +111,14 @@ def fit_surface(
             raise InputError(f"the {name} intensity of a run is not a positive number: leave out what is not shaken")
     who = np.unique(record, return_inverse=True)[1]
     number = np.ones(x1.size) if runs is None else runs.astype(np.float64)
-    seen, exceeding = Counts(who, np.arange(x1.size), number), exceeding.astype(np.float64)
-    bare = Surface("none", "", confidence, int(number.sum()), int(exceeding.sum()), records=seen.records)
+    seen, beyond = Counts(who, np.arange(x1.size), number), np.asarray(exceeding, dtype=np.float64)
+    bare = Surface("none", "", confidence, int(number.sum()), int(beyond.sum()), records=seen.records)
     if not 0 < bare.exceedances < bare.runs:
         return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
+    if weight is not None:
+        each = weight * number.sum() / (weight * number).sum()
+        number, beyond = number * each, beyond * each
+        seen = Counts(seen.record, seen.term, number, weighted=True)
     design = _design(x1, x2)
     if (np.ptp(design[:, 1:], axis=0) < SAME).any():
         return replace(bare, why="one of the measures is the same in all runs: take a curve over the other one")
@@ -122,14 +129,13 @@ def fit_surface(
         return replace(
             bare, why="the two measures are in proportion (of their logarithms): take a curve over either one"
         )
-    if _separable(design, number, exceeding):
+    if _separable(design, number, beyond):
         why = "a line in the plane of the two measures separates what exceeds from what does not"
         return replace(bare, why=f"{why}: the likelihood has no maximum, more runs near the line are needed")
     if few := too_few(seen, 3):
         return replace(bare, why=few)
     fits = [
-        fit_outcomes("probit", design[:, columns], seen, exceeding, confidence)
-        for columns in ([0, 1, 2], [0, 1], [0, 2])
+        fit_outcomes("probit", design[:, columns], seen, beyond, confidence) for columns in ([0, 1, 2], [0, 1], [0, 2])
     ]
     for fit in fits:
         if isinstance(fit, str):

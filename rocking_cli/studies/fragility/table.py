@@ -8,14 +8,14 @@ from math import isnan
 import numpy as np
 
 from rocking_cli import names
-from rocking_cli.studies.fragility.intensity import MEASURES, intensity, label
+from rocking_cli.studies.fragility.intensity import ALWAYS, label
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import FAILED, STANDS, Rows, Store
 
 ROWS = 100_000  # runs of a block
 
 
-def blocks(store: Store, plan: Plan) -> Iterator[Mapping[str, Sequence[object]]]:
+def blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterator[Mapping[str, Sequence[object]]]:
     """The finished runs, in the order of their numbers.
 
     Parameters
@@ -24,23 +24,24 @@ def blocks(store: Store, plan: Plan) -> Iterator[Mapping[str, Sequence[object]]]
         Open to read.
     plan : Plan
         Its runs.
+    measures : sequence of str
+        Those that have a column, beside those that are always there.
 
     Yields
     ------
     mapping of str to sequence
         The columns, with units; the first block is there even if no run is.
     """
-    end = int(np.prod(plan.shape))
+    end, asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*ALWAYS, *measures]))
     for first in range(0, end, ROWS):
         rows = store.runs(first, min(first + ROWS, end))
         if len(rows) or first == 0:
-            yield _columns(plan, rows)
+            yield _columns(plan, rows, asked)
 
 
-def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
+def _columns(plan: Plan, rows: Rows, measures: Sequence[str]) -> dict[str, Sequence[object]]:
     sample, record, _, level, polarity = plan.places(rows.id)
     trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
-    motion, reference = plan.motion(record, rows.scale), plan.reference(sample)
     return {
         "run": rows.id.tolist(),
         "structure": [each.structure for each in trials],
@@ -50,7 +51,7 @@ def _columns(plan: Plan, rows: Rows) -> dict[str, Sequence[object]]:
         "polarity": np.array(plan.polarities)[polarity].tolist(),
         "eta": rows.eta.tolist(),
         "scale": rows.scale.tolist(),
-        **{label(name): intensity(name, motion, reference).tolist() for name in MEASURES},
+        **{label(name): plan.intensities(name, sample, record, level, rows.scale).tolist() for name in measures},
         "outcome": [_outcome(*each) for each in zip(rows.outcome.tolist(), rows.uplift_time.tolist(), strict=True)],
         "fell_to": np.where(np.abs(rows.outcome) == 1, rows.outcome, 0).tolist(),
         "phi/phi_cr": rows.peak_ratio.tolist(),

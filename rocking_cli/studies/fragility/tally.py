@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, Limit
 from rocking_cli.studies.fragility.displacements import kept
-from rocking_cli.studies.fragility.intensity import intensity, of_the_motion, proportional
+from rocking_cli.studies.fragility.intensity import of_the_motion, proportional
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import FAILED, STANDS, Endings, Store
@@ -44,6 +44,15 @@ class Tally:
     runs: Integers
     exceeding: dict[Limit, Integers]
     ladders: Ladders | None
+
+    def one(self, record: Integers) -> Integers:
+        """The record that each is one with: the same may be in the sets of several levels."""
+        return np.asarray(self.plan.of_sets.one[record])
+
+    def weight(self, record: Integers) -> Reals | None:
+        """How much each counts; None where all count alike."""
+        sets = self.plan.of_sets
+        return np.asarray(sets.weight[record]) if sets.weighted else None
 
     def over(self, *measures: str) -> Cells:
         """The cells of runs that are alike in some measures, without the empty ones."""
@@ -136,8 +145,7 @@ def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, le
     """The intensity of runs; where the levels are of it, to the last digit."""
     if measure == plan.measure:
         return np.asarray(np.array(plan.levels)[level])
-    motion = plan.motion(record, plan.factors(sample, record, level))
-    return intensity(measure, motion, plan.reference(sample))
+    return plan.intensities(measure, sample, record, level, plan.factors(sample, record, level))
 
 
 def samples_of(plan: Plan, structure: str) -> range:

@@ -154,7 +154,8 @@ def _parts(
     plan: Plan, finished: Callable[[int, int], Integers], size: int
 ) -> Iterator[tuple[int, int, Integers]]:  # fmt: skip
     """The runs to do of each sample under each record that can be used, so many at a time at most."""
-    records = len(plan.records)
+    records, levels = len(plan.records), len(plan.levels)
+    there = [np.broadcast_to(plan.of_sets.there(r, levels)[:, None], plan.shape[2:]).ravel() for r in range(records)]
     for k, trial in enumerate(plan.trials):
         if trial.reason is not None:
             continue
@@ -162,7 +163,7 @@ def _parts(
         done = np.zeros(records * plan.block, dtype=bool)
         done[finished(first, first + done.size) - first] = True
         for r, record in enumerate(plan.records):
-            to_do = np.flatnonzero(~done[r * plan.block : (r + 1) * plan.block])
+            to_do = np.flatnonzero(~done[r * plan.block : (r + 1) * plan.block] & there[r])
             if record.reason is None:
                 for start in range(0, len(to_do), size):
                     yield k, r, first + r * plan.block + to_do[start : start + size]

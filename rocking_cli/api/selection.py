@@ -1,0 +1,121 @@
+"""Sets of records for a target spectrum, in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking_cli.api.answer import Answer
+from rocking_cli.api.verbs import Motion, _each, _motion
+from rocking_cli.excitation.base import GroundMotion
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.studies.record_set import RecordSet
+    from rocking_cli.studies.target_spectrum import TargetSpectrum
+
+
+def select(
+    records: Motion | Sequence[Motion],
+    target: TargetSpectrum | str | Path | tuple[ArrayLike, ArrayLike],
+    *,
+    band: tuple[float, float],
+    count: int,
+    within: tuple[float, float] = (0.9, 1.3),
+    damping: float = 0.05,
+    factors: tuple[float, float] = (0.2, 5.0),
+    one_per: str = "event",
+    same_factor: bool = False,
+    seed: int = 0,
+) -> Answer[RecordSet]:
+    """Choose records whose mean response spectrum fits a target, and the factor on each.
+
+    Parameters
+    ----------
+    records : GroundMotion, Pulse, str or Path, or a sequence of these
+        What to choose from; a text may be a pattern of files, such as `records/*.AT2`.
+    target : str or Path, or (array_like, array_like)
+        The file of the spectrum, or its periods [s] and pseudo-accelerations [standard gravity].
+    band : (float, float)
+        Periods over which it is to fit [s].
+    count : int
+        How many records.
+    within : (float, float)
+        Limits on the mean over the target.
+    damping : float
+        Damping ratio that the target is of.
+    factors : (float, float)
+        Limits on the factor of each record.
+    one_per : {"event", "station", "none"}
+        Of what there is one record at most, where the files say.
+    same_factor : bool
+        Whether all records have the same factor.
+    seed : int
+        Of the searches, where there are too many sets to try all.
+
+    Returns
+    -------
+    Answer of RecordSet
+        `fits` says whether it does, `motions` are the scaled records, `factors` those on them; `periods`, `target` and
+        `spectra` of its `candidates`, and `mean`, are spectra.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, a file cannot be used, or there are too few records.
+
+    Notes
+    -----
+    The limits are those of NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4), has the lower one alone, from 0.2 to 2
+    times the fundamental period of a structure.
+    """
+    from rocking_cli.studies import record_set
+    from rocking_cli.views.record_set import Results, table, title, view
+
+    motions, files = _candidates(records)
+    wanted = record_set.Wanted(count, band, within, damping, factors, one_per, same_factor, seed)
+    spectrum = _target(target)
+    found = record_set.choose(record_set.candidates(motions, spectrum, wanted), wanted)
+    results = Results(found, spectrum, files)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.record_set import draw_record_set
+
+        return draw_record_set(found, title(results))
+
+    return Answer("record set", found, view(results), lambda: table(results), figure)
+
+
+def _candidates(given: Any) -> tuple[list[GroundMotion], list[str | None]]:
+    """Motions, each with a name of its own, and the files of those that have one."""
+    from dataclasses import replace
+
+    from rocking_cli.excitation.selection import select as files_of
+
+    motions: list[GroundMotion] = []
+    files: list[str | None] = []
+    for each in _each(given):
+        pattern = isinstance(each, str) and any(sign in each for sign in "*?[") and not Path(each).exists()
+        for one in files_of(each) if pattern else [each]:
+            motion = _motion(one)
+            if any(motion.name == other.name for other in motions):
+                motion = replace(motion, name=f"{motion.name} ({len(motions) + 1})")
+            motions.append(motion)
+            files.append(str(one) if isinstance(one, Path | str) and Path(one).exists() else None)
+    return motions, files
+
+
+def _target(given: Any) -> TargetSpectrum:
+    from rocking_cli.studies.target_spectrum import TargetSpectrum, read_target
+
+    if isinstance(given, TargetSpectrum):
+        return given
+    if isinstance(given, str | Path):
+        return read_target(Path(given))
+    periods, sa = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in given)
+    return TargetSpectrum("target", periods, sa)

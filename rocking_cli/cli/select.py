@@ -1,0 +1,213 @@
+"""`rocking select`: a set of records whose mean response spectrum fits a target."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rocking_cli.cli import complete, motion_files, options, terminal
+from rocking_cli.cli.groups import Output, Reading
+from rocking_cli.cli.quantities import PERIOD, Kind, Range, Share
+from rocking_cli.errors import INCOMPLETE, InputError
+
+if TYPE_CHECKING:
+    from rocking_cli.excitation.base import GroundMotion
+    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.processing.listed import Listed
+    from rocking_cli.studies.record_set import RecordSet, Wanted
+    from rocking_cli.studies.target_spectrum import TargetSpectrum
+    from rocking_cli.views.record_set import Results
+
+RATIO = Kind("ratio", "", "0.9", "0.9:1.3", 1e-3, 1e3)
+FACTOR = Kind("factor", "", "0.5", "0.5:3", 1e-6, 1e6)
+MOST = 1000  # records of a set
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What the set is to be."""
+
+    count: int
+    band: tuple[float, float]
+    within: tuple[float, float]
+    damping: float
+    factors: tuple[float, float]
+    one_per: str
+    same_factor: bool
+    seed: int
+
+    @property
+    def wanted(self) -> Wanted:
+        """The same for the study."""
+        from rocking_cli.studies.record_set import Wanted
+
+        return Wanted(**vars(self))
+
+
+@click.command(short_help="Records whose mean spectrum fits a target.")
+@click.argument("records", metavar="RECORD...", nargs=-1, required=True, type=click.Path())
+@click.option(
+    "--target",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar="SPECTRUM.csv",
+    shell_complete=complete.files,
+    help="The spectrum to fit: a column of periods in s, one of ordinates in g or as its heading says.",
+)
+@click.option(
+    "--band", required=True, type=Range(PERIOD), metavar="FROM:TO", help="Periods over which it is to fit, in s."
+)
+@click.option("--count", required=True, type=click.IntRange(1, MOST), metavar="N", help="How many records.")
+@click.option(
+    "--within",
+    type=Range(RATIO),
+    default="0.9:1.3",
+    show_default=True,
+    metavar="LOW:HIGH",
+    help="Limits on the mean over the target.",
+)
+@click.option(
+    "--damping",
+    type=Share(),
+    default="5%",
+    show_default=True,
+    callback=options.share,
+    metavar="SHARE",
+    help="Damping that the target is of.",
+)
+@click.option(
+    "--factors",
+    type=Range(FACTOR),
+    default="0.2:5",
+    show_default=True,
+    metavar="LOW:HIGH",
+    help="Limits on the factor of each record.",
+)
+@click.option(
+    "--one-per",
+    type=click.Choice(["event", "station", "none"]),
+    default="event",
+    show_default=True,
+    help="Of what there is one record at most, where the files say.",
+)
+@click.option("--same-factor", is_flag=True, help="Scale all records by the same factor.")
+@click.option(
+    "--seed", type=click.IntRange(0), default=0, show_default=True, metavar="N", help="Of the searches, if any."
+)
+@options.reading
+@click.option(
+    "-o",
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar="FOLDER",
+    help="Write the scaled records there, and a list of them, set.yaml.",
+)
+@options.plot("Draw the spectra, their mean and the target")
+@options.as_json
+@click.pass_context
+@options.grouped(asked=Asked, reading=Reading, output=Output)
+def command(
+    ctx: click.Context, records: tuple[str, ...], target: Path, asked: Asked, reading: Reading, output: Output
+) -> None:
+    """Choose records whose mean response spectrum fits a target, and the factor on each.
+
+    Of all sets of --count records it gives one whose mean lies within the limits all over the band, and of those the
+    one nearest to the target. Each record is brought to the target on average over the band, then all by one factor.
+    The usual limits are those of NTC 2018; EN 1998-1 asks for 0.9 alone, from 0.2 to 2 times the structure's period.
+
+    RECORD is a file or a pattern in quotes. One that cannot be used is reported, and the exit code is 5; where no set
+    fits, the nearest is shown, with the periods where it does not.
+
+    \b
+    Example:
+      rocking select "records/*.AT2" --target ec8.csv --band 0.2:4 --count 7
+      rocking select "records/*.AT2" --target ec8.csv --band 0.2:2 --count 7 --factors 0.5:3 -o set --plot set.png
+      rocking respond block.yaml --record "set/*.csv"
+    """
+    from rocking_cli.cli.set_folder import check_folder
+    from rocking_cli.io.files import keep_apart
+    from rocking_cli.studies.target_spectrum import doubts, read_target
+
+    wanted = asked.wanted
+    listed, missing = motion_files.find(records)
+    listed = _without(target, listed)
+    paths = [target, *(each.path for each in listed)]
+    keep_apart([("--plot", output.plot)], [str(path) for path in paths])
+    if output.out is not None:
+        check_folder(output.out, paths)
+    spectrum = read_target(target)
+    spectrum.check(wanted.band)
+    if spectrum.unit is None:
+        terminal.note(f"{target} names no unit: its ordinates are taken to be in g")
+    for doubt in doubts(spectrum):
+        terminal.warning(doubt)
+    chosen, refused = motion_files.gather(listed, (), reading.reading, (None, None, None), 0.0)
+    if not chosen:
+        ctx.exit(InputError.exit_code)
+    results = _results(chosen, listed, spectrum, wanted)
+    if output.out is not None:
+        from rocking_cli.cli.set_folder import write_set
+
+        sources = [listed[chosen[k].place] for k in results.found.chosen.tolist()]
+        again = [None if str(each.path) == options.STANDARD_OUTPUT else each for each in sources]
+        write_set(
+            output.out,
+            results,
+            [motion_files.settled(each, reading.reading) if each is not None else None for each in again],
+        )
+    if output.plot is not None:
+        from rocking_cli.cli.pictures import write_picture
+        from rocking_cli.plotting.record_set import draw_record_set
+        from rocking_cli.views.record_set import title
+
+        write_picture(output.plot, draw_record_set(results.found, title(results)))
+    from rocking_cli.views.record_set import view
+
+    terminal.show(view(results), as_json=output.as_json)
+    if missing or refused:
+        ctx.exit(INCOMPLETE)
+
+
+def _without(target: Path, listed: list[Listed]) -> list[Listed]:
+    """The records without the target, which a pattern may stand for too."""
+    kept = [each for each in listed if not (each.path.exists() and target.exists() and each.path.samefile(target))]
+    if len(kept) < len(listed):
+        if not kept:
+            raise click.UsageError(f"Nothing to choose from: {target} is the target, and no record is given beside it.")
+        terminal.note(f"{target} is the target, and not taken for a record")
+    return kept
+
+
+def _results(chosen: list[Scaled], listed: list[Listed], target: TargetSpectrum, wanted: Wanted) -> Results:
+    """Choose among the records that were read."""
+    from rocking_cli.views.record_set import Results
+
+    read = {each.place for each in chosen}
+    unusable = [str(each.path) for place, each in enumerate(listed) if place not in read]
+    found = _found([each.motion for each in chosen], target, wanted)
+    return Results(found, target, [str(each.file) for each in chosen], unusable)
+
+
+def _found(motions: list[GroundMotion], target: TargetSpectrum, wanted: Wanted) -> RecordSet:
+    """The set; bars show how far the spectra and the search are."""
+    from rocking_cli.studies import record_set
+
+    with terminal.progress(len(motions), "spectra") as advance:
+        candidates = record_set.candidates(motions, target, wanted, advance)
+    if coarse := record_set.coarse(candidates):
+        worst = max(motion.dt for motion in coarse)
+        terminal.warning(
+            f"the band begins at {wanted.band[0]:g} s, which is less than {record_set.FEWEST} intervals of "
+            f"{len(coarse)} of {len(motions)} records (dt up to {worst:g} s): their spectra miss there what their "
+            "samples miss"
+        )
+    with ExitStack() as stack:
+
+        def bar(total: int) -> terminal.Advance:
+            return stack.enter_context(terminal.progress(total, "sets"))
+
+        return record_set.choose(candidates, wanted, bar)

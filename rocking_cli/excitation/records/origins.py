@@ -1,0 +1,96 @@
+"""Where a record is from, as far as its header says so for sure: what is unsure is left out, and nothing is refused."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+
+from rocking_cli.excitation.base import NOT_SAID, Origin
+from rocking_cli.text import seen
+
+LONGEST = 100  # characters of a name
+LARGEST = 10.0  # magnitude
+FARTHEST = 20_040.0  # km, half way round the Earth
+
+_NOTHING = re.compile(r"(?:unknown|undefined|not (?:known|available)|none|n/?a|-?12345|-?999)\.?", re.IGNORECASE)
+_NUMBER = re.compile(r"[+-]?(?:\d{1,6}\.?\d{0,9}|\.\d{1,9})")
+_DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}")
+# Of PEER before 2003: the earthquake, date and time, the station, the component, with the station's number in brackets.
+_OLD_PEER = re.compile(r"(\S.*?\s\d{1,2}/\d{1,2}/\d{2}(?:,? +\d{4}| +\d{2}:\d{2})?), *(\S[^,]*?) *,[^,]*")
+_CSMIP_EVENT = re.compile(r"^\s*(\S.*\bEARTHQUAKE\b.*\b(?:19|20)\d\d\b.*)", re.IGNORECASE)
+_CSMIP_STATION = re.compile(r"STATION NO\. *(\d+)", re.IGNORECASE)
+_CHANNEL = re.compile(r"\s*CHAN(?:NEL)? +\d+:", re.IGNORECASE)
+_HYPOCENTRE = re.compile(r"HYPOCENTER", re.IGNORECASE)
+_MAGNITUDES = tuple(re.compile(rf"\b{kind} *= *(\d+\.?\d*)", re.IGNORECASE) for kind in ("Mw", "ML", "Ms"))
+_INFO = re.compile(r"PEER\b.{0,60}?\bDATABASE RECORD\W+(.{1,200}?),[^,]{0,20}\bACCELERATION TIME", re.IGNORECASE)
+
+
+def origin(event: str | None, station: str | None, magnitude: object = None, distance: object = None) -> Origin:
+    """The origin of what a header says, each part of it only if it makes sense.
+
+    Parameters
+    ----------
+    event, station : str or None
+        Names as they stand there, of others: control characters are left out.
+    magnitude, distance : object, optional
+        Numbers, or as printed; the distance in km.
+    """
+    return Origin(name(event), name(station), _within(magnitude, 0.0, LARGEST), _within(distance, -1.0, FARTHEST))
+
+
+def name(text: str | None) -> str | None:
+    """A name fit to be shown, in one line; None where it says nothing."""
+    found = seen(text or "").strip(" ,;:-*")
+    if not re.search(r"[^\W_]", found) or _NOTHING.fullmatch(found):
+        return None
+    return found[:LONGEST].rstrip()
+
+
+def of_csmip(head: Sequence[str]) -> Origin:
+    """The origin in the text header of a channel of CSMIP: one line names the earthquake and its day."""
+    number = next((k for k, line in enumerate(head) if _CSMIP_STATION.match(line)), None)
+    station = None
+    if number is not None:  # its name is in the line below
+        below = head[number + 1 : number + 2]
+        match = _CSMIP_STATION.match(head[number])
+        station = name(below[0]) if below and not _CHANNEL.match(below[0]) else match[1] if match else None
+    hypocentre = next((line for line in head if _HYPOCENTRE.match(line)), "")
+    return origin(first_match(_CSMIP_EVENT, head), station, magnitude(hypocentre))
+
+
+def magnitude(line: str) -> str | None:
+    """The magnitude in a line such as ML=4.9, Mw=4.8(CIT): of the moment before the others."""
+    return next((found for kind in _MAGNITUDES if (found := first_match(kind, [line]))), None)
+
+
+def first_match(pattern: re.Pattern[str], lines: Iterable[str]) -> str | None:
+    """The first group of a pattern in the first line where it is found."""
+    return next((match[1] for line in lines if (match := pattern.search(line[:1000]))), None)
+
+
+def of_peer(line: str) -> Origin:
+    """The origin in the second line of a PEER file: earthquake, date, station and component between commas."""
+    parts = [part.strip() for part in line[:1000].split(",")]
+    if len(parts) >= 4 and _DATE.fullmatch(parts[1]):
+        return origin(parts[0], ", ".join(parts[2:-1]))
+    if old := _OLD_PEER.fullmatch(line[:1000].strip()):
+        return origin(old[1], old[2])
+    return NOT_SAID
+
+
+def of_info(text: str) -> Origin:
+    """The origin in the title of a PEER file that something else quotes, without its component."""
+    match = _INFO.search(text[:2000])
+    return of_peer(f"{match[1]}, component") if match else NOT_SAID
+
+
+def _within(value: object, above: float, most: float) -> float | None:
+    """A number of a header above and at most these; None for any other, and for what is none."""
+    if isinstance(value, str):
+        value = float(value) if _NUMBER.fullmatch(value := value.strip()) else None
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return number if math.isfinite(number) and above < number <= most else None

@@ -1,0 +1,59 @@
+"""A set of records against its target: the spectra, their mean, and the limits on it."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.record_set import RecordSet
+
+SHORT = 8.0  # ratio of the ends of the band up to which its axis has more ticks
+CLEAR = 12  # records up to which the line of each is opaque
+MEAN, TARGET, LIMITS = "#111111", "#c46a1b", "#d6e6f2"
+MISSED = "#8a3b62"
+
+
+def draw_record_set(found: RecordSet, title: str) -> Figure:
+    """Draw the spectra of a set over the band: each record thin, the mean bold, the target, and the limits shaded.
+
+    Parameters
+    ----------
+    found : RecordSet
+        What to draw.
+    title : str
+        Heading.
+    """
+    periods, target, mean = found.candidates.periods, found.candidates.target, found.mean
+    low, high = found.wanted.within
+    figure = style.new_figure(4.4)
+    axes = figure.subplots()
+    style.heading(axes, title)
+    axes.fill_between(periods, low * target, high * target, color=LIMITS, linewidth=0, zorder=0)
+    faint = min(1.0, max(CLEAR / len(found.chosen), 0.2))
+    axes.plot(periods, found.spectra.T, color=style.FAINT, linewidth=style.CURVE, alpha=faint, zorder=1.5)
+    axes.plot(periods, target, color=TARGET, linestyle="--", linewidth=style.BOLD, zorder=2.5)
+    axes.plot(periods, mean, color=MEAN, linewidth=2.2, zorder=3)
+    missed = found.too_low | found.too_high
+    if missed.any():
+        axes.plot(periods[missed], mean[missed], linestyle="none", marker="x", markersize=5, color=MISSED, zorder=4)
+    axes.set_xscale("log")
+    short = periods[-1] / periods[0] <= SHORT
+    style.plain_numbers(axes.xaxis, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if short else (1.0, 2.0, 5.0))
+    axes.set_xlim(periods[0], periods[-1])
+    axes.set_ylim(0.0, 1.05 * max(float(found.spectra.max()), float((high * target).max())))
+    axes.set_xlabel("period [s]", fontsize=style.LABEL)
+    damping = f"{100 * found.wanted.damping:g} % damping"
+    axes.set_ylabel(f"pseudo-acceleration [g], {damping}", fontsize=style.LABEL)
+    style.tidy(axes)
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], color=MEAN, linewidth=2.2, label="mean"),
+        Line2D([], [], color=TARGET, linestyle="--", linewidth=style.BOLD, label="target"),
+        Patch(color=LIMITS, linewidth=0, label=f"{low:g} to {high:g} times the target"),
+        Line2D([], [], color=style.FAINT, linewidth=style.CURVE, label="each record, scaled"),
+    ]
+    if missed.any():
+        handles.append(Line2D([], [], linestyle="none", marker="x", color=MISSED, label="outside the limits"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=style.TICK, frameon=False)
+    return figure

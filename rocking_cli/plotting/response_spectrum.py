@@ -1,0 +1,50 @@
+"""Response spectra of ground motions: pseudo-acceleration, pseudo-velocity and displacement over the period."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from matplotlib.figure import Figure
+
+from rocking_cli.plotting import style
+from rocking_cli.processing.oscillator import ResponseSpectrum
+
+NAMED = 6  # curves that are told apart; more are drawn alike
+QUANTITIES = (("sa", "Sa, pseudo [g]"), ("sv", "Sv, pseudo [m/s]"), ("sd", "Sd [m]"))
+
+
+def draw_response_spectra(spectra: Mapping[str, ResponseSpectrum]) -> Figure:
+    """Draw the spectra of motions, all of one damping, by their names.
+
+    Parameters
+    ----------
+    spectra : mapping of str to ResponseSpectrum
+        What to draw.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(6.6)
+    panels = figure.subplots(3, 1, sharex=True)
+    first = next(iter(spectra.values()))
+    names = list(spectra)
+    title = names[0] if len(names) == 1 else f"{len(names)} motions"
+    style.heading(panels[0], f"{title}: response spectra, {100 * first.damping:g} % damping")
+    for axes, (quantity, label) in zip(panels, QUANTITIES, strict=True):
+        for k, (name, each) in enumerate(spectra.items()):
+            look = style.distinct(k) | {"marker": ""} if len(names) <= NAMED else {"color": style.INK, "alpha": 0.5}
+            width = {"linewidth": style.CURVE if len(names) == 1 else style.MEDIUM}
+            axes.plot(each.periods, getattr(each, quantity), **look | width, label=style.plain(style.fitted(name, 3.2)))
+        axes.set_xscale("log")
+        axes.set_ylim(bottom=0.0)
+        axes.margins(x=0.01)
+        axes.set_ylabel(label, fontsize=style.LABEL)
+        style.plain_numbers(axes.xaxis)
+        style.tidy(axes)
+    panels[-1].set_xlabel("period [s]", fontsize=style.LABEL)
+    figure.align_ylabels()
+    if 1 < len(names) <= NAMED:
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
+    return figure

@@ -1,0 +1,140 @@
+"""Measures of intensity by name: those that are installed, found through the entry points `rocking.measures`."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from importlib.metadata import EntryPoint
+
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.plugins.errors import blame
+from rocking_cli.plugins.installed import leave_out, origin
+from rocking_cli.plugins.registry import Plugins
+from rocking_cli.processing.intensity.base import Measure, MotionMeasure, Reference, RelativeMeasure, RunMeasure
+from rocking_cli.text import cut, did_you_mean
+
+__all__ = [
+    "IntensityMeasures",
+    "Measure",
+    "MotionMeasure",
+    "Reference",
+    "RelativeMeasure",
+    "RunMeasure",
+    "all_measures",
+    "parse_measure",
+    "parse_measures",
+    "power_of",
+]
+
+GROUP = "rocking.measures"
+ALL = "all"
+_FORM = re.compile(r"([^()]+)(?:\((.*)\))?", re.DOTALL)
+
+
+class IntensityMeasures(Plugins[type[Measure]]):
+    """Measures of intensity by name. Listing names loads nothing; looking one up loads it.
+
+    Raises
+    ------
+    InputError
+        On looking up an unknown name.
+    MechanismError
+        On looking up a plugin that cannot be loaded, is no measure, or has a name that two packages claim.
+    """
+
+    kind = "measure"
+
+    def __init__(self) -> None:
+        super().__init__(GROUP)
+
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> type[Measure]:
+        """What was loaded, if it is a complete measure of its name."""
+        kinds = (MotionMeasure, RelativeMeasure, RunMeasure)
+        if not (isinstance(loaded, type) and issubclass(loaded, kinds)) or loaded.__abstractmethods__:
+            what = "it must derive from MotionMeasure, RelativeMeasure or RunMeasure and be complete"
+            raise MechanismError(f"{origin(point)} is no measure: {what}")
+        if getattr(loaded, "name", None) != point.name or not isinstance(getattr(loaded, "title", None), str):
+            raise MechanismError(f"{origin(point)} is no measure: it needs name = {point.name!r} and a title")
+        if issubclass(loaded, MotionMeasure) and not isinstance(loaded.power, int | float):
+            raise MechanismError(f"{origin(point)} is no measure: it needs a power, of the factor on the motion")
+        return loaded
+
+
+@cache
+def parse_measure(text: str) -> Measure:
+    """Read a measure such as `PGA`, `Sa(1.0)` or `Sa(1 s, 2%)`.
+
+    Parameters
+    ----------
+    text : str
+        The name in any case and spacing, and its parameters in brackets, as numbers or with their unit.
+
+    Raises
+    ------
+    InputError
+        If there is no such measure, or a parameter is missing or out of range; it gives the form.
+    MechanismError
+        If the plugin that it comes from cannot be used.
+
+    Examples
+    --------
+    >>> str(parse_measure("sa ( 1 )"))
+    'Sa(1.0)'
+    """
+    known = IntensityMeasures()
+    plain = {_plain(name): name for name in known}
+    if _plain(text) in plain:
+        return known[plain[_plain(text)]].read(())
+    found = _FORM.fullmatch(text.strip())
+    name = plain.get(_plain(found[1])) if found is not None else None
+    if found is None or name is None:
+        asked = found[1] if found is not None else text
+        by_case = {each.lower(): each for each in known}
+        hint = did_you_mean(asked.strip(), list(by_case)) or ""
+        for low, each in by_case.items():
+            hint = hint.replace(f"did you mean {low}?", f"did you mean {each}?")
+        if not hint.startswith("did"):
+            hint = f"known: {', '.join(known)}"
+        raise InputError(Problem(f"unknown measure: {cut(text.strip())}", hint=hint))
+    cls = known[name]
+    words = re.split("[,:]", found[2]) if (found[2] or "").strip() else []
+    with blame(f"the measure {name} failed to be made", cls.__module__):
+        return cls.read(words)
+
+
+def parse_measures(text: str) -> list[Measure]:
+    """Several measures, separated by commas outside of brackets; `all` stands for all that there are.
+
+    Raises `InputError` and `MechanismError` as `parse_measure`, the first also if there is none.
+    """
+    words = [word.strip() for word in re.split(r",(?![^(]*\))", text)]
+    found = [each for word in words for each in (all_measures() if word.lower() == ALL else [parse_measure(word)])]
+    return list(dict.fromkeys(found))
+
+
+def all_measures() -> list[Measure]:
+    """All that are installed, those of a motion alone first; of those with parameters the usual ones.
+
+    One that cannot be loaded is left out with a warning.
+    """
+    known = IntensityMeasures()
+    found: list[Measure] = []
+    for name in known:
+        try:
+            found += [parse_measure(spec) for spec in known[name].usually()]
+        except MechanismError as error:
+            leave_out(error)
+    return sorted(found, key=lambda each: (each.is_relative, each.power is None))
+
+
+def power_of(cls: type[Measure]) -> float | None:
+    """The power of the factor on a motion that measures of a class go with; None where it is computed of every run."""
+    if issubclass(cls, RelativeMeasure):
+        return parse_measure(cls.to).power
+    return cls.power if isinstance(cls.power, int | float) else None
+
+
+def _plain(name: str) -> str:
+    """A name without its case and blanks."""
+    return "".join(name.lower().split())

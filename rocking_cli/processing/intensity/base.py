@@ -1,0 +1,247 @@
+"""What a measure of intensity is: a name, a unit, and how it goes with the factor on a motion."""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import MISSING, Field, dataclass, fields
+from math import isfinite, nan
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.plugins.errors import blame, guard
+from rocking_cli.units import UnitError, read
+
+Reals = NDArray[np.float64]
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.ASCII | re.DOTALL)
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What relative measures are relative to, of one structure or of many: numbers, or arrays of one shape.
+
+    Parameters
+    ----------
+    p : float or ndarray
+        Frequency parameter [rad/s]; NaN where there is none.
+    lambda_ : float or ndarray
+        Uplift acceleration over g.
+    gravity : float or ndarray
+        [m/s2].
+    v_imp : float or ndarray
+        The velocity step of the ground that just overturns it [m/s]; NaN where it is not known.
+    """
+
+    p: float | Reals
+    lambda_: float | Reals
+    gravity: float | Reals
+    v_imp: float | Reals = nan
+
+    @property
+    def uplift(self) -> float | Reals:
+        """The acceleration at uplift [m/s2]."""
+        return self.gravity * self.lambda_
+
+
+def _failed(cls: type, method: str) -> str:
+    return f"the measure {getattr(cls, 'name', cls.__name__)} failed in {method}"
+
+
+@dataclass(frozen=True)
+class Measure(ABC):
+    """A measure of the intensity of a ground motion, found by its entry point in `rocking.measures`.
+
+    A measure derives from `MotionMeasure`, `RelativeMeasure` or `RunMeasure`. Its parameters are fields of a frozen
+    dataclass, and stand in brackets after its name: `Sa(1.0, 2%)`. The metadata of a field may name its "unit", and
+    "after": the sign that stands before it, a comma unless it says ":".
+    """
+
+    name: ClassVar[str]
+    """What it is called, such as `PGA`."""
+    title: ClassVar[str]
+    """What it is, in a few words."""
+    unit: ClassVar[str] = ""
+    """Of its values; a dimensionless one has none."""
+    usual: ClassVar[tuple[str, ...]] = ()
+    """What stands for it where all measures are asked for; itself, where it has no parameters without a default."""
+    source: ClassVar[str] = ""
+    """Where it comes from."""
+    needs: ClassVar[tuple[str, ...]] = ()
+    """The fields of `Reference` that not every structure has, `p` and `v_imp`, of which it needs these."""
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """What a measure computes is guarded: whatever fails there is an error of the plugin."""
+        super().__init_subclass__(**named)
+        guard(cls, ("__post_init__", "of", "relative"), _failed)
+
+    @property
+    @abstractmethod
+    def power(self) -> float | None:
+        """The power of the factor on a motion that it goes with; None where it is computed of every run."""
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether it asks what is shaken."""
+        return not isinstance(self, MotionMeasure)
+
+    @property
+    def base(self) -> MotionMeasure | None:
+        """The measure of the motion alone that it is, or makes something of; None where it is computed of every run."""
+        return None
+
+    def relative(self, value: Any, structure: Reference) -> Any:
+        """What it makes of a value of `base`, of the motion as scaled, for a structure; arrays of one shape."""
+        return value
+
+    @property
+    def label(self) -> str:
+        """With its unit, for a heading."""
+        return f"{self} [{self.unit}]" if self.unit else str(self)
+
+    def __str__(self) -> str:
+        """What is read as this measure."""
+        given = [(field, getattr(self, field.name)) for field in fields(self)]
+        while given and given[-1][1] == given[-1][0].default:
+            given.pop()
+        words = ""
+        for field, value in given:
+            words += f"{field.metadata.get('after', ', ') if words else ''}{_written(value, field)}"
+        return f"{self.name}({words})" if words else self.name
+
+    @classmethod
+    def read(cls, words: Sequence[str]) -> Measure:
+        """The measure with these parameters, as they stand between the brackets.
+
+        Raises
+        ------
+        InputError
+            If there are too few or too many, or one cannot be read; it gives the form.
+        """
+        asked = fields(cls)
+        least = sum(field.default is MISSING for field in asked)
+        if not least <= len(words) <= len(asked):
+            such = f", such as {cls.usual[0]}" if cls.usual else ""
+            said = f"is given as {cls.form()}{such}" if asked else "takes nothing in brackets"
+            raise InputError(f"{cls.name} {said}")
+        return cls(*(_read(word, field, cls.form()) for word, field in zip(words, asked, strict=False)))
+
+    @classmethod
+    def form(cls) -> str:
+        """How it is given, in words: `Sa(PERIOD[, DAMPING])`."""
+        words = ""
+        for field in fields(cls):
+            word = f"{field.metadata.get('after', ', ') if words else ''}{field.name.upper()}"
+            words += word if field.default is MISSING else f"[{word}]"
+        return f"{cls.name}({words})" if words else cls.name
+
+    @classmethod
+    def usually(cls) -> tuple[str, ...]:
+        """What stands for it where all measures are asked for."""
+        return cls.usual or ((cls.name,) if all(field.default is not MISSING for field in fields(cls)) else ())
+
+
+class MotionMeasure(Measure):
+    """A measure of a motion alone.
+
+    A subclass gives `power`, as a class attribute, and `of`.
+    """
+
+    @property
+    def base(self) -> MotionMeasure:
+        """Itself."""
+        return self
+
+    @abstractmethod
+    def of(self, motion: GroundMotion) -> float | None:
+        """Its value, not negative; None where the motion has none."""
+
+    def value(self, motion: GroundMotion) -> float:
+        """Its value; NaN where the motion has none. Raises `PluginError` if it gives no number, or a negative one."""
+        return _sound(self, self.of(motion))
+
+
+class RelativeMeasure(Measure):
+    """A measure of a motion times what a structure makes of it.
+
+    A subclass gives `to`, the name of the measure of the motion, and `relative`, in proportion to its value.
+    """
+
+    to: ClassVar[str]
+    """Of a `MotionMeasure`, with its parameters."""
+
+    @property
+    def base(self) -> MotionMeasure:
+        """The measure of the motion."""
+        from rocking_cli.processing.intensity import parse_measure
+
+        found = parse_measure(self.to)
+        if not isinstance(found, MotionMeasure):
+            raise PluginError(
+                f"the measure {self.name} is relative to {self.to}, which is no measure of a motion alone"
+            )
+        return found
+
+    @property
+    def power(self) -> float:
+        """That of the measure of the motion."""
+        return float(self.base.power or 0.0)
+
+    @abstractmethod
+    def relative(self, value: Any, structure: Reference) -> Any:
+        """What it makes of a value, of the motion as scaled, for a structure; arrays of one shape."""
+
+
+class RunMeasure(Measure):
+    """A measure of a motion and a structure that goes with no power of the factor: it is computed of every run.
+
+    A subclass gives `of`.
+    """
+
+    power = None
+
+    @abstractmethod
+    def of(self, motion: GroundMotion, structure: Reference) -> float | None:
+        """Its value for a motion as scaled, not reversed, and one structure; None where there is none."""
+
+    def value(self, motion: GroundMotion, structure: Reference) -> float:
+        """Its value; NaN where there is none. Raises `PluginError` if it gives no number, or a negative one."""
+        return _sound(self, self.of(motion, structure))
+
+
+def _sound(measure: Measure, found: object) -> float:
+    """A value, if it is one."""
+    if found is None:
+        return nan
+    with blame(f"the measure {measure} gave {found!r}", type(measure).__module__):
+        value = float(found)  # type: ignore[arg-type]
+    if value < 0 or value in (float("inf"),):
+        raise PluginError(f"the measure {measure} gave {value:g}: a measure is a number, and not negative")
+    return value
+
+
+def _written(value: Any, field: Field[Any]) -> str:
+    """A parameter as it stands in the name."""
+    return f"{100 * value:g}%" if field.metadata.get("unit") == "%" else repr(float(value))
+
+
+def _read(word: str, field: Field[Any], form: str) -> float:
+    """A parameter: a number, in its unit or with one."""
+    unit, found = field.metadata.get("unit", ""), _NUMBER.fullmatch(word.strip())
+    if found is None:
+        raise InputError(f"{word.strip()!r} is no {field.name}: {form}")
+    given = found[2].strip()
+    try:
+        if given == "%" == unit:
+            value = float(found[1]) / 100
+        else:
+            value = float(found[1]) if given.lower() in ("", unit.lower()) else read(word.strip(), unit)
+    except UnitError as error:
+        raise InputError(Problem(f"{error.message}: {form}", hint=error.hint)) from None
+    if not isfinite(value):
+        raise InputError(f"{word.strip()!r} is no {field.name}: {form}")
+    return value

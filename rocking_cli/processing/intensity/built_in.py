@@ -1,0 +1,267 @@
+"""The measures of intensity of this package. They come in by the same door as anybody's.
+
+Exact for the straight lines between samples, except the mean period, which is defined by the samples.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.measures import measure, time_of_share
+from rocking_cli.processing.intensity.base import MotionMeasure, Reference, RelativeMeasure, RunMeasure
+from rocking_cli.processing.oscillator import DAMPING, check_oscillator, response_spectrum
+
+Reals = NDArray[np.float64]
+SLOWEST, FASTEST = 0.25, 20.0  # Hz: between these frequencies the mean period is taken
+STEP = 0.05  # Hz between them, at most
+HOUSNER = (0.1, 2.5)  # s: between these periods his intensity is taken
+PERIODS = 241  # of that, one each 0.01 s
+AVERAGED = 100  # periods of an average
+
+
+class PeakAcceleration(MotionMeasure):
+    """Largest acceleration."""
+
+    name, title, unit, power = "PGA", "peak ground acceleration", "g", 1.0
+
+    def of(self, motion: GroundMotion) -> float:
+        """Over standard gravity."""
+        return motion.pga
+
+
+class PeakVelocity(MotionMeasure):
+    """Largest velocity."""
+
+    name, title, unit, power = "PGV", "peak ground velocity", "m/s", 1.0
+
+    def of(self, motion: GroundMotion) -> float:
+        """In m/s."""
+        return measure(motion).pgv
+
+
+class PeakDisplacement(MotionMeasure):
+    """Largest displacement."""
+
+    name, title, unit, power = "PGD", "peak ground displacement", "m", 1.0
+
+    def of(self, motion: GroundMotion) -> float:
+        """In m."""
+        return measure(motion).pgd
+
+
+class VelocityOverAcceleration(MotionMeasure):
+    """How long the motion pushes to one side."""
+
+    name, title, unit, power = "PGV/PGA", "peak velocity over peak acceleration", "s", 0.0
+    source = "Zhu et al. (1988), of the inverse"
+
+    def of(self, motion: GroundMotion) -> float | None:
+        """In s; none of a motion that is zero throughout."""
+        found = measure(motion)
+        return found.pgv / (found.pga * STANDARD_GRAVITY) if found.pga else None
+
+
+class Arias(MotionMeasure):
+    """pi/(2 g) times the integral of the squared acceleration."""
+
+    name, title, unit, power = "Arias", "Arias intensity", "m/s", 2.0
+    source = "Arias (1970)"
+
+    def of(self, motion: GroundMotion) -> float:
+        """In m/s."""
+        return measure(motion).arias
+
+
+class CumulativeVelocity(MotionMeasure):
+    """The integral of the size of the acceleration."""
+
+    name, title, unit, power = "CAV", "cumulative absolute velocity", "m/s", 1.0
+    source = "EPRI (1988)"
+
+    def of(self, motion: GroundMotion) -> float:
+        """In m/s."""
+        a, b = motion.acceleration[:-1], motion.acceleration[1:]
+        ends = np.abs(a) + np.abs(b)
+        # Where the sign changes two triangles, a^2 and b^2 over twice the difference.
+        crossing = np.signbit(a) != np.signbit(b)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            areas = np.where(crossing & (ends > 0), (a * a + b * b) / (2 * ends), ends / 2)
+        return float(motion.dt * areas.sum())
+
+
+class Duration75(MotionMeasure):
+    """From 5 to 75 % of the Arias intensity."""
+
+    name, title, unit, power = "D5-75", "time from 5 to 75 % of the Arias intensity", "s", 0.0
+    source = "Somerville et al. (1997)"
+
+    def of(self, motion: GroundMotion) -> float | None:
+        """In s; none of a motion that is zero throughout."""
+        return _duration(motion, 0.75)
+
+
+class Duration95(MotionMeasure):
+    """From 5 to 95 % of the Arias intensity."""
+
+    name, title, unit, power = "D5-95", "time from 5 to 95 % of the Arias intensity", "s", 0.0
+    source = "Trifunac and Brady (1975)"
+
+    def of(self, motion: GroundMotion) -> float | None:
+        """In s; none of a motion that is zero throughout."""
+        return _duration(motion, 0.95)
+
+
+def _duration(motion: GroundMotion, share: float) -> float | None:
+    start, end = time_of_share(motion, 0.05), time_of_share(motion, share)
+    return None if start is None or end is None else end - start
+
+
+class MeanPeriod(MotionMeasure):
+    """The mean of the periods of the Fourier spectrum, each with the square of its amplitude."""
+
+    name, title, unit, power = "Tm", "mean period of the Fourier spectrum", "s", 0.0
+    source = "Rathje, Abrahamson and Bray (1998)"
+
+    def of(self, motion: GroundMotion) -> float | None:
+        """In s; none of a motion without anything between 0.25 and 20 Hz."""
+        largest = float(np.abs(motion.acceleration).max())
+        if largest == 0:
+            return None
+        # Zeros behind the record, as the spectrum between the frequencies of the record itself counts too.
+        points = max(2 * motion.npts, int(np.ceil(1 / (STEP * motion.dt))))
+        points = 1 << (points - 1).bit_length()
+        amplitudes = np.abs(np.fft.rfft(motion.acceleration / largest, points)) ** 2
+        frequencies = np.fft.rfftfreq(points, motion.dt)
+        taken = (frequencies >= SLOWEST) & (frequencies <= FASTEST)
+        weights = amplitudes[taken]
+        return float((weights / frequencies[taken]).sum() / weights.sum()) if weights.sum() > 0 else None
+
+
+class SpectrumIntensity(MotionMeasure):
+    """The integral of the pseudo-velocity of 5 % over periods from 0.1 to 2.5 s."""
+
+    name, title, unit, power = "SI", "Housner's spectrum intensity, 5 %", "m", 1.0
+    source = "Housner (1952), of the pseudo-velocity"
+
+    def of(self, motion: GroundMotion) -> float:
+        """In m."""
+        periods = np.linspace(*HOUSNER, PERIODS)
+        sv = response_spectrum(motion, periods, DAMPING).sv
+        return float(((sv[1:] + sv[:-1]) / 2 * np.diff(periods)).sum())
+
+
+@dataclass(frozen=True)
+class _Spectral(MotionMeasure):
+    """What is read from a response spectrum at one period."""
+
+    period: float = field(metadata={"unit": "s"})
+    damping: float = field(default=DAMPING, metadata={"unit": "%"})
+
+    def __post_init__(self) -> None:
+        check_oscillator(self.period, self.damping)
+
+
+class SpectralAcceleration(_Spectral):
+    """Pseudo-acceleration of an oscillator."""
+
+    name, title, unit, power = "Sa", "pseudo-acceleration of an oscillator", "g", 1.0
+    usual = ("Sa(0.3)", "Sa(1.0)", "Sa(3.0)")
+
+    def of(self, motion: GroundMotion) -> float:
+        """Over standard gravity."""
+        return float(response_spectrum(motion, self.period, self.damping).sa[0])
+
+
+class SpectralDisplacement(_Spectral):
+    """Displacement of an oscillator."""
+
+    name, title, unit, power = "Sd", "displacement of an oscillator", "m", 1.0
+    usual = ("Sd(1.0)",)
+
+    def of(self, motion: GroundMotion) -> float:
+        """Relative to the ground, in m."""
+        return float(response_spectrum(motion, self.period, self.damping).sd[0])
+
+
+@dataclass(frozen=True)
+class AverageSpectralAcceleration(MotionMeasure):
+    """The geometric mean of the pseudo-accelerations at a hundred periods, evenly spaced from the first to the last."""
+
+    low: float = field(metadata={"unit": "s"})
+    high: float = field(metadata={"unit": "s", "after": ":"})
+    damping: float = field(default=DAMPING, metadata={"unit": "%"})
+
+    name, title, unit, power = "Sa_avg", "geometric mean of Sa over a range of periods", "g", 1.0
+    usual = ("Sa_avg(0.2:2.0)",)
+    source = "Eads, Miranda and Lignos (2015)"
+
+    def __post_init__(self) -> None:
+        for period in (self.low, self.high):
+            check_oscillator(period, self.damping)
+        if not self.low < self.high:
+            raise InputError(f"{self.name} goes from a shorter to a longer period, got {self.low:g} and {self.high:g}")
+
+    def of(self, motion: GroundMotion) -> float:
+        """Over standard gravity."""
+        found = response_spectrum(motion, np.linspace(self.low, self.high, AVERAGED), self.damping).sa
+        return float(np.exp(np.log(found).mean())) if found.all() else 0.0
+
+
+class AccelerationOverUplift(RelativeMeasure):
+    """The a of a pulse [paper, Eq. 40]: 1 is needed to uplift."""
+
+    name, title, to = "PGA/(g lambda)", "peak acceleration over that at uplift", "PGA"
+    source = "DeJong and Dimitrakopoulos (2014), Eq. 40"
+
+    def relative(self, value: Any, structure: Reference) -> Any:
+        """Of a peak acceleration over standard gravity."""
+        return value * STANDARD_GRAVITY / structure.uplift
+
+
+class VelocityOverUplift(RelativeMeasure):
+    """The velocity of the ground over that which the acceleration at uplift gives in 1/p."""
+
+    name, title, to, needs = "p PGV/(g lambda)", "p times the peak velocity over g lambda", "PGV", ("p",)
+
+    def relative(self, value: Any, structure: Reference) -> Any:
+        """Of a peak velocity in m/s."""
+        return structure.p * value / structure.uplift
+
+
+class VelocityOverImpulse(RelativeMeasure):
+    """The velocity of the ground over the step of it that just overturns the structure from rest."""
+
+    name, title, to, needs = "PGV/v_imp", "peak velocity over the step that overturns", "PGV", ("v_imp",)
+
+    def relative(self, value: Any, structure: Reference) -> Any:
+        """Of a peak velocity in m/s."""
+        return value / structure.v_imp
+
+
+class UniformDuration(RunMeasure):
+    """How long in all the acceleration is g lambda or more in size."""
+
+    name, title, unit = "Du", "time with an acceleration of g lambda or more", "s"
+    source = "Bolt (1973), of the acceleration at uplift"
+
+    def of(self, motion: GroundMotion, structure: Reference) -> float:
+        """In s."""
+        return motion.dt * float(_share_above(motion.acceleration, float(structure.uplift)).sum())
+
+
+def _share_above(acceleration: Reals, level: float) -> Reals:
+    """Of each interval the part in which a straight line is `level` or more in size."""
+    low = np.minimum(acceleration[:-1], acceleration[1:])
+    high = np.maximum(acceleration[:-1], acceleration[1:])
+    width = high - low
+    with np.errstate(divide="ignore", invalid="ignore"):
+        above = np.where(low >= level, 1.0, np.clip((high - level) / width, 0.0, 1.0))
+        below = np.where(high <= -level, 1.0, np.clip((-level - low) / width, 0.0, 1.0))
+    flat = width == 0
+    return np.asarray(np.where(flat, np.abs(low) >= level, above + below), dtype=np.float64)

@@ -1,0 +1,88 @@
+"""What was measured for a study, beyond the peaks that every record has: values of records, samples and runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Reals = NDArray[np.float64]
+
+
+class Value(NamedTuple):
+    """One value, as a store keeps it; places that it does not depend on are None, and so is a value that is none."""
+
+    measure: str
+    sample: int | None
+    record: int | None
+    level: int | None
+    value: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Values by name; NaN where there is none.
+
+    Parameters
+    ----------
+    of_record : mapping of str to ndarray, shape (records,)
+        Measures of the motions as they are, by their spelling.
+    of_sample : mapping of str to ndarray, shape (samples,)
+        Fields of `Reference` that the trials do not have.
+    of_run : mapping of str to ndarray, shape (samples, records, levels)
+        Measures that go with no power of the factor.
+    """
+
+    of_record: Mapping[str, Reals] = field(default_factory=dict)
+    of_sample: Mapping[str, Reals] = field(default_factory=dict)
+    of_run: Mapping[str, Reals] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.of_record or self.of_sample or self.of_run)
+
+    def values(self) -> Iterator[Value]:
+        """One after the other, without those that are none."""
+        for name, values in self.of_record.items():
+            yield from (Value(name, None, k, None, value) for (k,), value in _there(values))
+        for name, values in self.of_sample.items():
+            yield from (Value(name, k, None, None, value) for (k,), value in _there(values))
+        for name, values in self.of_run.items():
+            yield from (Value(name, s, r, k, value) for (s, r, k), value in _there(values))
+
+    @classmethod
+    def of(cls, values: Iterator[Value], shape: tuple[int, int, int]) -> Measured:
+        """From single values, of so many samples, records and levels.
+
+        Raises
+        ------
+        ValueError
+            If a place depends on what no value does.
+        IndexError
+            If there is no such place.
+        """
+        samples, records, levels = shape
+        kinds: tuple[tuple[dict[str, Reals], tuple[int, ...]], ...] = (
+            ({}, (records,)),
+            ({}, (samples,)),
+            ({}, (samples, records, levels)),
+        )
+        patterns = ((False, True, False), (True, False, False), (True, True, True))
+        for each in values:
+            places = (each.sample, each.record, each.level)
+            found, size = kinds[patterns.index(tuple(place is not None for place in places))]
+            if each.measure not in found:
+                found[each.measure] = np.full(size, np.nan)
+            place = tuple(place for place in places if place is not None)
+            if min(place) < 0:
+                raise IndexError(place)
+            found[each.measure][place] = np.nan if each.value is None else each.value
+        return cls(*(found for found, _ in kinds))
+
+
+def _there(values: Reals) -> Iterator[tuple[Any, float]]:
+    """Place and value of what is not NaN."""
+    places = np.argwhere(~np.isnan(values)).tolist()
+    return zip((tuple(place) for place in places), values[~np.isnan(values)].tolist(), strict=True)

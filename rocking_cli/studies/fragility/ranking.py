@@ -1,0 +1,313 @@
+"""Which measure of intensity serves: how closely it goes with the rotation, and whether it leaves anything out.
+
+Terms are those of Luco and Cornell (2007) and Padgett, Nielson and DesRoches (2008). Over the runs that rock and stand
+ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import nan, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.processing.intensity import RunMeasure, all_measures, parse_measure
+from rocking_cli.studies.fragility.assess import counted, curves
+from rocking_cli.studies.fragility.curves import Curve
+from rocking_cli.studies.fragility.definition import Definition, Limit
+from rocking_cli.studies.fragility.intensity import PGA, PGV
+from rocking_cli.studies.fragility.measuring import ORIGIN, V_IMP
+from rocking_cli.studies.fragility.plan import Plan
+from rocking_cli.studies.fragility.store import Store
+from rocking_cli.studies.fragility.tally import samples_of
+
+Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
+TREND = 0.05  # p-value below which residuals have a trend
+OF_MOTION = ("Tm", "D5-95")
+"""What residuals are held against where not all records state magnitude and distance."""
+STRAIGHT = ("magnitude",)  # it is a logarithm already
+FEWEST = 3  # runs, and records
+SAME = 1e-9  # of a logarithm: measures that differ by no more than a factor are one
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """A measure, and how it serves for one structure.
+
+    Parameters
+    ----------
+    measure : str
+        Which.
+    efficiency : float
+        Standard deviation of ln(peak phi/phi_cr) about the line, with two degrees of freedom less than runs.
+    practicality : float
+        Slope of the line.
+    runs, records : int
+        Runs that rock and stand, over which it goes, and the different records among theirs.
+    trends : dict of str to float
+        Of what the residuals, averaged for each record, are held against: the p-value of their slope over it. NaN where
+        that cannot be told.
+    dispersions : dict of limit state to float
+        Of the fragility curve of each limit state over the measure; NaN where it is not lognormal.
+    """
+
+    measure: str
+    efficiency: float
+    practicality: float
+    runs: int
+    records: int
+    trends: Mapping[str, float]
+    dispersions: Mapping[Limit, float]
+
+    @property
+    def proficiency(self) -> float:
+        """Efficiency over practicality; NaN where the rotation does not grow with the measure."""
+        return self.efficiency / self.practicality if self.practicality > 0 else nan
+
+    @property
+    def sufficient(self) -> bool | None:
+        """Whether no trend is left; None where nothing can be told."""
+        known = [p for p in self.trends.values() if p == p]
+        return min(known) >= TREND if known else None
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """The measures of one structure.
+
+    Parameters
+    ----------
+    structure : str
+        Which.
+    measures : tuple of Ranked
+        The most efficient first.
+    against : tuple of str
+        What residuals are held against.
+    alike : dict of str to str
+        Measures that are a constant times another one in every run, and that one.
+    left_out : dict of str to str
+        Measures that cannot be ranked, and why.
+    """
+
+    structure: str
+    measures: tuple[Ranked, ...]
+    against: tuple[str, ...]
+    alike: Mapping[str, str]
+    left_out: Mapping[str, str]
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A straight line through points, by least squares: intercept, slope, and the deviation of the points from it.
+
+    `p_value` is that of Student's test of no slope, with two degrees of freedom less than points.
+    """
+
+    intercept: float
+    slope: float
+    deviation: float
+    p_value: float
+
+
+def line(x: Reals, y: Reals) -> Line | None:
+    """Fit a straight line; None of fewer than three points, or of points above one another."""
+    from scipy.special import stdtr
+
+    free = x.size - 2
+    spread = x - x.mean() if x.size else x
+    squares = float(spread @ spread)
+    if free < 1 or squares <= (SAME * x.size) ** 2:
+        return None
+    slope = float(spread @ y) / squares
+    rest = y - y.mean() - slope * spread
+    deviation = sqrt(float(rest @ rest) / free)
+    error = deviation / sqrt(squares)
+    p_value = 2 * float(stdtr(free, -abs(slope) / error)) if error > 0 else 0.0
+    return Line(float(y.mean()) - slope * float(x.mean()), slope, deviation, p_value)
+
+
+def candidates(plan: Plan, definition: Definition) -> list[str]:
+    """The measures that can be ranked: those of the study and all that are installed, as far as values are known."""
+    asked = [*definition.asked_measures, *(str(each) for each in all_measures())]
+    return [each for each in dict.fromkeys(asked) if _known(plan, each)]
+
+
+def _known(plan: Plan, name: str) -> bool:
+    measure = parse_measure(name)
+    if isinstance(measure, RunMeasure):
+        return name in plan.measured.of_run
+    base = str(measure.base)
+    if V_IMP in measure.needs and V_IMP not in plan.measured.of_sample:
+        return False
+    return base in (PGA, PGV) or base in plan.measured.of_record
+
+
+def covariates(plan: Plan) -> dict[str, Reals]:
+    """What residuals are held against, of each record; empty where nothing is known of all that can be used."""
+    usable = np.array([record.reason is None for record in plan.records])
+
+    def of(names: Iterable[str]) -> dict[str, Reals]:
+        found = {}
+        for name in names:
+            values = plan.of_records(name)
+            if not (np.isfinite(values[usable]).all() and (values[usable] > 0).all()):
+                return {}
+            found[name] = values if name in STRAIGHT else np.log(np.where(usable, values, 1.0))
+        return found
+
+    return of(ORIGIN) or of(OF_MOTION)
+
+
+def rank(
+    store: Store,
+    plan: Plan,
+    definition: Definition,
+    progress: Callable[[int], None] = lambda count: None,
+    against: Mapping[str, Reals] | None = None,
+) -> list[Ranking]:
+    """Rank the measures of each structure of a store that has runs.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        Its runs.
+    definition : Definition
+        What its study asks for.
+    progress : callable, optional
+        Told how many numbers of runs have been gone through since the last call.
+    against : mapping of str to ndarray, shape (records,), optional
+        What residuals are held against, a name and a value of each record; those of `covariates` unless given.
+    """
+    names = candidates(plan, definition)
+    against = covariates(plan) if against is None else against
+    asked = definition.model_copy(update={"measures": names, "bivariate": [], "hazard": None})
+    found = []
+    for structure, tally in counted(store, plan, asked, progress).items():
+        if tally.runs.any():
+            fitted = {(each.measure, each.limit): each.curve for each in curves(tally, structure, asked, None)}
+            found.append(_rank(store, plan, structure, names, fitted, against))
+    return found
+
+
+def _rank(
+    store: Store,
+    plan: Plan,
+    structure: str,
+    names: Sequence[str],
+    fitted: Mapping[tuple[str, Limit], Curve],
+    against: Mapping[str, Reals],
+) -> Ranking:
+    """The ranking of one structure."""
+    runs, y = rocking(store, plan, structure)
+    sample, record, _, level, _ = plan.places(runs)
+    factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # alike in several sets
+    ranked: list[Ranked] = []
+    alike: dict[str, str] = {}
+    left_out: dict[str, str] = {}
+    logs: dict[str, Reals] = {}
+    for name in names:
+        x = plan.intensities(name, sample, record, level, factors)
+        there = x > 0
+        if not there.any():
+            left_out[name] = "not known of it, or nowhere above zero"
+            continue
+        log = np.log(np.where(there, x, 1.0))
+        twin = next((other for other, its in logs.items() if there.all() and its.size and _constant(log - its)), None)
+        if twin is not None:
+            alike[name] = twin
+            continue
+        served = serves(name, log[there], y[there], one[there], against)
+        if served is None:
+            left_out[name] = "the same in all runs that rock and stand, or these are fewer than three"
+            continue
+        logs[name] = log if there.all() else np.zeros(0)
+        limits = {limit: _dispersion(curve) for (measure, limit), curve in fitted.items() if measure == name}
+        ranked.append(Ranked(name, *served, limits))
+    order = sorted(ranked, key=lambda each: each.efficiency)
+    return Ranking(structure, tuple(order), tuple(against), alike, left_out)
+
+
+def serves(
+    measure: str, x: Reals, y: Reals, record: Integers, against: Mapping[str, Reals]
+) -> tuple[float, float, int, int, dict[str, float]] | None:
+    """How a measure serves: efficiency, practicality, runs, records and trends; None where there is no line.
+
+    Parameters
+    ----------
+    measure : str
+        Which: against itself nothing is held.
+    x, y : ndarray, shape (n,)
+        Logarithms of the measure and of the peak rotation of runs.
+    record : ndarray of int, shape (n,)
+        The record of each.
+    against : mapping of str to ndarray, shape (records,)
+        What residuals are held against.
+    """
+    fit = line(x, y)
+    if fit is None:
+        return None
+    residuals = y - fit.intercept - fit.slope * x
+    records, place, count = np.unique(record, return_inverse=True, return_counts=True)
+    means = np.bincount(place, weights=residuals) / count  # runs of a record are not independent
+    trends = {}
+    for name, values in against.items():
+        of = line(values[records], means) if name != measure else None
+        trends[name] = nan if of is None else of.p_value
+    return fit.deviation, fit.slope, int(x.size), int(records.size), trends
+
+
+def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
+    """The numbers of the runs of a structure that rock and stand, and ln(peak phi/phi_cr) of each."""
+    samples = samples_of(plan, structure)
+    each = len(plan.records) * plan.block
+    ids, peaks = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
+    for found in store.endings(samples.start * each, samples.stop * each):
+        rocks = found.uplifts & (found.peak_ratio > 0)  # NaN of those that overturn, or cannot be followed
+        ids.append(found.id[rocks])
+        peaks.append(np.log(found.peak_ratio[rocks]))
+    return np.concatenate(ids), np.concatenate(peaks)
+
+
+def _constant(values: Reals) -> bool:
+    return bool(np.ptp(values) <= SAME)
+
+
+def _dispersion(curve: Curve) -> float:
+    return curve.dispersion.value if curve.dispersion is not None else nan
+
+
+def judge(ranking: Ranking) -> list[str]:
+    """What a ranking says, in sentences: of these runs and records, and of no others."""
+    if not ranking.measures:
+        return [f"{ranking.structure}: no measure can be ranked: fewer than three runs rock and stand."]
+    best = ranking.measures[0]
+    of = f"{best.runs:,} runs of {best.records} record{'s' * (best.records != 1)} that rock and stand"
+    first = (
+        f"Of {len(ranking.measures)} measures {best.measure} is the most efficient over the {of}: "
+        f"ln(phi/phi_cr) scatters by {best.efficiency:.2g} about its line."
+    )
+    return [first, *_of_trends(ranking), "Other records may give another order."]
+
+
+def _of_trends(ranking: Ranking) -> list[str]:
+    """Which is the most efficient among those whose residuals have no trend."""
+    if not ranking.against:
+        return ["What its residuals depend on is not tested: the store has nothing to hold them against."]
+    tested = [each for each in ranking.measures if each.sufficient is not None]
+    if not tested:
+        return [f"With fewer than {FEWEST} records no trend with {' and '.join(ranking.against)} can be told."]
+    free = [each for each in tested if each.sufficient]
+    over = " or ".join(ranking.against)
+    if not free:
+        return [f"The residuals of each have a trend with {over}: none is sufficient."]
+    best = free[0]
+    which = "It" if best is ranking.measures[0] else f"{best.measure}, with {best.efficiency:.2g},"
+    return [
+        f"{which} is the most efficient of the {len(free)} whose residuals show no trend with {over} "
+        f"(p of {TREND:g} or more); that none shows is no proof that there is none."
+    ]

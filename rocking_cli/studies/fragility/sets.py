@@ -1,0 +1,90 @@
+"""Sets of records: which records are run at which level, how much each counts, and which are one and the same."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.studies.fragility.observed import SAME
+
+Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
+EVERY = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Sets:
+    """What records a study runs at which levels; each an ndarray, a place a record.
+
+    Parameters
+    ----------
+    level : ndarray of int
+        The place of the one level that it is of a set for; -1 for a record that is run at all levels.
+    weight : ndarray
+        How much it counts beside the others, positive.
+    one : ndarray of int
+        The place of the first that is the same record, of another set or in another direction.
+    scaled : bool
+        Whether records are scaled to their levels; else sets are used as they are, and a level is their name.
+    """
+
+    level: Integers
+    weight: Reals
+    one: Integers
+    scaled: bool = True
+
+    @classmethod
+    def of(
+        cls,
+        levels: Sequence[float],
+        at: Sequence[float | None],
+        weights: Sequence[float],
+        files: Sequence[str],
+        *,
+        scaled: bool = True,
+    ) -> Sets:
+        """Sets of records from the level that each is for, if any, how much it counts, and its file."""
+        values = np.array(levels)
+        places = [EVERY if each is None else int(np.argmin(np.abs(values - each))) for each in at]
+        first = {file: len(files) - 1 - k for k, file in enumerate(reversed(files))}
+        return cls(
+            np.array(places, dtype=np.int64),
+            np.array(weights, dtype=np.float64),
+            np.array([first[file] for file in files], dtype=np.int64),
+            scaled,
+        )
+
+    @classmethod
+    def plain(cls, records: int) -> Sets:
+        """Records that are all run at all levels, and count alike."""
+        return cls.of([0.0], [None] * records, [1.0] * records, [str(k) for k in range(records)])
+
+    @property
+    def weighted(self) -> bool:
+        """Whether some records count more than others."""
+        return bool(np.ptp(self.weight) > SAME * self.weight.max()) if self.weight.size else False
+
+    def there(self, record: int, levels: int) -> NDArray[np.bool_]:
+        """At which levels a record is run."""
+        return np.ones(levels, dtype=bool) if self.level[record] == EVERY else np.arange(levels) == self.level[record]
+
+
+def among(level: float, levels: Sequence[float]) -> bool:
+    """Whether a record's level is one of those of the study, rounding aside."""
+    return any(abs(level - each) <= SAME * abs(each) for each in levels)
+
+
+def described(description: dict[str, Any], weights: Sequence[float] | None) -> Sets:
+    """The sets of a store, from the description of its study and the weights that were asked for last."""
+    records, levels = description["records"], description["levels"]
+    return Sets.of(
+        levels["values"],
+        [each.get("level") for each in records],
+        weights if weights is not None else [1.0] * len(records),
+        [each.get("file", each["name"]) for each in records],
+        scaled=levels.get("scaled", True),
+    )

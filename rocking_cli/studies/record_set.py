@@ -1,0 +1,336 @@
+"""A set of records, each with a factor, whose mean spectrum lies within limits about a target over a band of periods.
+
+Each record has the factor that brings it to the target on logarithmic average over the band, and all have one factor in
+common. The best set is the one that leaves the limits least, and of those within them the one whose mean is nearest to
+the target: least root mean square of ln(mean/target). `subsets` finds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import ceil, isfinite, log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.processing.oscillator import DAMPING, response_spectrum
+from rocking_cli.studies import subsets
+from rocking_cli.studies.target_spectrum import Reals, TargetSpectrum
+
+WITHIN = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has the lower one alone
+FACTORS = (0.2, 5.0)
+ONE_PER = ("event", "station", "none")
+SPACING = (0.01, 0.05)  # of ln T, at least and at most: the damping ratio is half the width of a resonance
+POINTS = 50  # periods of a band, at least
+OWN_POINTS = 100  # of the target within the band that are added to these, if there are no more
+SAME_PERIOD = 1e-6  # ratio, less one, of periods that are one
+FEWEST = 4  # intervals of a record to a period, for its samples to show it
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a set is to be.
+
+    Parameters
+    ----------
+    count : int
+        How many records.
+    band : (float, float)
+        From which period to which [s].
+    within : (float, float)
+        Limits on mean/target.
+    damping : float
+        Damping ratio of the spectra: that of the target.
+    factors : (float, float)
+        Limits on the factor of each record.
+    one_per : {"event", "station", "none"}
+        Of what there may be one record at most.
+    same_factor : bool
+        Whether all have the same factor.
+    seed : int
+        Of the searches where there are too many sets to try all.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    count: int
+    band: tuple[float, float]
+    within: tuple[float, float] = WITHIN
+    damping: float = DAMPING
+    factors: tuple[float, float] = FACTORS
+    one_per: str = "event"
+    same_factor: bool = False
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.count < 1:
+            raise InputError(Problem(f"a set has at least one record, got {self.count}", field="`count`"))
+        for name in ("band", "within", "factors"):
+            low, high = getattr(self, name)
+            if not (0 < low < high and isfinite(high)):
+                message = f"it must be two positive numbers, the smaller first, got {low:g} and {high:g}"
+                raise InputError(Problem(message, field=f"`{name}`"))
+        if not 0 <= self.damping < 1:
+            message = f"a damping ratio is from 0 to below 1, got {self.damping:g}"
+            raise InputError(Problem(message, field="`damping`", hint="5 % is 0.05"))
+        if self.one_per not in ONE_PER:
+            raise InputError(Problem(f"it is one of {', '.join(ONE_PER)}, got {self.one_per}", field="`one_per`"))
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """Records to choose from, and their spectra.
+
+    Parameters
+    ----------
+    motions : sequence of GroundMotion
+        As read.
+    periods : ndarray, shape (n,)
+        At equal ratios over the band, and the target's own in it [s].
+    target : ndarray, shape (n,)
+        Ordinates of the target there [standard gravity].
+    spectra : ndarray, shape (motions, n)
+        Pseudo-accelerations of the motions there [standard gravity].
+    """
+
+    motions: Sequence[GroundMotion]
+    periods: Reals
+    target: Reals
+    spectra: Reals
+
+
+@dataclass(frozen=True, eq=False)
+class RecordSet:
+    """The best set that was found, whether it fits or not.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What was asked for.
+    candidates : Candidates
+        What it was chosen from.
+    chosen : ndarray of int, shape (count,)
+        Which of them, in their order.
+    factors : ndarray, shape (count,)
+        The factor on each.
+    left_out : mapping of int to str
+        Why candidates could not be chosen.
+    silent : int
+        How many candidates do not say of which event, or station, they are: each counts as one of its own.
+    sets : int
+        How many sets there are.
+    exact : bool
+        Whether all of them were tried; else the best of several searches is given.
+    """
+
+    wanted: Wanted
+    candidates: Candidates
+    chosen: NDArray[np.intp]
+    factors: Reals
+    left_out: dict[int, str]
+    silent: int
+    sets: int
+    exact: bool
+
+    @property
+    def motions(self) -> list[GroundMotion]:
+        """The records of the set, scaled."""
+        return [
+            self.candidates.motions[k].scaled(factor)
+            for k, factor in zip(self.chosen.tolist(), self.factors.tolist(), strict=True)
+        ]
+
+    @property
+    def spectra(self) -> Reals:
+        """Pseudo-accelerations of the scaled records, shape (count, n) [standard gravity]."""
+        return self.factors[:, None] * self.candidates.spectra[self.chosen]
+
+    @property
+    def mean(self) -> Reals:
+        """Mean of the spectra, shape (n,) [standard gravity]."""
+        return np.asarray(self.spectra.mean(axis=0))
+
+    @property
+    def ratio(self) -> Reals:
+        """The mean over the target, shape (n,)."""
+        return self.mean / self.candidates.target
+
+    @property
+    def too_low(self) -> NDArray[np.bool_]:
+        """Where the mean is below the lower limit, but for rounding."""
+        return self.ratio < self.wanted.within[0] * (1 - subsets.SAME)
+
+    @property
+    def too_high(self) -> NDArray[np.bool_]:
+        """Where the mean is above the upper limit, but for rounding."""
+        return self.ratio > self.wanted.within[1] * (1 + subsets.SAME)
+
+    @property
+    def fits(self) -> bool:
+        """Whether the mean lies within the limits all over the band."""
+        return not (self.too_low | self.too_high).any()
+
+
+def candidates(
+    motions: Sequence[GroundMotion],
+    target: TargetSpectrum,
+    wanted: Wanted,
+    progress: Callable[[int], object] = lambda done: None,
+) -> Candidates:
+    """The spectra of records over the band of a target.
+
+    Parameters
+    ----------
+    motions : sequence of GroundMotion
+        The records, as read.
+    target : TargetSpectrum
+        What they are to fit.
+    wanted : Wanted
+        The band and the damping.
+    progress : callable, optional
+        Told 1 for each record.
+
+    Raises
+    ------
+    InputError
+        If the target does not cover the band, or vanishes in it, or there are too few records of different events or
+        stations.
+    """
+    target.check(wanted.band)
+    names = [key_of(motion, wanted.one_per) for motion in motions]
+    _check_enough(len(motions), len(motions), int(_groups(names).max(initial=-1)) + 1, wanted)  # before any work
+    periods = periods_of(wanted.band, target, wanted.damping)
+    spectra = np.zeros((len(motions), periods.size))
+    for k, motion in enumerate(motions):
+        spectra[k] = response_spectrum(motion, periods, wanted.damping).sa
+        progress(1)
+    return Candidates(motions, periods, target.at(periods), spectra)
+
+
+def periods_of(band: tuple[float, float], target: TargetSpectrum, damping: float = DAMPING) -> Reals:
+    """Periods [s] at equal ratios over a band, and the target's own in it if they are not too many."""
+    count = max(POINTS, ceil(log(band[1] / band[0]) / min(max(damping, SPACING[0]), SPACING[1])) + 1)
+    found = np.geomspace(*band, count)
+    found[[0, -1]] = band
+    own = target.periods[(target.periods > band[0]) & (target.periods < band[1])]
+    if own.size > OWN_POINTS:
+        count += OWN_POINTS
+        return np.concatenate([band[:1], np.geomspace(*band, count)[1:-1], band[1:]])
+    # Of two that are one the target's stays, where its slope changes, but not in the place of an end.
+    away = np.abs(found[1:-1, None] / own - 1).min(axis=1, initial=1.0) > SAME_PERIOD
+    own = own[(own > band[0] * (1 + SAME_PERIOD)) & (own < band[1] * (1 - SAME_PERIOD))]
+    return np.sort(np.concatenate([found[:1], found[1:-1][away], own, found[-1:]]))
+
+
+def choose(
+    found: Candidates,
+    wanted: Wanted,
+    begin: Callable[[int], Callable[[int], object]] = lambda steps: lambda done: None,
+) -> RecordSet:
+    """Choose the records and their factors.
+
+    Parameters
+    ----------
+    found : Candidates
+        What to choose from.
+    wanted : Wanted
+        What the set is to be.
+    begin : callable, optional
+        Told how many sets, or searches, there are; what it gives is told how many more are done.
+
+    Returns
+    -------
+    RecordSet
+        The best of all sets, or the best found; it may not fit.
+
+    Raises
+    ------
+    InputError
+        If there are not as many records that can be chosen, of different events or stations.
+    """
+    own, left_out = own_factors(found, wanted)
+    usable = np.array([k for k in range(len(found.motions)) if k not in left_out], dtype=np.intp)
+    names = [key_of(motion, wanted.one_per) for motion in found.motions]
+    groups = _groups([names[k] for k in usable.tolist()])
+    _check_enough(len(found.motions), usable.size, int(groups.max(initial=-1)) + 1, wanted)
+    problem = subsets.Problem(
+        own[usable, None] * found.spectra[usable] / found.target,
+        log_weights(found.periods),
+        np.log(own[usable]),
+        groups,
+        wanted.count,
+        wanted.within,
+        wanted.factors,
+    )
+    best = subsets.best(problem, wanted.seed, begin(problem.steps))
+    chosen = usable[best.members]
+    silent = sum(name is None for name in names) if wanted.one_per != "none" else 0
+    sets, exact = subsets.count_sets(groups, wanted.count), subsets.all_tried(groups, wanted.count)
+    return RecordSet(wanted, found, chosen, own[chosen] * best.common, left_out, silent, sets, exact)
+
+
+def own_factors(found: Candidates, wanted: Wanted) -> tuple[Reals, dict[int, str]]:
+    """The factor on each record that brings it to the target on logarithmic average; and why others have none.
+
+    With the same factor for all it is 1.
+    """
+    left_out: dict[int, str] = {}
+    factors = np.ones(len(found.motions))
+    low, high = wanted.factors
+    for k, spectrum in enumerate(found.spectra):
+        if not (spectrum > 0).all():
+            left_out[k] = "it does not move in the band"
+        elif not wanted.same_factor:
+            factor = float(np.exp(log_weights(found.periods) @ np.log(found.target / spectrum)))
+            if low * (1 - subsets.SAME) <= factor <= high * (1 + subsets.SAME):
+                factors[k] = min(max(factor, low), high)
+            else:
+                left_out[k] = f"it needs a factor of {factor:.3g}, outside {low:g} to {high:g}"
+    return factors, left_out
+
+
+def log_weights(periods: Reals) -> Reals:
+    """Weights of a mean over ln T by trapezoids, of sum 1: points of the target that lie close weigh no more."""
+    steps = np.diff(np.log(periods))
+    weights = np.zeros(periods.size)
+    weights[:-1] += steps / 2
+    weights[1:] += steps / 2
+    return np.asarray(weights / weights.sum())
+
+
+def key_of(motion: GroundMotion, one_per: str) -> str | None:
+    """What a record shares with those that it may not be chosen with; None where its file does not say."""
+    said = {"event": motion.origin.event, "station": motion.origin.station}.get(one_per)
+    return " ".join(said.casefold().split()) if said is not None else None
+
+
+def coarse(found: Candidates) -> list[GroundMotion]:
+    """Records whose samples are too far apart for the shortest period of the band."""
+    return [motion for motion in found.motions if found.periods[0] < FEWEST * motion.dt * (1 - 1e-9)]
+
+
+def _groups(names: Sequence[str | None]) -> NDArray[np.intp]:
+    """A number for each, the same for those of one name, in the order in which they first occur."""
+    numbers: dict[object, int] = {}
+    return np.array(
+        [numbers.setdefault(name if name is not None else k, len(numbers)) for k, name in enumerate(names)],
+        dtype=np.intp,
+    )
+
+
+def _check_enough(given: int, usable: int, groups: int, wanted: Wanted) -> None:
+    if wanted.count <= groups:
+        return
+    one = f", and one per {wanted.one_per} leaves {groups}" if groups < usable else ""
+    out = f", of which {usable} can be scaled to the target within {wanted.factors[0]:g} to {wanted.factors[1]:g}"
+    message = f"a set of {wanted.count} is asked for, and there are {given} records{out if usable < given else ''}{one}"
+    hints = ["give more records, or a smaller `count`"]
+    hints += ["wider limits with `factors`"] if usable < given and usable < wanted.count else []
+    hints += ["`one_per` none"] if groups < usable and wanted.count <= usable else []
+    raise InputError(Problem(message, field="`count`", hint=", or ".join(hints)))

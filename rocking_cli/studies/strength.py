@@ -1,0 +1,61 @@
+"""How strong one ground motion is by any measures, those relative to a structure among them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import nan
+
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.processing.intensity import Measure, Reference, RunMeasure
+
+
+def reference_of(structure: Prepared) -> Reference:
+    """What measures relative to a structure refer to: the direction that uplifts first."""
+    gravity = structure.mechanism.gravity
+    if structure.why_no_block is not None:
+        return Reference(nan, min(side.lambda_ for side in structure.statics), gravity)
+    block = min((structure.equivalence.positive, structure.equivalence.negative), key=lambda each: each.lambda_)
+    return Reference(block.p, block.lambda_, gravity, block.v_imp)
+
+
+def intensities(
+    motion: GroundMotion, measures: Sequence[Measure], structure: Reference | None = None
+) -> dict[Measure, float]:  # fmt: skip
+    """Measures of a ground motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        As it shakes: scaled.
+    measures : sequence of Measure
+        What is asked for.
+    structure : Reference, optional
+        What relative ones refer to.
+
+    Returns
+    -------
+    dict of Measure to float
+        NaN of those that the motion or the structure has not.
+
+    Raises
+    ------
+    InputError
+        If a measure is relative, and there is no structure.
+    PluginError
+        If the plugin of a measure fails.
+    """
+    bare = [str(each) for each in measures if each.is_relative]
+    if bare and structure is None:
+        raise InputError(Problem(f"{', '.join(bare)}: relative to what is shaken", hint="give a `structure`"))
+    found: dict[Measure, float] = {}
+    for each in measures:
+        if isinstance(each, RunMeasure):
+            assert structure is not None
+            found[each] = each.value(motion, structure)
+        else:
+            assert each.base is not None
+            value = each.base.value(motion)
+            found[each] = float(value if structure is None else each.relative(value, structure))
+    return found

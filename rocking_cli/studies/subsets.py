@@ -1,0 +1,232 @@
+"""The subset of some curves whose mean stays within limits about 1 and nearest to 1, with one factor on all of them.
+
+All subsets are tried where they are few enough; else searches from several starts add the best curve until there are
+enough, and exchange one for another as long as that is better.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import combinations, islice, product
+from math import inf, log
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Reals = NDArray[np.float64]
+Integers = NDArray[np.intp]
+MOST_TRIED = 200_000  # sets
+MOST_MEMBERS = 3_000_000  # of all these sets together
+BLOCK = 30_000  # members of sets that are judged at once
+STARTS = 20  # of the searches
+SAME = 1e-9  # differences, in logarithms, that are rounding: what comes first goes before
+INSIDE = 1e-12  # of a mean at a limit, so that rounding does not take it over
+EXCHANGES = 1000  # in a search, at most
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What is to be chosen.
+
+    Parameters
+    ----------
+    curves : ndarray, shape (curves, n)
+        Positive ordinates over the target, each with a factor of its own already.
+    weights : ndarray, shape (n,)
+        Of the points, with the sum 1.
+    log_factors : ndarray, shape (curves,)
+        Logarithms of these factors.
+    groups : ndarray of int, shape (curves,)
+        From 0 on; of each group there may be one curve.
+    count : int
+        How many curves a set has.
+    within : (float, float)
+        Limits on the mean.
+    factors : (float, float)
+        Limits on the own factor times the common one.
+    """
+
+    curves: Reals
+    weights: Reals
+    log_factors: Reals
+    groups: Integers
+    count: int
+    within: tuple[float, float]
+    factors: tuple[float, float]
+
+    @property
+    def steps(self) -> int:
+        """How much work there is, as `best` tells it."""
+        return count_sets(self.groups, self.count) if all_tried(self.groups, self.count) else STARTS
+
+
+class Judged(NamedTuple):
+    """Of sets, each in an array: ln of how far the mean leaves the limits, rms of ln(mean), ln of the common factor."""
+
+    excess: Reals
+    rms: Reals
+    common: Reals
+
+
+class Best(NamedTuple):
+    """The curves of a set in their order, its excess and rms as in `Judged`, and the common factor."""
+
+    members: Integers
+    excess: float
+    rms: float
+    common: float
+
+    def better(self, other: Best | None) -> bool:
+        """Whether it goes before another: by the excess, then the rms, then the order of the curves."""
+        if other is None:
+            return True
+        for mine, theirs in ((self.excess, other.excess), (self.rms, other.rms)):
+            if abs(mine - theirs) > SAME:
+                return mine < theirs
+        return tuple(self.members.tolist()) < tuple(other.members.tolist())
+
+
+def count_sets(groups: Integers, count: int) -> int:
+    """How many sets of so many there are with at most one of each group."""
+    found = [1] + [0] * count
+    for size in np.bincount(groups).tolist():
+        for k in range(count, 0, -1):
+            found[k] += size * found[k - 1]
+    return found[count]
+
+
+def all_tried(groups: Integers, count: int) -> bool:
+    """Whether so few sets there are, and so small ones, that `best` tries all."""
+    sets = count_sets(groups, count)
+    return sets <= MOST_TRIED and sets * count <= MOST_MEMBERS
+
+
+def best(problem: Problem, seed: int, progress: Callable[[int], object] = lambda done: None) -> Best:
+    """The best set of all, or the best that searches find.
+
+    Parameters
+    ----------
+    problem : Problem
+        With at least `count` groups.
+    seed : int
+        Of the starts of the searches.
+    progress : callable, optional
+        Told how many more of `steps` are done.
+    """
+    if all_tried(problem.groups, problem.count):
+        return _best_of_all(problem, progress)
+    found: Best | None = None
+    rng = np.random.default_rng(seed)
+    for start in range(STARTS):
+        begun = [] if start == 0 else [int(rng.integers(len(problem.curves)))]
+        one = _exchanged(problem, _grown(problem, begun))
+        if one.better(found):
+            found = one
+        progress(1)
+    assert found is not None
+    return found
+
+
+def judge(problem: Problem, sums: Reals, count: int, least: Reals, most: Reals) -> Judged:
+    """How good sets are, each with the best common factor that is allowed.
+
+    Parameters
+    ----------
+    problem : Problem
+        The limits and weights.
+    sums : ndarray, shape (sets, n)
+        Of the curves of each set.
+    count : int
+        How many these are.
+    least, most : ndarray, shape (sets,)
+        Smallest and largest logarithm of the own factors in each set.
+    """
+    logs = np.log(sums / count)
+    low, high = logs.min(axis=1), logs.max(axis=1)
+    floor, roof = log(problem.within[0]), log(problem.within[1])
+    # What the limits on the factors leave for the common one: zero is among it, as the own factors keep to them.
+    down, up = log(problem.factors[0]) - least, log(problem.factors[1]) - most
+    balanced = np.clip((floor - low + roof - high) / 2, down, up)
+    excess = np.maximum(floor - low - balanced, balanced + high - roof)
+    fits = excess <= SAME
+    centre = logs @ problem.weights
+    nearest = np.clip(
+        -centre,
+        np.minimum(np.maximum(floor - low, down) + INSIDE, balanced),
+        np.maximum(np.minimum(roof - high, up) - INSIDE, balanced),
+    )
+    common = np.where(fits, nearest, balanced)
+    rms = np.sqrt(((logs + common[:, None]) ** 2) @ problem.weights)
+    return Judged(np.where(fits, 0.0, excess), rms, common)
+
+
+def _judge_members(problem: Problem, members: Integers) -> Judged:
+    """The same of sets given by their curves, shape (sets, count)."""
+    factors = problem.log_factors[members]
+    sums = problem.curves[members].sum(axis=1)
+    return judge(problem, sums, members.shape[1], factors.min(axis=1), factors.max(axis=1))
+
+
+def _best_of_all(problem: Problem, progress: Callable[[int], object]) -> Best:
+    blocks, judged = [], []
+    sets = _all_sets(problem)
+    while block := list(islice(sets, max(BLOCK // problem.count, 1))):
+        members = np.sort(np.array(block, dtype=np.intp), axis=1)
+        blocks.append(members)
+        judged.append(_judge_members(problem, members))
+        progress(len(block))
+    members = np.concatenate(blocks)
+    order = np.lexsort(members.T[::-1])
+    members = members[order]
+    every = Judged(*(np.concatenate(parts)[order] for parts in zip(*judged, strict=True)))
+    return _picked(members, every)
+
+
+def _all_sets(problem: Problem) -> Iterator[tuple[int, ...]]:
+    """Every set: of every choice of groups every choice of one from each."""
+    of_group = [np.flatnonzero(problem.groups == k).tolist() for k in range(int(problem.groups.max()) + 1)]
+    for groups in combinations(of_group, problem.count):
+        yield from product(*groups)
+
+
+def _picked(members: Integers, judged: Judged) -> Best:
+    """The first of the best, shape (sets, count), where differences that are rounding are none."""
+    kept = np.flatnonzero(judged.excess <= judged.excess.min() + SAME)
+    kept = kept[judged.rms[kept] <= judged.rms[kept].min() + SAME]
+    k = int(kept[0])
+    return Best(members[k], float(judged.excess[k]), float(judged.rms[k]), float(np.exp(judged.common[k])))
+
+
+def _grown(problem: Problem, members: list[int]) -> list[int]:
+    """A set with the best curve added until there are enough."""
+    while len(members) < problem.count:
+        members = [*members, _added(problem, members)[0]]
+    return members
+
+
+def _exchanged(problem: Problem, members: list[int]) -> Best:
+    """A set with one curve exchanged for another, the best of all such steps, as long as there is a better one."""
+    now = _picked(every := np.sort(np.array([members], dtype=np.intp)), _judge_members(problem, every))
+    for _ in range(EXCHANGES):
+        tried = now
+        for member in now.members.tolist():
+            kept = [each for each in now.members.tolist() if each != member]
+            added, excess, rms, common = _added(problem, kept)
+            one = Best(np.sort(np.array([*kept, added], dtype=np.intp)), excess, rms, common)
+            tried = one if one.better(tried) else tried
+        if tried is now:
+            break
+        now = tried
+    return now
+
+
+def _added(problem: Problem, members: list[int]) -> tuple[int, float, float, float]:
+    """The curve that is best added to a set, and excess, rms and common factor of what results."""
+    free = np.flatnonzero(~np.isin(problem.groups, problem.groups[members]))
+    sums = problem.curves[members].sum(axis=0) + problem.curves[free]
+    own, those = problem.log_factors[members], problem.log_factors[free]
+    least, most = np.minimum(those, own.min(initial=inf)), np.maximum(those, own.max(initial=-inf))
+    found = _picked(free[:, None], judge(problem, sums, len(members) + 1, least, most))
+    return int(found.members[0]), found.excess, found.rms, found.common

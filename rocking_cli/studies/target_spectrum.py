@@ -1,0 +1,190 @@
+"""A target spectrum: ordinates at periods, from a file, straight lines between them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.records.text import numbers_in
+from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, header_units
+from rocking_cli.io.files import read_bytes
+
+Reals = NDArray[np.float64]
+LARGEST = 10_000_000  # bytes of a file
+LISTED = 5  # problems of a file
+COLUMNS = "a line has two columns with a comma between: period [s], Sa [g]"
+ODD = 10.0  # g; no code asks for more
+
+_OTHER_PERIOD = re.compile(r"\b(?:m(?:illi)?s(?:ec)?|min(?:utes?)?|k?hz|freq\w*)\b", re.IGNORECASE)
+_BRACKETS = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]")
+_BARE_G = re.compile(r"(?:^|[\s_,/])g\s*$", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class TargetSpectrum:
+    """Pseudo-accelerations over the period, straight lines between the points, as the tables of codes are.
+
+    Parameters
+    ----------
+    name : str
+        What to call it.
+    periods : ndarray, shape (n,)
+        Increasing, from zero on [s].
+    sa : ndarray, shape (n,)
+        Ordinates, not negative [standard gravity].
+    unit : str or None
+        What they were given in; None where the file does not say.
+
+    Raises
+    ------
+    InputError
+        If they are not so, or there are fewer than two points.
+    """
+
+    name: str
+    periods: Reals
+    sa: Reals
+    unit: str | None = "g"
+
+    def __post_init__(self) -> None:
+        if problems := wrong_points(self.periods, self.sa):
+            raise InputError(*(f"{self.name}, point {k + 1}: {message}" for k, message in problems))
+
+    def at(self, periods: Reals) -> Reals:
+        """Ordinates at periods [s] within its own."""
+        return np.interp(periods, self.periods, self.sa)
+
+    def check(self, band: tuple[float, float]) -> None:
+        """Refuse a band [s] that it does not cover, or in which it vanishes."""
+        first, last = float(self.periods[0]), float(self.periods[-1])
+        if not (first <= band[0] and band[1] <= last):
+            message = f"the target goes from {first:g} to {last:g} s, and the band from {band[0]:g} to {band[1]:g} s"
+            hint = "give a band within it with `band`, or a target of more periods: it is not continued"
+            raise InputError(Problem(message, self.name, hint=hint))
+        inside = (self.periods > band[0]) & (self.periods < band[1])
+        known = np.concatenate([[band[0]], self.periods[inside], [band[1]]])
+        ordinates = self.at(known)
+        if not (ordinates > 0).all():
+            where = float(known[np.argmin(ordinates)])
+            hint = "no spectrum is a multiple of zero: give a band with `band` in which it is positive"
+            raise InputError(Problem(f"the target is zero at {where:g} s", self.name, hint=hint))
+
+
+def wrong_points(periods: Reals, sa: Reals) -> list[tuple[int, str]]:
+    """The points of a spectrum that are wrong, counted from 0, and what is wrong there."""
+    if periods.shape != sa.shape or periods.ndim != 1:
+        return [(min(periods.size, sa.size), "a period without an ordinate, or an ordinate without a period")]
+    found = []
+    for k, (period, value) in enumerate(zip(periods.tolist(), sa.tolist(), strict=True)):
+        before = periods[k - 1] if k else -math.inf
+        if not 0 <= period < math.inf:
+            found.append((k, f"the period is {period:g} s, it must not be negative"))
+        elif period == before:
+            found.append((k, f"the period {period:g} s is there twice: a spectrum has one value at each"))
+        elif period < before:
+            found.append((k, f"the period {period:g} s is less than the {before:g} s before it: periods must increase"))
+        if not 0 <= value < math.inf:
+            found.append((k, f"the ordinate is {value:g}, it must not be negative"))
+    return found or ([(periods.size, "at least two are needed")] if periods.size < 2 else [])
+
+
+def read_target(path: Path) -> TargetSpectrum:
+    """Read a target spectrum from a file of two columns.
+
+    Parameters
+    ----------
+    path : Path
+        Lines of a period [s] and an ordinate, with a comma, a semicolon or blanks between. What stands above the
+        numbers is a heading: it may name the unit of the ordinates, which are in g otherwise. Blank lines, and those
+        that begin with #, are passed over.
+
+    Returns
+    -------
+    TargetSpectrum
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    shown = str(path)
+    try:
+        lines = read_bytes(path, "target spectrum", LARGEST).decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise InputError(Problem("this is no text in UTF-8", shown, hint="save it as CSV in UTF-8")) from None
+    used = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
+    start = next((place for place, k in enumerate(used) if lines[k].lstrip()[0] in "+-.0123456789"), len(used))
+    heading, used = used[:start], used[start:]
+    unit = _unit(shown, heading[-1] + 1, lines[heading[-1]]) if heading else None
+    rows = [_row(shown, k + 1, lines[k]) for k in used]
+    periods, sa = np.array(rows, dtype=np.float64).reshape(-1, 2).T
+    problems = []
+    for point, message in wrong_points(periods, sa):
+        if point == len(used):
+            message = f"{len(used)} point{'s' * (len(used) != 1)}: {message}"
+            problems.append(Problem(message, shown, hint=COLUMNS))
+        else:
+            excerpt = lines[used[point]].strip()[:100]
+            problems.append(Problem(message, shown, used[point] + 1, excerpt=excerpt, hint=_what_to_do(message)))
+    if problems:
+        raise InputError(*problems[:LISTED])
+    return TargetSpectrum(shown, periods, sa * UNITS[unit or "g"] / STANDARD_GRAVITY, unit)
+
+
+def doubts(target: TargetSpectrum) -> list[str]:
+    """What is doubtful about a target spectrum, as sentences."""
+    highest = float(target.sa.max())
+    if highest <= ODD:
+        return []
+    return [f"{target.name} reaches {highest:.4g} g: name its unit in a heading, such as period [s],Sa [m/s2]"]
+
+
+def _what_to_do(message: str) -> str:
+    if "negative" in message:
+        return "correct or leave out this line"
+    return "put the lines in the order of their periods, each once; a step needs two periods a little apart"
+
+
+def _row(file: str, number: int, line: str) -> list[float]:
+    """Period and ordinate of a line."""
+    separator = next((sign for sign in (";", "\t", ",") if sign in line), None)
+    cells = [cell.strip() for cell in line.strip().split(separator)]
+    if len(cells) > 2 and not any(cells[2:]):  # a spreadsheet leaves separators of empty columns
+        cells = cells[:2]
+    if len(cells) != 2:
+        message = f"{len(cells)} column{'s' * (len(cells) > 1)}"
+        raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=COLUMNS))
+    if separator != "," and any(re.fullmatch(r"[+-]?\d+,\d+", cell) for cell in cells):
+        hint = "write numbers with a point: 0.25"
+        raise InputError(Problem("a comma within a number", file, number, excerpt=line.strip()[:100], hint=hint))
+    return numbers_in(file, number, line, cells)
+
+
+def _unit(file: str, number: int, line: str) -> str | None:
+    """The unit of the ordinates that a heading names; None where it names none."""
+    separator = next((sign for sign in (";", "\t", ",") if sign in line), None)
+    cells: Sequence[str] = line.split(separator) if separator else [line, line]
+    if _OTHER_PERIOD.search(cells[0].replace("_", " ")):
+        message = "the first column must hold periods in s"
+        hint = "turn frequencies or other units into periods in s first, the shortest in the first line"
+        raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
+    said = cells[1] if len(cells) > 1 else ""
+    found = {canonical(word) for word in _BRACKETS.findall(said)} - {None} or set(header_units(said))
+    if not found and _BARE_G.search(said):
+        found = {"g"}
+    if len(found) == 1:
+        return found.pop()
+    named = [word for word in _BRACKETS.findall(said) if word.lower() not in ("", "-", "s", "sec")]
+    if found or named:
+        message = f"the heading gives '{(named or ['more than one unit'])[-1]}', no unit of acceleration known here"
+        hint = f"ordinates are in one of: {CHOICES}; without a unit in g"
+        raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
+    return None

@@ -1,0 +1,56 @@
+"""Response spectra of ground motions, as people and programs read them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking_cli.views.view import View
+
+if TYPE_CHECKING:
+    from rocking_cli.io.tables import Columns
+    from rocking_cli.processing.oscillator import ResponseSpectrum
+
+
+def data(spectrum: ResponseSpectrum) -> dict[str, Any]:
+    """A spectrum as plain data: seconds, standard gravity, m/s and m."""
+    return {
+        "damping": spectrum.damping,
+        "period": spectrum.periods.tolist(),
+        "sa": spectrum.sa.tolist(),
+        "sv": spectrum.sv.tolist(),
+        "sd": spectrum.sd.tolist(),
+    }
+
+
+def table(spectra: Mapping[str, ResponseSpectrum]) -> Columns:
+    """Spectra of motions by their names, one below the other."""
+    found = list(spectra.values())
+
+    def joined(name: str) -> Any:
+        return np.concatenate([getattr(each, name) for each in found])
+
+    return {
+        "record": [name for name, each in spectra.items() for _ in each.periods],
+        "damping": [each.damping for each in found for _ in each.periods],
+        "period [s]": joined("periods").tolist(),
+        "pseudo Sa [g]": joined("sa").tolist(),
+        "pseudo Sv [m/s]": joined("sv").tolist(),
+        "Sd [m]": joined("sd").tolist(),
+    }
+
+
+def peaks(name: str, spectrum: ResponseSpectrum) -> str:
+    """A sentence on where a spectrum is largest."""
+    k, j = int(spectrum.sa.argmax()), int(spectrum.sv.argmax())
+    return (
+        f"{name}: with {100 * spectrum.damping:g} % damping Sa is largest at {spectrum.periods[k]:.3g} s, "
+        f"{spectrum.sa[k]:.3g} g, and Sv at {spectrum.periods[j]:.3g} s, {spectrum.sv[j]:.3g} m/s."
+    )
+
+
+def view(name: str, spectrum: ResponseSpectrum) -> View:
+    """The spectrum of one motion."""
+    return View(lambda: {"name": name, **data(spectrum)}, [peaks(name, spectrum)])

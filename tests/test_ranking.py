@@ -1,0 +1,242 @@
+"""Which measure serves: statistics against statsmodels, a ranking against its runs, words against numbers."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import statsmodels.api as sm
+
+from rocking_cli import fragility
+from rocking_cli.excitation.base import Origin
+from rocking_cli.studies.fragility import ranking, sources
+from rocking_cli.studies.fragility.campaign import prepare, steps
+from rocking_cli.studies.fragility.ranking import Ranked, Ranking, judge, line, serves
+from rocking_cli.studies.fragility.store import Store
+from rocking_cli.studies.fragility.study import load_study
+from tests.conftest import EXAMPLES
+from tests.stores import command
+
+RNG = np.random.default_rng(7)
+STUDY = f"""\
+structures:
+  - {EXAMPLES / "block.yaml"}
+  - file: {EXAMPLES / "frame.yaml"}
+    vary: {{column_width: {{normal: {{mean: 1.6, deviation: 0.05}}}}}}
+records:
+  - pulse: ricker:1g:0.5s
+  - pulse: ricker:1g:0.9s
+  - pulse: ricker_antisymmetric:1g:0.7s
+  - pulse: mavroeidis:1g:0.9s
+  - pulse: sine:1g:0.6s
+  - pulse: sine:1g:1s
+method: stripes
+levels: {{measure: PGA, least: 0.2, most: 0.9, count: 6}}
+limit_states: [uplift, 0.3, overturning]
+polarities: [1, -1]
+samples: 2
+"""
+
+
+def ols(x, y):
+    return sm.OLS(y, sm.add_constant(x)).fit()
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """A study that was run and ranked, and what was shown of it."""
+    folder = tmp_path_factory.mktemp("ranked")
+    path = folder / "study.yaml"
+    path.write_text(STUDY, encoding="utf-8")
+    shown = command("fragility", path, "--rank-measures", "--json", "--plot", folder / "pictures")
+    assert shown.exit_code == 0, shown.stderr
+    return folder, json.loads(shown.stdout)
+
+
+class TestStatistics:
+    @pytest.mark.parametrize("slope", [0.0, 0.4, -3.0])
+    def test_a_line_is_that_of_statsmodels(self, slope):
+        x = RNG.normal(2.0, 1.5, size=40)
+        y = 0.7 + slope * x + RNG.normal(scale=0.5, size=40)
+        found, expected = line(x, y), ols(x, y)
+        assert found is not None
+        assert (found.intercept, found.slope) == pytest.approx(tuple(expected.params), rel=1e-9)
+        assert found.deviation == pytest.approx(expected.mse_resid**0.5, rel=1e-9)
+        assert found.p_value == pytest.approx(expected.pvalues[1], rel=1e-7, abs=1e-15)
+
+    @pytest.mark.parametrize("x", [[], [1.0], [1.0, 2.0], [3.0, 3.0, 3.0, 3.0]])
+    def test_no_line_through_too_few_points(self, x):
+        assert line(np.array(x), np.array(x)) is None
+
+    def test_residuals_are_averaged_for_each_record_and_held_against_what_it_is(self):
+        records, each = 12, np.arange(3, 15)
+        magnitude, distance = RNG.uniform(5, 7, size=records), RNG.normal(size=records)
+        record = np.repeat(np.arange(records), each)
+        x = RNG.normal(size=record.size)
+        y = 1.5 * x + 0.8 * magnitude[record] + RNG.normal(scale=0.2, size=record.size)
+        efficiency, slope, runs, of, trends = serves("PGA", x, y, record, {"m": magnitude, "r": distance, "PGA": x})
+        line_of_all = ols(x, y)
+        assert (efficiency, slope) == pytest.approx((line_of_all.mse_resid**0.5, line_of_all.params[1]), rel=1e-9)
+        assert (runs, of) == (record.size, records)
+        means = np.array([line_of_all.resid[record == k].mean() for k in range(records)])
+        for name, values in (("m", magnitude), ("r", distance)):
+            assert trends[name] == pytest.approx(ols(values, means).pvalues[1], rel=1e-6)
+        assert trends["m"] < 1e-4 and trends["r"] > 0.01 and np.isnan(trends["PGA"])
+
+    def test_no_trend_is_seen_in_a_twentieth_of_what_has_none(self):
+        """Of runs that are alike within a record: those of a test that took them as independent would be half."""
+        seen = 0
+        for _ in range(400):
+            record = np.repeat(np.arange(10), 8)
+            x = np.tile(np.linspace(-1, 1, 8), 10)
+            y = x + RNG.normal(size=10)[record] + 0.1 * RNG.normal(size=80)
+            *_, trends = serves("PGA", x, y, record, {"m": RNG.normal(size=10)})
+            seen += trends["m"] < 0.05
+        assert 0.02 < seen / 400 < 0.09
+
+
+class TestStudy:
+    def test_the_numbers_are_those_of_its_runs(self, study):
+        folder, shown = study
+        assert command("results", folder / "study.db", "--out", folder / "runs.csv").exit_code == 0
+        with (folder / "runs.csv").open(encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["outcome"] == "rocks" and row["structure"] == "pedestal"]
+        of = {each["measure"]: each for each in shown["ranking"][0]["measures"]}
+        y = np.log([float(row["phi/phi_cr"]) for row in rows])
+        x = np.log([float(row["PGV [m/s]"]) for row in rows])
+        expected = ols(x, y)
+        name = "PGV" if "PGV" in of else "PGV/v_imp"  # which ranks the same: one structure without samples
+        assert of[name]["efficiency"] == pytest.approx(expected.mse_resid**0.5, rel=1e-6)
+        assert of[name]["practicality"] == pytest.approx(expected.params[1], rel=1e-6)
+        assert of[name]["proficiency"] == pytest.approx(expected.mse_resid**0.5 / expected.params[1], rel=1e-6)
+        assert (of[name]["runs"], of[name]["records"]) == (len(rows), len({row["record"] for row in rows}))
+
+    def test_measures_in_proportion_are_one_where_nothing_varies(self, study):
+        pedestal, bridge = study[1]["ranking"]
+        assert pedestal["alike"]["PGA/(g lambda)"] == "PGA" and pedestal["alike"]["Sd(1.0)"] == "Sa(1.0)"
+        assert "PGA/(g lambda)" not in bridge["alike"]  # its lambda differs from sample to sample
+        assert bridge["alike"]["Sd(1.0)"] == "Sa(1.0)"
+
+    def test_the_order_is_that_of_the_efficiency(self, study):
+        for each in study[1]["ranking"]:
+            found = [of["efficiency"] for of in each["measures"]]
+            assert found == sorted(found) and len(found) > 10
+            assert each["against"] == ["Tm", "D5-95"]
+
+    def test_dispersions_are_those_of_the_curves(self, study):
+        curves = {(each["structure"], each["measure"], each["limit_state"]): each for each in study[1]["curves"]}
+        compared = 0
+        for each in study[1]["ranking"]:
+            for of in each["measures"]:
+                for limit in of["dispersions"]:
+                    curve = curves.get((each["structure"], of["measure"], limit["limit_state"]))
+                    if curve is not None:
+                        own = curve["dispersion"] and curve["dispersion"]["value"]
+                        assert limit["dispersion"] == pytest.approx(own)
+                        compared += own is not None
+        assert compared
+
+    def test_results_ranks_what_the_store_knows_and_has_a_picture(self, study):
+        folder, shown = study
+        again = json.loads(command("results", folder / "study.db", "--rank-measures", "--json").stdout)
+        assert again["ranking"] == shown["ranking"]
+        assert len(list((folder / "pictures").glob("*which-measure-serves.png"))) == 2
+        said = command("results", folder / "study.db", "--rank-measures").stdout
+        for each in shown["ranking"]:
+            assert all(sentence in " ".join(said.split()) for sentence in each["verdict"])
+
+    def test_records_that_state_magnitude_and_distance_are_held_against_these(self, tmp_path, monkeypatch):
+        read = sources.Source.read
+
+        def stated(source):
+            k = len(source.name) % 7
+            return replace(read(source), origin=Origin("event", "station", 5.0 + k, 10.0 + 3 * k))
+
+        path = tmp_path / "study.yaml"
+        path.write_text(STUDY, encoding="utf-8")
+        monkeypatch.setattr(sources.Source, "read", stated)
+        found = json.loads(command("fragility", path, "--rank-measures", "--json").stdout)["ranking"][0]
+        assert found["against"] == ["magnitude", "distance"]
+        assert "with magnitude or distance" in found["verdict"][1]
+        with Store.reading(tmp_path / "study.db") as kept:
+            plan = kept.plan()
+            values = {name: plan.of_records(name).tolist() for name in ("magnitude", "distance")}
+        k = [len(each.name) % 7 for each in plan.records]
+        assert values == {"magnitude": [5.0 + each for each in k], "distance": [10.0 + 3 * each for each in k]}
+
+    def test_a_record_of_several_sets_is_one(self, tmp_path):
+        motions = [(t, x) for t in (0.7, 0.9, 1.1) for x in (0.3, 0.4, 0.6)]
+        sets = "".join(f"  - {{pulse: 'ricker:1g:{t}s', level: {x}}}\n" for t, x in motions)
+        text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords:\n{sets}method: stripes\n"
+        path = tmp_path / "study.yaml"
+        path.write_text(f"{text}levels: {{measure: PGA, values: [0.3, 0.4, 0.6]}}\n", encoding="utf-8")
+        found = json.loads(command("fragility", path, "--rank-measures", "--json").stdout)["ranking"][0]
+        assert {(each["runs"], each["records"]) for each in found["measures"]} == {(9, 3)}
+
+    def test_python_ranks_too(self, study):
+        answer = fragility(study[0] / "study.yaml", store=study[0] / "study.db", rank_measures=True)
+        assert answer.to_dict()["ranking"] == study[1]["ranking"]
+        assert study[1]["ranking"][0]["verdict"][0] in " ".join(answer.sentences)
+
+    def test_the_bar_is_full_when_all_is_measured(self, study, tmp_path):
+        path = tmp_path / "study.yaml"
+        path.write_text(STUDY, encoding="utf-8")
+        asked, told = load_study(path), []
+        for k, rank_measures in enumerate((False, True)):
+            with Store.writing(tmp_path / f"{k}.db") as kept:
+                prepare(asked, kept, told.append, rank_measures=rank_measures)
+            assert sum(told) == steps(asked, rank_measures=rank_measures) == 3 + 6 * (1 + k)
+            told.clear()
+
+    def test_a_store_that_was_not_measured_ranks_less_and_tests_nothing(self, study, tmp_path):
+        path = tmp_path / "bare.yaml"
+        path.write_text(STUDY, encoding="utf-8")
+        assert command("fragility", path).exit_code == 0
+        found = json.loads(command("results", tmp_path / "bare.db", "--rank-measures", "--json").stdout)["ranking"][0]
+        assert {each["measure"] for each in found["measures"]} == {"PGA", "PGV"} and found["against"] == []
+        assert "not tested" in " ".join(found["verdict"])
+
+    def test_what_residuals_are_held_against_can_be_given(self, study):
+        with Store.reading(study[0] / "study.db") as kept:
+            plan = kept.plan()
+            from rocking_cli.studies.fragility.definition import Definition
+
+            definition = Definition.model_validate(kept.fact("definition"))
+            found = ranking.rank(kept, plan, definition, against={"depth": np.arange(6.0)})
+            assert {name for each in found for of in each.measures for name in of.trends} == {"depth"}
+            stated = {"magnitude": np.full(6, 6.5), "distance": np.arange(1.0, 7.0)}
+            object.__setattr__(plan.measured, "of_record", {**plan.measured.of_record, **stated})
+            assert list(ranking.covariates(plan)) == ["magnitude", "distance"]
+            assert ranking.covariates(plan)["distance"].tolist() == np.log(np.arange(1.0, 7.0)).tolist()
+
+
+def ranked(name, efficiency, *p_values, slope=2.0, against=("Tm", "D5-95")):
+    return Ranked(name, efficiency, slope, 40, 8, dict(zip(against, p_values, strict=True)), {})
+
+
+class TestWords:
+    def test_the_best_is_sufficient(self):
+        one, other = ranked("PGV", 0.31, 0.4, 0.2), ranked("PGA", 0.5, 0.01, 0.2)
+        first, second, *_ = judge(Ranking("block", (one, other), ("Tm", "D5-95"), {}, {}))
+        assert "Of 2 measures PGV is the most efficient over the 40 runs of 8 records" in first and "by 0.31" in first
+        assert second.startswith("It is the most efficient of the 1 whose residuals show no trend with Tm or D5-95")
+        assert one.proficiency == pytest.approx(0.155)
+
+    def test_another_one_is_sufficient(self):
+        best, other = ranked("PGV", 0.31, 0.4, 0.049), ranked("CAV", 0.52, 0.05, 0.7)
+        _, second, *_ = judge(Ranking("block", (best, other), ("Tm", "D5-95"), {}, {}))
+        assert second.startswith("CAV, with 0.52, is the most efficient of the 1 ")
+        assert (best.sufficient, other.sufficient) == (False, True)
+
+    def test_none_is(self):
+        both = (ranked("PGV", 0.31, 0.4, 0.01), ranked("CAV", 0.52, 0.02, 0.7))
+        assert "none is sufficient" in " ".join(judge(Ranking("block", both, ("Tm", "D5-95"), {}, {})))
+
+    def test_nothing_can_be_told(self):
+        alone = ranked("PGV", 0.31, np.nan, np.nan, slope=-1.0)
+        assert alone.sufficient is None and np.isnan(alone.proficiency)
+        assert "no trend" in " ".join(judge(Ranking("block", (alone,), ("Tm", "D5-95"), {}, {})))
+        assert "no measure can be ranked" in " ".join(judge(Ranking("block", (), (), {}, {})))
