@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from rocking_cli.cli import inputs, motion_files, terminal
 from rocking_cli.cli.groups import GroundMotions, History, Output, Vertical
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.processing.listed import Listed
 
+COMMANDLINE = ParameterSource.COMMANDLINE
+
 
 def check(asked: GroundMotions, history: History, count: int, *, impacts: bool, contact: bool) -> None:
     """Refuse what is of one direction beside all of them."""
@@ -25,8 +28,12 @@ def check(asked: GroundMotions, history: History, count: int, *, impacts: bool, 
         raise click.UsageError("--azimuth all is of one pair of components: give one --record FILE.")
     if asked.polarity != "1":
         raise click.UsageError("--azimuth all has both polarities in it: leave --polarity out.")
-    if history.with_pulse is not None or impacts or contact:
-        raise click.UsageError("--with-pulse, --impacts and --contact are of one direction: give one --azimuth.")
+    context = click.get_current_context()
+    typed = [name for name in ("tail", "neighbours") if context.get_parameter_source(name) is COMMANDLINE]
+    if history.with_pulse is not None or impacts or contact or typed:
+        raise click.UsageError(
+            "--with-pulse, --impacts, --contact, --tail and --neighbours are of one direction: give one --azimuth."
+        )
 
 
 def respond(

@@ -73,7 +73,8 @@ class Reading:
             second, _ = self._measured(self.other, self._channel_of_other(file))
             step = max(step, smallest_step(second))
             measured = turned(measured, second, self.azimuth)
-        return self.on_floor(as_acceleration(process(measured, self.steps), quantity, self._left_of(step)))
+        corrected = process(measured, self.steps, accelerations=quantity == "acceleration")
+        return self.on_floor(as_acceleration(corrected, quantity, self._left_of(step)))
 
     def _left_of(self, step: float) -> float:
         """What corrections leave of the step of the last digit."""

@@ -114,6 +114,8 @@ class Filter(Step):
         if self.frequency >= nyquist:
             message = f"{self.frequency:g} Hz is not below {nyquist:.4g} Hz, the highest in samples at {motion.dt:g} s"
             raise self.refused(motion, message, "give a lower one, or leave the filter out")
+        if slowest >= nyquist:
+            raise self.refused(motion, f"{motion.npts} samples are too few for a filter")
         if self.frequency < slowest * (1 - 1e-9):
             message = f"a record of {motion.duration:.4g} s does not hold one period of {self.frequency:g} Hz"
             raise self.refused(motion, message, f"give {1.01 * slowest:.3g} Hz at least")
@@ -334,7 +336,7 @@ def parse_steps(entries: Sequence[Mapping[str, Any] | str]) -> tuple[Step, ...]:
     return tuple(found)
 
 
-def process(motion: GroundMotion, steps: Sequence[Step]) -> GroundMotion:
+def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool = True) -> GroundMotion:
     """A motion after some steps, in their order; its vertical component goes through the same, but not upside down.
 
     Parameters
@@ -343,6 +345,8 @@ def process(motion: GroundMotion, steps: Sequence[Step]) -> GroundMotion:
         As read.
     steps : sequence of Step
         In the order of their doing.
+    accelerations : bool
+        Whether its samples are accelerations, and not yet to be differentiated.
 
     Returns
     -------
@@ -365,7 +369,7 @@ def process(motion: GroundMotion, steps: Sequence[Step]) -> GroundMotion:
         motion = step.of(motion)
     if not np.isfinite(motion.acceleration).all():
         raise InputError(Problem("is beyond the range of numbers after its corrections", raw.name))
-    remarks = (*raw.remarks, *of_samples(raw))
+    remarks = (*raw.remarks, *of_samples(raw, accelerations=accelerations))
     if any(isinstance(step, Lowpass) for step in steps):
         remarks = tuple(each for each in remarks if each.kind != "resolution")
     done = (*raw.processing, *map(str, steps))

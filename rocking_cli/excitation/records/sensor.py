@@ -229,7 +229,7 @@ def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | No
     found = np.pad(inner, 1)
     if not np.isfinite(found).all():
         raise InputError(Problem("its differences are beyond the range of numbers", measured.name))
-    remarks = (*measured.remarks, *of_samples(measured), *_resolution(step, found, dt, quantity))
+    remarks = (*measured.remarks, *of_samples(measured, accelerations=False), *_resolution(step, found, dt, quantity))
     return replace(measured, acceleration=found, remarks=remarks, processing=(*measured.processing, said(quantity)))
 
 

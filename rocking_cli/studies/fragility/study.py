@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -184,6 +184,7 @@ def load_study(path: str | Path) -> Study:
         for k, entry in usable_entries(document, "records", RecordEntry)
         for source in _sources(document, ("records", k), path.parent, entry, common or Common())
     ]
+    sources = _apart(sources)
     _refuse_repeated(document, "records", [_unlike_others(source) for source in sources])
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
     if checks_sliding(document.data):
@@ -266,6 +267,8 @@ def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry,
         what = "a second component belongs to one record: give each record an entry of its own"
         document.problems.append(document.at((*place, "with"), what))
         return []
+    if other:  # a pattern stands for the one file
+        entry = entry.model_copy(update={"other": _shown(other[0], folder)})
     return [one for each in files for one in _of_file_or_list(document, place, folder, entry, common, each, vertical)]
 
 
@@ -316,10 +319,25 @@ def _at_level(name: str, entry: RecordEntry) -> str:
     return name if entry.level is None else f"{name} at {entry.level:g}"
 
 
+def _in_words(name: str, entry: RecordEntry) -> str:
+    """A record by its file, and by which channel and direction of it is taken."""
+    channel = "" if entry.channel is None else f" channel {entry.channel}"
+    towards = "" if entry.azimuth is None or entry.other is None else f" azimuth {entry.azimuth:g}"
+    return _at_level(f"{name}{channel}{towards}", entry)
+
+
+def _apart(sources: Sequence[Source]) -> list[Source]:
+    """The records, those of one file called by their channel and direction too."""
+    names = [source.name for source in sources]
+    return [
+        replace(each, name=_in_words(each.file, each.entry)) if names.count(each.name) > 1 else each for each in sources
+    ]
+
+
 def _unlike_others(source: Source) -> str:
-    """What may stand in a study once only: a file, or a pulse; of a set, in it."""
+    """What may stand in a study once only: a channel and direction of a file, or a pulse; of a set, in it."""
     place = source.path.resolve().as_posix() if source.path else source.file
-    return _at_level(place, source.entry)
+    return _in_words(place, source.entry)
 
 
 def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:
