@@ -346,3 +346,13 @@ def test_a_report_says_what_was_done_and_how_to_do_it_again(tmp_path):
     assert data["motions"][0]["processing"] == ["lowpass 15", "baseline linear"]
     assert "--lowpass 15 --baseline linear" in data["command"]
     assert "lowpass 15" in out.read_text(encoding="utf-8")
+
+
+def test_record_takes_lists_and_patterns(tmp_path):
+    for name, factor in (("one", 1.0), ("two", 2.0)):
+        (tmp_path / f"{name}.csv").write_bytes(ACCEL.read_bytes())
+        (tmp_path / f"{name}.yaml").write_text(f"records: [{{file: {name}.csv, factor: {factor}}}]\n")
+    said = [json.loads(line) for line in run("record", tmp_path / "*.yaml", "--json").stdout.splitlines()]
+    assert [each["pga"] for each in said] == pytest.approx([0.55, 1.1])
+    run("record", tmp_path / "two.yaml", "--plot", tmp_path / "two.png", "-o", tmp_path / "clean")
+    assert run_json("record", tmp_path / "clean" / "two.csv")["pga"] == pytest.approx(1.1)

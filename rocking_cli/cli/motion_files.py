@@ -133,6 +133,15 @@ def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
 
 def find(places: Sequence[str]) -> tuple[list[Listed], int]:
     """The files of several names, patterns and lists, each once, and how many of these stand for none: is reported."""
+    found, bad = find_all(places)
+    once: dict[object, Listed] = {}
+    for one in found:
+        once.setdefault((one.path, one.folder, repr(one.entry)), one)
+    return list(once.values()), bad
+
+
+def find_all(places: Sequence[str]) -> tuple[list[Listed], int]:
+    """The same, as often as they are named."""
     from rocking_cli.excitation.selection import select
     from rocking_cli.processing.listed import Listed, is_list
 
@@ -146,10 +155,7 @@ def find(places: Sequence[str]) -> tuple[list[Listed], int]:
         except InputError as error:
             terminal.error(str(error))
             bad += 1
-    once: dict[object, Listed] = {}
-    for one in found:
-        once.setdefault((one.path, one.folder, repr(one.entry)), one)
-    return list(once.values()), bad
+    return found, bad
 
 
 def _of_list(path: Path) -> list[Listed]:
