@@ -42,7 +42,7 @@ def read_list(path: Path) -> list[Listed]:
     document.check()
     if "records" not in document.data and "mechanism" in document.data:
         what = "this is a structure, and no list of records"
-        raise InputError(Problem(what, str(path), hint="structures stand before `--record`, motions behind it"))
+        raise InputError(Problem(what, str(path), hint="a structure is given by its file alone, motions with `record`"))
     try:
         known = RecordList.model_validate(document.data)
     except ValidationError as error:
