@@ -53,9 +53,7 @@ def parse_structure(text: str, file: str, default_name: str, registry: Registry 
     return of_document(document, default_name, Path(file).parent, registry)
 
 
-def of_document(
-    document: Document, default_name: str, folder: Path, registry: Registry | None = None
-) -> Mechanism:
+def of_document(document: Document, default_name: str, folder: Path, registry: Registry | None = None) -> Mechanism:
     """A structure of data that were read; files that it names are in `folder`. Raises as `load_structure`."""
     cls = _mechanism(document, registry if registry is not None else Registry())
     fields = {key: value for key, value in document.data.items() if key != "mechanism"}

@@ -95,9 +95,7 @@ def command(
 
     check_table(output.out)
     paths, bad = motion_files.find(asked.records)
-    keep_apart(
-        [("--out", output.out), ("--plot", output.plot)], [file, *(str(each.path) for each in paths)]
-    )
+    keep_apart([("--out", output.out), ("--plot", output.plot)], [file, *(str(each.path) for each in paths)])
     structure = structures.prepared([file] if file else [])
     folder = Path(file).parent if file is not None and file != options.STANDARD_OUTPUT else None
     varied = Varied(structure.mechanism, vary.field, folder)

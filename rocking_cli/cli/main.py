@@ -167,6 +167,7 @@ def main(verbose: bool, debug: bool) -> None:
       rocking record accel.csv
       rocking respond block.yaml --record accel.csv --plot response.png
       rocking margin block.yaml --record accel.csv
+      rocking survey parapets.csv --page parapets.html
       rocking pulse --a 4 --omega 6
       rocking overturning block.yaml --plot map.png
       rocking fragility study.yaml

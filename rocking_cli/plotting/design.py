@@ -38,7 +38,9 @@ def draw_design(found: Design) -> Figure:
     _mark_missing(axes, found)
     if found.value is not None:
         at = _height(found)
-        axes.plot(found.value, at, color=style.CURSOR, label=f"answer: {found.value:.5g} {found.unit}".rstrip(), **style.STAR)
+        axes.plot(
+            found.value, at, color=style.CURSOR, label=f"answer: {found.value:.5g} {found.unit}".rstrip(), **style.STAR
+        )
     axes.set_xlim(float(found.values[0]), float(found.values[-1]))
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + ROOM * (high - low))
@@ -71,5 +73,11 @@ def _mark_missing(axes: Axes, found: Design) -> None:
     ):
         if values.size:
             axes.plot(
-                values, np.full(values.size, height), marker, transform=across, color=style.FAINT, markersize=5, label=label
+                values,
+                np.full(values.size, height),
+                marker,
+                transform=across,
+                color=style.FAINT,
+                markersize=5,
+                label=label,
             )

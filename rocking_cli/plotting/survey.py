@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,8 +13,9 @@ from rocking_cli.plotting import style
 from rocking_cli.studies.survey import Survey
 
 NAMED = 10  # structures whose rank stands beside their mark
+FEW = 60  # structures among which ranks can be read
 MANY = 2000  # marks of a picture of lines; more are one image within it
-MARKS = {
+MARKS: dict[str, dict[str, Any]] = {
     "does not uplift": {"marker": "o", "color": "white", "markeredgecolor": style.SPARED},
     "rocks": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
     "overturns under some or all": {"marker": "^", "color": style.EXCEEDED, "markeredgecolor": "white"},
@@ -44,15 +47,24 @@ def draw_survey(found: Survey, title: str) -> Figure:
                 p[here], uplift[here], linestyle="none", markersize=5 if len(p) <= MANY else 3, label=label,
                 markeredgewidth=0.8 if look == "does not uplift" else 0.3, rasterized=len(p) > MANY, **MARKS[look],
             )  # fmt: skip
-    for k in [k for k in range(len(p)) if there[k]][:NAMED]:
-        axes.annotate(
-            str(k + 1), (p[k], uplift[k]), xytext=(4, 3), textcoords="offset points", fontsize=style.SMALL, color=style.INK
+    first = np.flatnonzero(there)[:NAMED]
+    if len(p) <= FEW:
+        for k in first.tolist():
+            axes.annotate(
+                str(k + 1), (p[k], uplift[k]), xytext=(4, 3), textcoords="offset points", fontsize=style.SMALL,
+                color=style.INK,
+            )  # fmt: skip
+    else:
+        axes.plot(
+            p[first], uplift[first], linestyle="none", marker="o", markersize=9, color="none",
+            markeredgecolor=style.INK, label=f"the {len(first)} most vulnerable",
         )  # fmt: skip
     _axes(axes)
     if missing := int((~there).sum()):
-        style.note(axes, f"{missing:,} without an equivalent block, and so without p, not drawn")
-    if found.motions:
-        figure.legend(loc="outside lower center", ncols=3, fontsize=style.TICK, frameon=False)
+        label = f"not drawn: {missing:,} without an equivalent block, and so without p"
+        axes.plot([], [], linestyle="none", label=label)
+    if axes.get_legend_handles_labels()[1]:
+        figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
     return figure
 
 
@@ -66,8 +78,8 @@ def _groups(found: Survey) -> dict[str, NDArray[np.bool_]]:
 
 
 def _axes(axes: Axes) -> None:
+    axes.margins(0.08)
     axes.set_ylim(bottom=0.0)
-    axes.margins(x=0.05)
     axes.set_xlabel("frequency parameter p [rad/s]: large structures left, small ones right", fontsize=style.LABEL)
     axes.set_ylabel("ground acceleration at uplift [g]", fontsize=style.LABEL)
     style.tidy(axes)

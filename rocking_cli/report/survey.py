@@ -42,7 +42,7 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         source=source,
         about=about,
         title=title(found),
-        said=sentences(found),
+        said=[each.replace("`", "") for each in sentences(found)],
         picture=Markup(inline_svg(draw_survey(found, ""), "survey")) if found.rows else None,
         columns=heads,
         words=[1, 2],

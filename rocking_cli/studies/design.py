@@ -220,7 +220,7 @@ def design(
 
     Notes
     -----
-    Each edge is found by the method of Brent between two values of the scan, of which one meets the requirement and
+    Each edge is found by the method of Brent, or by halving where the metric moves by steps, between two values of the scan, of which one meets the requirement and
     the other does not. Between two that agree nothing is looked at: a metric that turns there may hide a range. Where a
     metric of histories turns over the scan, edges are its values and no closer: a root would be one of many.
     """
@@ -229,6 +229,10 @@ def design(
         raise InputError(Problem(message, hint="give `records` or `pulses`"))
     if points < 2:
         raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
+
+    def metric(value: float) -> float:
+        return _at(varied, value, aim, shaking)[0]
+
     values = np.linspace(*span, points)
     found, reasons = np.full(points, nan), dict[int, str]()
     for k, value in enumerate(values.tolist()):
@@ -240,9 +244,13 @@ def design(
     monotone = _is_monotone(found)
 
     def edge(inside: int, outside: int) -> float:
+        ends = float(values[inside]), float(values[outside])
         if aim.metric.shaken and (not monotone or isnan(found[outside])):
-            return float(values[inside])
-        return _edge(lambda x: _at(varied, x, aim, shaking)[0], aim, float(values[inside]), float(values[outside]))
+            return ends[0]
+        if aim.metric.shaken or isnan(found[outside]):
+            closest = (COARSE if aim.metric.shaken else FINEST) * abs(ends[1] - ends[0])
+            return _last_that_holds(metric, aim, *ends, closest)
+        return _edge(metric, aim, *ends)
 
     met = [aim.holds(each) for each in found.tolist()]
     holds = _ranges(values, met, edge)
@@ -296,32 +304,33 @@ def _ranges(values: Reals, met: Sequence[bool], edge: Callable[[int, int], float
 
 
 def _edge(at: Callable[[float], float], aim: Aim, inside: float, outside: float) -> float:
-    """The value between one that meets an aim and one that does not, as far out as it is met."""
+    """The value between one that meets an aim and one that does not, from which on it is met.
+
+    The metric there may be infinite, but is a number.
+    """
     from scipy.optimize import brentq
 
     bound = 1 + abs(aim.level)
-    known: dict[float, float] = {}
 
     def beyond(x: float) -> float:
-        if x not in known:
-            found = at(x)
-            # Infinity, and a structure that cannot be built, are beyond the level by a bounded number.
-            away = found - aim.level if not isnan(found) else inf if aim.op[0] == "<" else -inf
-            known[x] = min(max(away, -bound), bound)
-        return known[x]
+        away = at(x) - aim.level
+        return inf if isnan(away) else min(max(away, -bound), bound)
 
-    closest = (COARSE if aim.metric.shaken else FINEST) * abs(outside - inside)
-    if beyond(inside) == 0.0:
-        root = inside
-    elif beyond(outside) == 0.0:  # reached exactly, where the level itself does not count
-        root = outside
-    else:
-        root = float(brentq(beyond, inside, outside, xtol=closest, rtol=4 * np.finfo(float).eps, maxiter=200))
-    if not aim.holds(at(root)) and (aim.metric.shaken or isnan(at(outside))):
-        # Of a step it may be either side: the nearest value known to meet it.
-        good = [x for x in known if aim.holds(known[x] + aim.level)]
-        return min(good, key=lambda x: abs(x - root))
-    return root
+    for end in (inside, outside):  # reached exactly, where the level itself may count or not
+        if beyond(end) == 0.0:
+            return end
+    closest = FINEST * abs(outside - inside)
+    return float(brentq(beyond, inside, outside, xtol=closest, rtol=4 * np.finfo(float).eps, maxiter=200))
+
+
+def _last_that_holds(at: Callable[[float], float], aim: Aim, inside: float, outside: float, closest: float) -> float:
+    """The same of what moves by steps, or is not there outside: the last value, by halving, at which it is met."""
+    while abs(outside - inside) > closest:
+        middle = (inside + outside) / 2
+        if middle in (inside, outside):
+            break
+        inside, outside = (middle, outside) if aim.holds(at(middle)) else (inside, middle)
+    return inside
 
 
 def _not_built(values: Reals, reasons: dict[int, str]) -> list[NotBuilt]:

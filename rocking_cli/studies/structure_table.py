@@ -251,7 +251,7 @@ class TableRow:
         """
         table, row = self.table, self.row
         document = _RowDocument("structure", table.sheet.file, [], line=row.line)
-        document.values[()] = document.values[(MECHANISM,)] = yaml.Mark(document.file, 0, row.line - 1, 0, None, None)
+        document.values[()] = document.values[(MECHANISM,)] = yaml.Mark(document.file, 0, row.line - 1, 0, None, 0)
         if row.too_many is not None:
             what = f"has more cells than there are headings: {cut(one_line(row.too_many))!r} is the first beyond them"
             raise InputError(document.problem(what, None, hint="is a separator in a cell without quotes?"))
@@ -288,7 +288,9 @@ class TableRow:
                 continue
             try:
                 place = put(data, column.path, None, is_list=partial(_is_list, cls) if cls is not None else _none)
-                put(data, column.path, _value(text, column, _types(cls, place), decimal_comma=table.sheet.decimal_comma))
+                put(
+                    data, column.path, _value(text, column, _types(cls, place), decimal_comma=table.sheet.decimal_comma)
+                )
                 document.columns[place] = column.heading
             except InputError as error:
                 document.problems += [
@@ -330,7 +332,9 @@ def _value(text: str, column: Column, types: frozenset[Any], *, decimal_comma: b
 def _one(text: str, column: Column, *, decimal_comma: bool) -> Any:
     if decimal_comma and THOUSANDS.fullmatch(text):
         hint = "write no points between thousands"
-        raise InputError(Problem(f"{text} may be one number or a thousand times it: other cells have decimal commas", hint=hint))
+        raise InputError(
+            Problem(f"{text} may be one number or a thousand times it: other cells have decimal commas", hint=hint)
+        )
     if decimal_comma and DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
     if _NUMBER.fullmatch(text):

@@ -237,7 +237,9 @@ def _part(
         for k, structure in ready.items():
             one = found[k]
             assert isinstance(one, Surveyed)
-            found[k] = _with(one, answers.get(k, Under(0.0, 0.0, motions[0].name, _over(structure))), entries[places[k]])
+            found[k] = _with(
+                one, answers.get(k, Under(0.0, 0.0, motions[0].name, _over(structure))), entries[places[k]]
+            )
     return found
 
 
@@ -245,7 +247,9 @@ def _placed(error: RockingError, entry: Entry) -> RockingError:
     """An error of the mechanics of a structure with its line, which only those of its fields have."""
     if not isinstance(error, InputError):
         return error
-    return InputError(*(replace(each, line=each.line if each.line is not None else entry.line) for each in error.problems))
+    return InputError(
+        *(replace(each, line=each.line if each.line is not None else entry.line) for each in error.problems)
+    )
 
 
 def _alone(place: int, entry: Entry, structure: Prepared) -> Surveyed:
