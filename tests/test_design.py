@@ -160,8 +160,10 @@ class TestWritten:
     @pytest.mark.parametrize(
         ("text", "said"),
         [
-            ("lambda 0.2", "no requirement"), ("lambda = 0.2", "no requirement"), ("lamda < 1", "did you mean lambda?"),
-            ("lambda < x", "not a number"), ("phi_cr < 3 kg", "a mass, not an angle"), ("lambda < 1e999", "no finite number"),
+            ("lambda 0.2", "no requirement"), ("lambda = 0.2", "no requirement"),
+            ("lamda < 1", "did you mean lambda?"),
+            ("lambda < x", "not a number"), ("phi_cr < 3 kg", "a mass, not an angle"),
+            ("lambda < 1e999", "no finite number"),
             ("p > 2 m", "not"), ("", "no requirement"),
         ],
     )  # fmt: skip
@@ -185,7 +187,8 @@ class TestWritten:
     @pytest.mark.parametrize(
         ("field", "said"),
         [
-            ("widht", "did you mean width?"), ("name", "no number"), ("ties", "no number"), ("ties.tendn.prestress", "tendon?"),
+            ("widht", "did you mean width?"), ("name", "no number"), ("ties", "no number"),
+            ("ties.tendn.prestress", "tendon?"),
             ("ties.tendon.prestres", "did you mean prestress?"), ("loads.x.mass", "loads has no entry x"),
             ("ties.1.prestress", "no entry 1"), ("ties.0.path", "no number"), ("width.x", "holds no x"),
         ],
@@ -220,7 +223,8 @@ class TestCommand:
         [
             (("--vary", "width=1:2", "--until", "overturned < 1"), "needs a ground motion"),
             (("--vary", "width=1:2", "--until", "lambda < 1", "--pulse", "sine:1g:1s"), "of the structure alone"),
-            (("--vary", "width=1:2", "--until", "peak_ratio < 1", "--pulse", "sine:1g:1s", "--neighbours", "0"), "at least 1"),
+            (("--vary", "width=1:2", "--until", "peak_ratio < 1", "--pulse", "sine:1g:1s", "--neighbours", "0"),
+             "at least 1"),
             (("--vary", "width=1kg:2kg", "--until", "lambda < 1"), "a mass, not a length"),
             (("--vary", "\x1b[31m=1:2", "--until", "lambda < 1"), r"\x1b[31m"),
             (("--until", "lambda < 1"), "--vary"),

@@ -90,7 +90,8 @@ class TestSpreadsheets:
         [
             (COMMAS, "utf-8"), (COMMAS, "utf-8-sig"), (COMMAS, "utf-16"), (COMMAS.replace("\n", "\r\n"), "utf-8"),
             (COMMAS.replace("\n", "\r"), "utf-8"), (COMMAS.replace("\n", "\n\n,,,\n"), "utf-8"), (GERMAN, "utf-8-sig"),
-            (GERMAN.replace("\n", "\r\n"), "utf-16"), ("sep=;\r\n" + GERMAN, "utf-8"), (COMMAS.replace(",", "\t"), "utf-8"),
+            (GERMAN.replace("\n", "\r\n"), "utf-16"), ("sep=;\r\n" + GERMAN, "utf-8"),
+            (COMMAS.replace(",", "\t"), "utf-8"),
             (re.sub(r"([^,\n]+)", r'"\1"', COMMAS), "utf-8"), (COMMAS.replace("\n", ",,\n"), "utf-8"),
             (COMMAS.replace("block", " block "), "utf-8"),
         ],

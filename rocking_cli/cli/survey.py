@@ -110,11 +110,11 @@ def command(ctx: click.Context, file: str, asked: GroundMotions, results: Result
         if not chosen:
             ctx.exit(InputError.exit_code)
     found = _survey(table, chosen, asked)
-    _report(found, file)
+    _report(found, table.sheet.file)
     if not found.rows:
         first = found.bad[0].error
         ctx.exit(MechanismError.exit_code if isinstance(first, MechanismError) else InputError.exit_code)
-    results.write(found, file)
+    results.write(found, table.sheet.file)
     from rocking_cli.views.survey import view
 
     terminal.show(view(found, results.top), as_json=results.as_json)

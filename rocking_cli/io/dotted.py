@@ -77,6 +77,13 @@ def put(
     return place
 
 
+def replace_at(data: Any, place: Place, value: Any) -> None:
+    """Put another value at a place that is there, as `put` gives it."""
+    for part in place[:-1]:
+        data = data[part]
+    data[place[-1]] = value
+
+
 def _entry(entries: list[Any], word: str, before: tuple[str, ...], *, grow: bool) -> int:
     """The place of an entry by its number or its name; a new one is made if the list may grow."""
     names = [each.get("name") if isinstance(each, dict) else None for each in entries]

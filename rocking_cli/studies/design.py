@@ -220,9 +220,10 @@ def design(
 
     Notes
     -----
-    Each edge is found by the method of Brent, or by halving where the metric moves by steps, between two values of the scan, of which one meets the requirement and
-    the other does not. Between two that agree nothing is looked at: a metric that turns there may hide a range. Where a
-    metric of histories turns over the scan, edges are its values and no closer: a root would be one of many.
+    Each edge is found by the method of Brent, or by halving where the metric moves by steps, between two values of the
+    scan, of which one meets the requirement and the other does not. Between two that agree nothing is looked at: a
+    metric that turns there may hide a range. Where a metric of histories turns over the scan, edges are its values and
+    no closer: a root would be one of many.
     """
     if aim.metric.shaken and (shaking is None or not shaking.motions or not shaking.around.count):
         message = f"{aim.metric.name} needs a ground motion, and neighbours of it"

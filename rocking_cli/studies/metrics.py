@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf, nan
 
 from rocking_cli.dynamics.prepared import Prepared
@@ -29,7 +29,7 @@ class Shaking:
 
     motions: Sequence[GroundMotion]
     polarities: Sequence[int] = (1,)
-    around: Around = Around()
+    around: Around = field(default_factory=Around)
 
     def each(self, structure: Prepared) -> list[Neighbours]:
         """The neighbours of every motion, both ways where a structure and the polarities differ."""

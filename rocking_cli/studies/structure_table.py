@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ import yaml
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.errors import InputError, MechanismError, Problem
-from rocking_cli.io.dotted import closed, copied, put, words
+from rocking_cli.io.dotted import closed, copied, put, replace_at, words
 from rocking_cli.io.field_problems import lists_models, types_at
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Sheet, read_sheet
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
@@ -185,6 +186,14 @@ class StructureTable(Sequence["TableRow"]):
                 classes.append(self.registry[name])
             except (InputError, MechanismError):  # each of its rows says so
                 continue
+        if not {MECHANISM, BASE} & {column.path[0] for column in self.columns}:
+            near = get_close_matches(MECHANISM, [column.path[0].lower() for column in self.columns], n=1)
+            hint = f"is {near[0]} meant to be {MECHANISM}?" if near else "say in it which mechanism each row has"
+            raise InputError(
+                Problem(
+                    f"the table has no column {MECHANISM}, and no {BASE}", self.sheet.file, self.sheet.line, hint=hint
+                )
+            )
         known = {MECHANISM, BASE}.union(*(_fields(cls) for cls in classes))
         problems = []
         for column in self.columns:
@@ -281,16 +290,15 @@ class TableRow:
         if given := table.text(self.row, MECHANISM):
             data[MECHANISM] = given
         name = str(data.get(MECHANISM))
-        cls = table.registry[name] if name in table.registry else None
+        cls = table.registry.get(name)  # None where there is no such mechanism, which is said when it is made
         for column in table.columns:
             text = self.row.cells[column.place]
             if not text or column.path == (MECHANISM,) or (based and column.path == (BASE,)):
                 continue
             try:
                 place = put(data, column.path, None, is_list=partial(_is_list, cls) if cls is not None else _none)
-                put(
-                    data, column.path, _value(text, column, _types(cls, place), decimal_comma=table.sheet.decimal_comma)
-                )
+                value = _value(text, column, _types(cls, place), decimal_comma=table.sheet.decimal_comma)
+                replace_at(data, place, value)
                 document.columns[place] = column.heading
             except InputError as error:
                 document.problems += [

@@ -163,7 +163,8 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
     without = [each for each in rows if each.no_block is not None]
     if without:
         said.append(
-            f"No single block is equivalent to {_named(without)}: there is a lambda, and no p. `rocking equiv` says why."
+            f"No single block is equivalent to {_named(without)}: there is a lambda, and no p; `rocking equiv` says "
+            "why."
         )
     return said
 
