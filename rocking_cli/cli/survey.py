@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.survey import Survey
 
 NAMED = 20  # rows that cannot be used, named one by one
+LONG, LONG_SHAKEN = 10_000, 1_000  # rows from which on processes are worth their beginning
 FEW = 3  # doubts about sizes, likewise
 
 
@@ -148,8 +150,20 @@ def _survey(table: StructureTable, chosen: list[Scaled], asked: GroundMotions) -
     motions: list[Any] = [each.motion.scaled(each.factor) for each in chosen]
     if motions:
         compile_first()
+    count = _processes(len(table), bool(motions))
     with terminal.progress(len(table), "structures") as advance:
-        return survey(table, motions, asked.signs, progress=advance)
+        return survey(table, motions, asked.signs, processes=count, progress=advance)
+
+
+def _processes(rows: int, shaken: bool) -> int | None:
+    """How many processes share the work; None where threads are as good."""
+    from rocking_cli.dynamics.compiled import unwritable
+    from rocking_cli.dynamics.processes import MOST
+
+    count = min(os.cpu_count() or 1, MOST)
+    if count < 2 or rows < (LONG_SHAKEN if shaken else LONG) or (shaken and unwritable() is not None):
+        return None
+    return count
 
 
 def _report(found: Survey, file: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import inf, isnan, nan
 from typing import Protocol
 
@@ -16,6 +17,7 @@ from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.dynamics.processes import in_processes
 from rocking_cli.errors import InputError, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 
@@ -180,6 +182,7 @@ def survey(
     polarities: Sequence[int] = (1,),
     *,
     threads: int | None = None,
+    processes: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Survey:
     """Derive the blocks of structures, follow them under ground motions, and rank them.
@@ -194,6 +197,9 @@ def survey(
         Of 1 and -1; with both, the worse counts.
     threads : int, optional
         How many at a time; without it, one for each processor.
+    processes : int, optional
+        So many processes in the place of threads, where there are thousands: each takes a second or two to begin.
+        Entries and motions are sent to each.
     progress : callable, optional
         Called with the number of structures done since the last call.
 
@@ -208,10 +214,24 @@ def survey(
     def work(first: int, stop: int) -> None:
         found[first:stop] = _part(entries, range(first, stop), motions, polarities)
 
-    in_parts(work, len(entries), PART, threads, progress)
+    if processes is None:
+        in_parts(work, len(entries), PART, threads, progress)
+    else:
+        whole = partial(_places, entries, motions, polarities)
+        for first, part in in_processes(whole, len(entries), PART, processes):
+            found[first : first + len(part)] = part
+            if progress is not None:
+                progress(len(part))
     by = "response" if motions else "lambda"
     good = sorted((each for each in found if isinstance(each, Surveyed)), key=ORDERS[by])
     return Survey(good, [each for each in found if isinstance(each, Bad)], [each.name for each in motions], by)
+
+
+def _places(
+    entries: Sequence[Entry], motions: Sequence[GroundMotion], polarities: Sequence[int], first: int, stop: int
+) -> list[Surveyed | Bad | None]:
+    """What is found of the structures from a number to before another, in any process."""
+    return _part(entries, range(first, stop), motions, polarities)
 
 
 def _part(

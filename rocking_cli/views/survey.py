@@ -181,4 +181,4 @@ def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:
         place = "" if said.startswith(f"{one_line(file)}:") else f"{one_line(file)}:{each.line}: "
         yield f"{place}{said}"
     if len(found) > most:
-        yield f"{len(found) - most:,} more structures cannot be used: --json lists them all"
+        yield f"{len(found) - most:,} more structures cannot be used: `as_json` lists them all"
