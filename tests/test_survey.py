@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import re
 from html.parser import HTMLParser
 from math import atan, isclose, sqrt
@@ -13,7 +14,8 @@ from pathlib import Path
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.errors import InputError
+from rocking_cli.dynamics.processes import in_processes
+from rocking_cli.errors import InputError, Refused
 from rocking_cli.io.dotted import HOLE, closed, put, words
 from rocking_cli.io.spreadsheet import parse_sheet
 from rocking_cli.studies.structure_table import StructureTable
@@ -288,6 +290,23 @@ class TestRanking:
         motion = rk.read_record(ACCEL)
         one, two = (survey(entries, [motion], threads=count) for count in (1, 3))
         assert [str(row) for row in one.rows] == [str(row) for row in two.rows]
+
+    def test_processes_change_nothing(self):
+        text = HEAD + "".join(f"block,b{k},{0.3 + 0.05 * k},2.8\n" for k in range(12)) + "block,bad,-1,2\n"
+        entries, motion = StructureTable.read(Path(table(text))), rk.read_record(ACCEL)
+        done = []
+        one, two = survey(entries, [motion]), survey(entries, [motion], processes=2, progress=done.append)
+        assert [str(row) for row in one.rows] == [str(row) for row in two.rows]
+        assert [str(each.error) for each in one.bad] == [str(each.error) for each in two.bad]
+        assert sum(done) == 13 and "t.csv:14: width: must be" in str(two.bad[0].error)
+
+    def test_a_process_that_the_system_ends_is_said(self):
+        with pytest.raises(Refused, match="the system ended a process"):
+            list(in_processes(ended, 2, 1, 1))
+
+
+def ended(first, stop):
+    os._exit(9)
 
 
 class Cells(HTMLParser):
