@@ -243,6 +243,16 @@ class TestRanking:
         weaker = min(both, key=lambda name: both[name]["lambda"])
         assert made["frame"]["direction"] == weaker and made["frame"]["p"] == both[weaker]["p"]
 
+    def test_a_load_to_one_side_is_weak_to_that_side(self):
+        """lambda of the side x lies on: (m b/2 + M (b/2 - x))/(m h/2 + M y), with b = 0.6, h = 2."""
+        head = "mechanism,name,width,height,mass,loads.bust.mass,loads.bust.at\n"
+        made = found(
+            "survey", table(head + 'block,right,0.6,2,900,300,"[0.2, 2]"\nblock,left,0.6,2,900,300,"[-0.2, 2]"\n')
+        )
+        assert {row["name"]: row["direction"] for row in made["rows"]} == {"right": "positive", "left": "negative"}
+        for row in made["rows"]:
+            assert isclose(row["lambda"], (900 * 0.3 + 300 * 0.1) / (900 * 1.0 + 300 * 2.0), rel_tol=1e-9)
+
     def test_by_what_motions_do_as_respond_says(self):
         blocks = {"slender": (0.4, 2.8), "stays": (0.9, 2.8), "stocky": (3.0, 2.8)}
         text = HEAD + "".join(f"block,{name},{b},{h}\n" for name, (b, h) in blocks.items())
@@ -266,11 +276,14 @@ class TestRanking:
     def test_both_polarities_of_what_is_not_symmetric(self):
         frame = rk.load_structure(EXAMPLES / "frame.yaml")
         motion = rk.read_record(ACCEL)
-        one, other, both = (survey([Made(frame)], [motion], signs).rows[0].under for signs in ((1,), (-1,), (1, -1)))
+        one, other, both, back = (
+            survey([Made(frame)], [motion], signs).rows[0].under for signs in ((1,), (-1,), (1, -1), (-1, 1))
+        )
         assert one != other
-        assert both.overturned == max(one.overturned, other.overturned)
-        if not both.overturned:
-            assert both.peak_ratio == max(one.peak_ratio, other.peak_ratio)
+        for each in (both, back):
+            assert each.overturned == max(one.overturned, other.overturned)
+            if not each.overturned:
+                assert each.peak_ratio == max(one.peak_ratio, other.peak_ratio)
 
     def test_what_no_motion_lifts_is_not_followed_and_one_that_just_does_is(self):
         motion = rk.parse_pulse("rectangular:0.25g:1s").sampled()
