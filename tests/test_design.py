@@ -77,6 +77,18 @@ class TestClosedForms:
             assert isclose(found.value, wanted, rel_tol=1e-9) and not found.is_least
 
 
+class TestMetrics:
+    def test_of_two_directions_the_weaker_counts(self):
+        load = {"name": "bust", "mass": 300.0, "at": [0.2, 2.0]}
+        block = rk.Block(width=0.6, height=2.0, mass=900.0, loads=[load])
+        both = rk.equivalent_block(block)
+        for name, worse in (("lambda", min), ("phi_cr", min), ("p", max)):
+            key = "lambda_" if name == "lambda" else name
+            sides = [getattr(each, key) for each in (both.positive, both.negative)]
+            found = rk.design(block, ("width", 0.6, 0.7), f"{name} < 9", points=2).metric[0]
+            assert sides[0] != sides[1] and isclose(found, worse(sides), rel_tol=1e-9)
+
+
 class TestScan:
     def test_every_range_of_what_turns(self):
         found = of(lambda x: np.sin(4 * np.pi * x), (0.001, 1.0), 41, "m >= 0.5")
@@ -142,12 +154,17 @@ class TestShares:
 
     def test_the_worse_of_motions_and_polarities_counts(self):
         frame = EXAMPLES / "frame.yaml"
-        given = {"neighbours": 5, "points": 2}
-        both, one, other = (
-            rk.design(frame, "gravity=9:10", "overturned < 1", ACCEL, polarities=signs, **given).metric
-            for signs in ((1, -1), (1,), (-1,))
-        )
-        assert (both == np.maximum(one, other)).all()
+
+        def peaks(motions, signs):
+            given = {"polarities": signs, "neighbours": 5, "points": 2}
+            return rk.design(frame, "gravity=9.7:9.9", "peak_ratio < 1", motions, **given).metric
+
+        one, other = peaks(ACCEL, (1,)), peaks(ACCEL, (-1,))
+        assert (one != other).all()
+        for signs in ((1, -1), (-1, 1)):
+            assert (peaks(ACCEL, signs) == np.maximum(one, other)).all()
+        pulse = peaks(self.SINE, (1,))
+        assert (peaks([ACCEL, self.SINE], (1,)) == np.maximum(one, pulse)).all()
 
     def test_where_shares_turn_edges_are_values_that_were_tried(self):
         found = rk.design(BLOCK, "width=0.3:1.5", "overturned < 5%", ACCEL, neighbours=20, points=25)

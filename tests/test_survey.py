@@ -148,9 +148,11 @@ class TestRows:
     def test_a_file_is_changed_and_stays_what_it_is(self):
         Path("folder").mkdir()
         Path("folder/base.yaml").write_text("mechanism: block\nname: base\nwidth: 0.5\nheight: 2.0\n")
-        text = "file,name,width\nbase.yaml,,\nbase.yaml,wide,0.8\nnone.yaml,x,\n"
+        text = "file,name,width\nbase.yaml,,\nbase.yaml,wide,0.8\nbase.yaml,again,\nnone.yaml,x,\n"
         made = found("survey", table(text, "folder/t.csv"), code=5)
-        assert {row["name"]: round(row["lambda"], 9) for row in made["rows"]} == {"base": 0.25, "wide": 0.4}
+        assert {row["name"]: round(row["lambda"], 9) for row in made["rows"]} == {
+            "base": 0.25, "wide": 0.4, "again": 0.25,
+        }  # fmt: skip
         assert "none.yaml: no such file" in made["bad"][0]["reason"]
 
     def test_a_name_of_digits_is_a_name(self):
