@@ -26,13 +26,8 @@ def test_what_is_shared_is_what_either_direction_gives(file, one, monkeypatch):
 
 def test_a_load_to_one_side_and_a_tie_that_goes_slack_have_two():
     load = {"name": "bust", "mass": 1.0, "at": [1e-6, 2.0]}
-    tie = {
-        "name": "bar",
-        "from": {"ground": [-3.0, 2.0]},
-        "to": {"at": [0.0, 2.0]},
-        "stiffness": 1e3,
-        "only": "tension",
-    }
+    ends = {"from": {"ground": [-3.0, 2.0]}, "to": {"at": [0.0, 2.0]}}
+    tie = {"name": "bar", **ends, "stiffness": 1e3, "only": "tension"}
     for given in ({"loads": [load]}, {"ties": [tie]}):
         block = rk.Block(width=0.6, height=2.0, mass=900.0, **given)
         one, other = tables.tabulate(block)
