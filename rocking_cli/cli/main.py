@@ -22,7 +22,7 @@ from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
     "draw", "equiv", "error", "record", "select", "respond", "margin", "animate", "pulse", "overturning", "spectrum",
-    "equivalent", "fragility", "results", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
+    "equivalent", "fragility", "results", "verify", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
     "completion",
 )  # fmt: skip
 DO_WITHOUT = ("info",)

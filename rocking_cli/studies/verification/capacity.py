@@ -78,7 +78,7 @@ class ExactCurve:
 
     @cached_property
     def end(self) -> float:
-        """The rotation at which a* vanishes, of what holds it up to collapse [rad]. Raises `InputError` if none does."""
+        """The rotation at which a* vanishes, of what holds it up to collapse [rad]. Raises `InputError` without one."""
         first = self._vanishes(self._bare if self.lost_on_the_way else self.chain.mechanism)
         if first is None:
             raise InputError(

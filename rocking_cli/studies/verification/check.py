@@ -60,7 +60,14 @@ def verify(
     try:
         return codes()[site.site.code].verify(structure.mechanism, site.site, control)
     except InputError as error:
-        raise site.placed(error) from None
+        own = type(structure.mechanism).model_fields
+        placed = site.placed(error).problems
+        raise InputError(
+            *(
+                replace(each, file=structure.file) if each.file is None and each.field in own else each
+                for each in placed
+            )
+        ) from None
 
 
 def with_histories(

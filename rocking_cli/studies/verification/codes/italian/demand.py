@@ -186,7 +186,8 @@ class TableSpectrum:
         middle = [low + share * (high - low) for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
         values = [self.acceleration(t, damping) * t**2 for t in middle]
         slope = np.polynomial.Polynomial.fit(middle, values, 4, domain=[low, high]).deriv()
-        return [float(z.real) for z in slope.roots() if abs(z.imag) < 1e-9 and low < z.real < high]
+        found = [complex(z) for z in slope.roots()]
+        return [z.real for z in found if abs(z.imag) < 1e-9 and low < z.real < high]
 
     def _check(self, period: float) -> None:
         last = self.points[-1][0]
@@ -258,10 +259,10 @@ class FloorSpectrum:
         """S_eZ without the bound by the ground [m/s2]."""
         A, low, high = self.amplification(damping), BELOW * self.T1, ABOVE * self.T1
         if period < low:
-            return A * self.peak / (1 + (A - 1) * (1 - period / low) ** FALL_BELOW)
+            return A * self.peak / (1 + (A - 1) * float((1 - period / low) ** FALL_BELOW))
         if period <= high:
             return A * self.peak
-        return A * self.peak / (1 + (A - 1) * (period / high - 1) ** FALL_ABOVE)
+        return A * self.peak / (1 + (A - 1) * float((period / high - 1) ** FALL_ABOVE))
 
     def acceleration(self, period: float, damping: float) -> float:
         """S_eZ [m/s2]; above T1 never below that of the ground."""

@@ -35,7 +35,7 @@ def soil_factor(soil: str, F0: float, ag: float) -> float:
 def corner_factor(soil: str, TC_star: float) -> float:
     """C_C of a soil; TC* in s."""
     *_, factor, power = SOILS[soil]
-    return factor * TC_star**power
+    return factor * float(TC_star**power)
 
 
 def return_period(life: float, state: str) -> float:
@@ -84,7 +84,7 @@ class Hazard:
     def counted(self, life: float, state: str) -> float:
         """The return period of a limit state, within what the code takes [years]. Raises `InputError` off the table."""
         TR = min(max(return_period(life, state), SHORTEST), LONGEST)
-        if not self.table[0][0] <= TR * (1 + 1e-9) or not TR <= self.table[-1][0] * (1 + 1e-9):
+        if not self.table[0][0] <= TR * (1 + 1e-9) or not self.table[-1][0] * (1 + 1e-9) >= TR:
             raise InputError(
                 Problem(
                     f"has return periods from {self.table[0][0]:g} to {self.table[-1][0]:g} years: that of {state}, "

@@ -2,13 +2,13 @@
 
 STARTER = """\
 # A site, to verify a structure of masonry that rocks by the Italian code: NTC 2018 and Circolare 7/2019.
-#   rocking new facade > facade.yaml
+#   rocking new block > block.yaml
 #   rocking new site > site.yaml
-#   rocking verify facade.yaml --site site.yaml
+#   rocking verify block.yaml --site site.yaml
 # docs/verification.md has every field, the formulas and their clauses.
 code: NTC2018
 name: my site
-FC: 1.35                      # confidence factor, 1 to 1.35; with LC1 (1.35) no compressive strength is taken into account
+FC: 1.35                      # confidence factor; 1.35 as long as no compressive strength is counted
 q: 2.0                        # behaviour factor of the linear method
 # The ground, in one of three ways. First: the parameters of the limit state SLV.
 ag: 0.20                      # ground acceleration on rock [g]

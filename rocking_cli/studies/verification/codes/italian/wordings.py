@@ -50,8 +50,8 @@ def _of_spectrum(ground: Ground) -> list[str]:
         )
     if isinstance(spectrum, FloorSpectrum):
         said.append(
-            "The floor amplifies by A = 1.1 xi1^-1/2 eta(xi) with xi1 as a ratio: our reading; in per cent, as the code "
-            "prints, A would reduce."
+            "The floor amplifies by A = 1.1 xi1^-1/2 eta(xi) with xi1 as a ratio: our reading; in per cent, as the "
+            "code prints, A would reduce."
         )
         if spectrum.peak < spectrum.ground.peak:
             said.append(
@@ -133,9 +133,9 @@ def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:
         )
     if not chain.is_by_the_letter:
         said.append(
-            "What is carried without horizontal inertia is in P y' only, our choice; by the letter every P is in P + Q: "
-            f"alpha0 would be {chain.by_the_letter:.4g} in place of {alpha0:.4g}, and a0* "
-            f"{curve.a0 * chain.start_by_the_letter:.4g} in place of {curve.a0:.4g} m/s2."
+            "What is carried without horizontal inertia is in P y' only, our choice; by the letter every P is in "
+            f"P + Q: alpha0 would be {chain.by_the_letter:.4g} (here {alpha0:.4g}) and a0* "
+            f"{curve.a0 * chain.start_by_the_letter:.4g} m/s2 (here {curve.a0:.4g})."
         )
     return said
 

@@ -121,7 +121,9 @@ def _of_chain(chain: Chain) -> Iterator[Working]:
         which = f"of {' and '.join(block.bodies)}"
         at = f"barycentre of P + Q at [{_n(block.at.real)}, {_n(block.at.imag)}] m"
         yield Working(f"P{k}", f"weight carried {which}", "", "", block.P / 1e3, "kN", "C8.7.1.1")
-        yield Working(f"P{k} + Q{k}", f"weight moved sideways {which}", "", at, block.PQ / 1e3, "kN", "C8.7.1.1", "ours")
+        yield Working(
+            f"P{k} + Q{k}", f"weight moved sideways {which}", "", at, block.PQ / 1e3, "kN", "C8.7.1.1", "ours"
+        )
         yield Working(f"x{k}'", f"virtual displacement sideways {which}", "", "", block.dx, "m", "C8.7.1.1")
         yield Working(f"y{k}'", f"virtual displacement upwards {which}", "", "", block.dy, "m", "C8.7.1.1")
     forces, ties = chain.held_by(ties=False), chain.held_by(ties=True)
@@ -204,9 +206,7 @@ def _of_methods(methods: Mapping[str, Method]) -> Iterator[Working]:
         yield Working(f"a_g,{key}", method.title, FORMULAS[key], "", method.a_g, "g", method.clause)
         if method.zeta is not None and method.asked is not None:
             put = f"{_n(method.a_g)}/{_n(method.asked)}"
-            yield Working(
-                f"zeta_E,{key}", "capacity over demand", "a_g S of both", put, method.zeta, "", method.clause
-            )
+            yield Working(f"zeta_E,{key}", "capacity over demand", "a_g S of both", put, method.zeta, "", method.clause)
 
 
 def marked(workings: Sequence[Working]) -> list[str]:
