@@ -158,3 +158,21 @@ def test_every_number_of_the_tables_has_its_clause():
     assert any(row[0] == "M*" and row[-1].endswith("ours") for table in tables for row in table.rows)
     said = " ".join(part for part in view(found).parts if isinstance(part, str))
     assert "none was yet held against its printed text" in said and "M*, x_C'" in said
+
+
+class TestInPython:
+    def test_it_is_the_answer_of_the_command(self, files, tmp_path):
+        answer = rk.verify("b.yaml", "site.yaml", control=(0.3, 8.0, "block"))
+        assert answer.to_dict() == run_json("verify", "b.yaml", "--site", "site.yaml", "--control", "0.3,8,block")
+        assert len(answer.to_frame()) == 10
+        answer.plot(tmp_path / "a.png")
+        assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+        assert repr(answer).startswith("<verification: ")
+
+    def test_a_site_may_be_a_mapping(self):
+        with pytest.raises(rk.InputError, match="FC: must be at least 1"):
+            rk.verify(FACADE, {**SITE, "FC": 0.5})
+        with pytest.raises(rk.InputError, match="polarities must be of 1 and -1, got 2"):
+            rk.verify(FACADE, SITE, polarities=(2,))
+        answer = rk.verify(FACADE, SITE, motions=["sine:0.15g:0.6s"])
+        assert answer.directions[Direction.POSITIVE].dynamic is not None
