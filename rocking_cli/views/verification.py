@@ -77,6 +77,7 @@ def _site(found: Verification) -> Table:
     for symbol, each in rows.items():
         known = [each.get(state, each.get("")) for state in states]
         one = next(iter(each.values()))
+        known = known or [each[""]]
         values = [number(line.value) if line is not None else ABSENT for line in known]
         cells.append([symbol, *values, one.unit, one.formula, _clause(one)])
     return Table("Site", ["", *states, "unit", "formula", "clause"], cells, numbers=range(1, len(states) + 1))

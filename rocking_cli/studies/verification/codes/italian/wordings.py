@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.capacity import ExactCurve
@@ -11,7 +11,7 @@ from rocking_cli.studies.verification.codes.italian.demand import FloorSpectrum,
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.hazard import LONGEST, SHORTEST, return_period
 from rocking_cli.studies.verification.codes.italian.rules import RULES
-from rocking_cli.studies.verification.results import State, Verified
+from rocking_cli.studies.verification.results import Method, State, Verified
 
 LONG = 4.0  # s: above it the code asks for a study of the site, or records
 LEAST_CONFIDENT = 1.35  # FC of the least knowledge, LC1
@@ -19,7 +19,7 @@ ROUNDING = 1e-9
 CURVED = 0.01  # of a*: how far the straight line may be off before it is said
 
 
-def of_site(ground: Ground, found: Iterable[Verified]) -> list[str]:
+def of_site(ground: Ground, found: Collection[Verified]) -> list[str]:
     """Of the site and of both directions."""
     said = [*_of_spectrum(ground), *_of_lives(ground)]
     periods = [state.T for each in found for state in each.states.values() if state.demand is not None]
@@ -31,7 +31,8 @@ def of_site(ground: Ground, found: Iterable[Verified]) -> list[str]:
     missing = [state for state in ("SLC", "SLD") if ground.spectrum(state) is None]
     if missing:
         said.append(f"The site file does not give {' and '.join(missing)}: nothing is held against it.")
-    if ground.site.FC < LEAST_CONFIDENT:
+    crushes = any(each.chain.mechanism.crushing is not None for each in found)
+    if ground.site.FC < LEAST_CONFIDENT and not crushes:
         said.append(
             f"FC = {ground.site.FC:g}: it is {LEAST_CONFIDENT:g}, that of LC1, as long as no compressive strength is "
             "taken into account."
@@ -74,11 +75,9 @@ def _of_lives(ground: Ground) -> list[str]:
     return said
 
 
-def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground, *, standard: bool) -> list[str]:
+def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -> list[str]:
     """Of one direction."""
     said = [*_of_line(curve, states), *_of_ties(curve), *_of_break(curve, states), *_of_letter(curve.chain, curve)]
-    if not standard:
-        said += _of_control(curve)
     T0 = ground.site.T0
     if T0 is not None:
         on = [rule.state for rule in RULES if states[rule.state].a < curve.acceleration(states[rule.state].d)]
@@ -140,12 +139,15 @@ def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:
     return said
 
 
-def _of_control(curve: ExactCurve) -> list[str]:
-    own = ExactCurve(curve.chain, curve.chain.barycentre, curve.confidence)
-    change = curve.d0 / own.d0 - 1
+def of_control(chosen: Method, usual: Method, d0: float, usual_d0: float) -> str:
+    """What a chosen control point changes: d0* [m] and the nonlinear method, against the barycentre of P + Q."""
+    change = d0 / usual_d0 - 1
     if abs(change) < ROUNDING:
-        return [f"With this control point d0* is that of the barycentre of P + Q, {own.d0:.4g} m."]
-    return [
-        f"With this control point d0* is {curve.d0:.4g} m, {100 * abs(change):.3g} % "
-        f"{'more' if change > 0 else 'less'} than {own.d0:.4g} m by the barycentre of P + Q."
-    ]
+        return f"With this control point d0* is that of the barycentre of P + Q, {d0:.4g} m."
+    said = (
+        f"With this control point d0* is {d0:.4g} m, {100 * abs(change):.3g} % {'more' if change > 0 else 'less'} than "
+        f"{usual_d0:.4g} m by the barycentre of P + Q"
+    )
+    if chosen.a_g is None or usual.a_g is None:
+        return f"{said}."
+    return f"{said}; the nonlinear method allows {chosen.a_g:.4g} g, by the barycentre {usual.a_g:.4g} g."
