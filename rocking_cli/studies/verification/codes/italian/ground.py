@@ -67,11 +67,16 @@ class Ground:
         return ground if floor is None else FloorSpectrum(ground, floor.z, floor.H, floor.T1, floor.xi1, floor.n)
 
     def capacity(self, state: str, demand: Callable[[Spectrum], float], capacity: float) -> float | None:
-        """The a_g at which a demand reaches a capacity [g]; F0 and T_C those of a limit state, T_D following."""
+        """The a_g at which a demand reaches a capacity [g]; F0 and T_C those of a limit state, T_D following.
+
+        None where the file does not give the limit state, or it shakes nothing.
+        """
         spectrum = self.spectrum(state)
         if spectrum is None:
             return None
         own = demand(spectrum)
+        if own == 0:  # ordinates of zero: no a_g shakes what does not feel them
+            return None
         in_ratio = spectrum.ag * capacity / own
         if abs(demand(spectrum.with_ag(in_ratio)) / capacity - 1) < AS_LARGE:
             return in_ratio
