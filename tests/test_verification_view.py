@@ -145,14 +145,6 @@ def test_a_control_point_is_typed_and_its_influence_said(files):
     assert "lies outside block" in run("verify", "b.yaml", "--site", "site.yaml", "--control", "9,0", code=2).stderr
 
 
-def test_a_spectrum_that_shakes_nothing_leaves_no_capacity():
-    flat = {**dict.fromkeys(("ag", "F0", "TC", "S")), "spectrum": [[0, 0.2], [0.05, 0.0], [9.0, 0.0]]}
-    found = verified(FACADE, **flat, floor={"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3})
-    side = found.directions[Direction.POSITIVE]
-    assert side.methods["damage"].a_g is None and side.states["SLV"].demand < 1e-4
-    assert view(found).data()["directions"]["positive"]["zeta"]["damage"] is None
-
-
 def test_every_number_of_the_tables_has_its_clause():
     found = verified(
         rk.Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, density=2000.0, depth=1.0, name="a")
