@@ -84,7 +84,7 @@ def test_a_spectrum_that_ends_early_is_placed_in_the_file(site, tmp_path):
 class TestTheStarter:
     def test_it_works_as_it_is(self, tmp_path):
         (tmp_path / "s.yaml").write_text(run("new", "site").stdout, encoding="utf-8")
-        assert run_json("verify", "--site", "s.yaml")["code"] == "Italian code"
+        assert run_json("verify", "--site", "s.yaml")["code"] == "NTC2018"
 
     @pytest.mark.parametrize("way", ["hazard", "spectrum", "floor", "T0", "SLC"])
     def test_so_do_the_lines_that_are_commented_out(self, way, site):
@@ -118,7 +118,7 @@ class Plain(Site):
 def verify(mechanism, site, control):
     asked = {"FC": 1.0, "ag": site.strength, "F0": 2.5, "TC": 0.4, "S": 1.0}
     found = italian.CODE.verify(mechanism, italian.CODE.site.model_validate(asked), control)
-    return replace(found, code="A test", edition="2026")
+    return replace(found, code="TEST1", name="A test", edition="2026")
 
 
 CODE = Code("TEST1", "A test", "2026", Plain, "strength: 0.2\\n", 3, verify)
@@ -131,7 +131,7 @@ def test_a_code_is_added_by_a_file(tmp_path, monkeypatch, site):
     codes.cache_clear()
     try:
         data = run_json("verify", "--site", site("code: TEST1\nstrength: 0.3\n"))
-        assert data["code"] == "A test" and data["directions"]["positive"]["zeta"]["nonlinear"] > 0
+        assert data["code"] == "TEST1" and data["directions"]["positive"]["zeta"]["nonlinear"] > 0
         wrong = run("verify", "--site", site("code: TEST1\nag: 0.3\n"), code=2)
         assert "site.yaml:2:1: ag: is not a field of the site" in wrong.stderr
     finally:
