@@ -21,7 +21,7 @@ from rocking_cli.errors import CacheWarning, InputError, PluginWarning, RockingE
 from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
-    "draw", "equiv", "error", "record", "select", "respond", "margin", "survey", "design", "animate", "pulse",
+    "draw", "equiv", "error", "record", "select", "respond", "margin", "verify", "survey", "design", "animate", "pulse",
     "overturning", "spectrum", "equivalent", "fragility",
     "results", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
     "completion",
@@ -173,6 +173,7 @@ def main(verbose: bool, debug: bool) -> None:
       rocking overturning block.yaml --plot map.png
       rocking fragility study.yaml
       rocking spectrum block.yaml --record "records/*.AT2"
+      rocking verify block.yaml --site site.yaml
       rocking report block.yaml --record accel.csv -o report.html
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,

@@ -14,29 +14,38 @@ STARTERS = ("facade", "parapet", "gable", "pinnacle", "corner", "bell_cell", "co
 """What people have, each a file in the data of the package. A mechanism that a package calls so comes first."""
 STUDY = "study"
 """Not a mechanism: a study file is printed for it. A mechanism that a package calls so works, and is not printed."""
+SITE = "site"
+"""Nor is this: a site file for `rocking verify`."""
 LONG = 40  # characters of a field and its value, above which the comment stands
 UNITS = "A bare number is in the unit in brackets; 800 mm or 12 ft are read too."
 
 
-@click.command(short_help="Print a commented structure file, or study, that works as it is.")
-@click.argument("name", shell_complete=complete.mechanisms(STUDY, *STARTERS))
+@click.command(short_help="Print a commented structure file, study or site, that works as it is.")
+@click.argument("name", shell_complete=complete.mechanisms(STUDY, SITE, *STARTERS))
 @options.as_json
 def command(name: str, as_json: bool) -> None:
     """Print a commented structure file that works as it is: of the mechanism NAME, or of what people have.
 
     These are facade, parapet, gable, pinnacle, corner, bell_cell, column_with_tendon and statue. `study` is a fragility
-    study, of block.yaml beside it.
+    study, of block.yaml beside it, and `site` a site for `rocking verify`.
 
     \b
     Example:
       rocking new arch > arch.yaml
       rocking new facade > facade.yaml
       rocking new study > study.yaml
+      rocking new site > site.yaml
     """
     if name == STUDY:
         from rocking_cli.cli.new_study import TEMPLATE
 
         _print({"study": STUDY, "yaml": TEMPLATE}, as_json=as_json)
+        return
+    if name == SITE:
+        from rocking_cli.studies.verification.codes import codes
+        from rocking_cli.studies.verification.site_file import USUAL
+
+        _print({"site": USUAL, "yaml": codes()[USUAL].starter}, as_json=as_json)
         return
     from rocking_cli.core.registry import Registry
     from rocking_cli.errors import InputError, Problem, RockingError

@@ -1,0 +1,123 @@
+"""`rocking verify`: a rocking mechanism of masonry held against a code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rocking_cli.cli import complete, motion_files, options, terminal
+from rocking_cli.cli.groups import GroundMotions
+from rocking_cli.errors import INCOMPLETE, InputError
+
+if TYPE_CHECKING:
+    from rocking_cli.dynamics.prepared import Prepared
+    from rocking_cli.processing.listed import Listed
+    from rocking_cli.studies.verification.results import Verification
+    from rocking_cli.studies.verification.site_file import SiteFile
+
+Point = tuple[float, float, str | None]
+
+
+def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Point | None:
+    """A point x,y of a body, or x,y,body."""
+    if value is None:
+        return None
+    x, _, rest = value.partition(",")
+    y, _, body = rest.partition(",")
+    try:
+        found = float(x), float(y), body.strip() or None
+    except ValueError:
+        found = float("nan"), 0.0, None
+    if not (abs(found[0]) < float("inf") and abs(found[1]) < float("inf")):
+        raise click.BadParameter(f"{value!r} is no point: give x,y in m, or x,y,BODY, such as 0.3,8.0.", ctx, param)
+    return found
+
+
+@click.command(short_help="Verify a rocking mechanism of masonry by a code, such as the Italian.")
+@click.argument("file", metavar="[FILE]", required=False, type=click.Path())
+@click.option(
+    "--site", "site_file", required=True, type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
+    help="The site: ground, confidence factor, floor. `rocking new site` prints one.",
+)  # fmt: skip
+@click.option(
+    "--control", callback=_point, metavar="X,Y[,BODY]",
+    help="Control point, in m.  [default: barycentre of the weights that move]",
+)  # fmt: skip
+@options.ground_motions
+@options.reading
+@options.scaling("1", "-1", "both", both="the worse of the two")
+@options.plot("Draw the capacity curves")
+@options.as_json
+@click.pass_context
+@options.grouped(asked=GroundMotions)
+def command(
+    ctx: click.Context,
+    file: str | None,
+    site_file: str,
+    control: Point | None,
+    asked: GroundMotions,
+    plot: Path | None,
+    as_json: bool,
+) -> None:
+    """Verify a rocking mechanism by the code that the site file names: the Italian, NTC 2018 and Circolare 7/2019.
+
+    Damage, linear and nonlinear method side by side for each direction, on the exact capacity curve and on the
+    straight line: what each allows, which governs, and why they differ. With --record, as often as you like, also the
+    dynamic method: histories on the capacity curve, with the confidence factor and without. Records must fit the
+    spectrum of the site; that is not checked. Every number has its clause. That a structure fails is a result: the
+    exit code is 0.
+
+    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+
+    \b
+    Example:
+      rocking new block > block.yaml
+      rocking new site > site.yaml
+      rocking verify block.yaml --site site.yaml
+      rocking verify block.yaml --site site.yaml --control 0.35,2.8
+      rocking verify block.yaml --site site.yaml --record "records/*.AT2" --target-pga 0.24
+    """
+    asked.check()
+    if not asked and asked.polarity != "1":
+        raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
+    from rocking_cli.cli import structures
+    from rocking_cli.io.files import keep_apart
+    from rocking_cli.studies.verification.check import control_at, read_site, verify
+    from rocking_cli.views.verification import view
+
+    paths, missing = motion_files.find(asked.records)
+    keep_apart([("--plot", plot)], [file, site_file, *(str(each.path) for each in paths)])
+    site = read_site(Path(site_file))
+    structure = structures.prepared([file] if file else [])
+    found = verify(structure, site, control_at(structure.mechanism, *control) if control is not None else None)
+    refused = 0
+    if asked:
+        found, refused = _histories(found, structure, site, asked, paths)
+    if plot is not None:
+        from rocking_cli.cli.pictures import write_picture
+        from rocking_cli.plotting.verification import draw_verification
+
+        write_picture(plot, draw_verification(found))
+    terminal.show(view(found, site.site.name), as_json=as_json)
+    if missing or refused:
+        ctx.exit(INCOMPLETE)
+
+
+def _histories(
+    found: Verification, structure: Prepared, site: SiteFile, asked: GroundMotions, paths: list[Listed]
+) -> tuple[Verification, int]:
+    """The same with histories under the motions that can be used, and how many cannot. Raises if none can."""
+    from rocking_cli.cli.waiting import compile_first
+    from rocking_cli.studies.verification.check import with_histories
+
+    chosen, refused = motion_files.gather(
+        paths, asked.pulses, asked.reading, asked.scaling, structure.growth, "this structure"
+    )
+    if not chosen:
+        raise InputError("no ground motion can be used")
+    compile_first()
+    motions = [each.motion.scaled(each.factor) for each in chosen]
+    with terminal.progress(len(motions), "records") as advance:
+        return with_histories(found, structure, site, motions, asked.signs, advance), refused

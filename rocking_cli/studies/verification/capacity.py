@@ -1,0 +1,188 @@
+"""Capacity curves: acceleration over displacement of one degree of freedom, exactly and on the straight line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+
+import numpy as np
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.attached import Spot
+from rocking_cli.core.equilibrium import NoCriticalRotation
+from rocking_cli.core.interlock import NAME as INTERLOCK
+from rocking_cli.core.kinematics import Reals
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.studies.verification.chain import Chain, Control
+
+STEPS = 256  # to the end of a curve, between which it is held to be a function
+HALVINGS = 200
+
+
+def root(rises: Callable[[float], float], low: float, high: float) -> float:
+    """Where a function that is negative at `low` and positive at `high` passes zero, to rounding."""
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        if middle in (low, high):
+            break
+        low, high = (middle, high) if rises(middle) < 0 else (low, middle)
+    return high
+
+
+@dataclass(frozen=True, eq=False)
+class ExactCurve:
+    """a*(d) as the mechanism moves.
+
+    Parameters
+    ----------
+    chain : Chain
+        What moves.
+    control : Control
+        The control point.
+    confidence : float
+        FC, which divides accelerations.
+    """
+
+    chain: Chain
+    control: Control
+    confidence: float
+
+    @cached_property
+    def _bare(self) -> Mechanism:
+        """The structure after its courses have slid apart."""
+        return self.chain.mechanism.model_copy(update={"interlock": None})
+
+    @cached_property
+    def torn(self) -> float | None:
+        """The rotation at which the courses of crossing walls have slid by their overlap [rad]; None if never."""
+        interlock = self.chain.mechanism.interlock
+        if interlock is None:
+            return None
+        spot = next(thing.spot for thing in self.chain.mechanism.attached if thing.name == INTERLOCK)  # type: ignore[attr-defined]
+        phi = self._way(self.chain.mechanism.limit(self.chain.direction))
+        over = self._slid(spot, phi) >= interlock.overlap
+        if not over.any():
+            return None
+        k = int(over.argmax())
+        return root(lambda x: float(self._slid(spot, np.array([x]))[0]) - interlock.overlap, phi[k - 1], phi[k])
+
+    def _slid(self, spot: Spot, phi: Reals) -> Reals:
+        path = self.chain.mechanism.followed(phi, self.chain.direction)(spot).z
+        return np.asarray(np.abs((path - spot.at).real))
+
+    @staticmethod
+    def _way(end: float) -> Reals:
+        return np.linspace(0.0, end, STEPS + 1)[:-1]
+
+    @cached_property
+    def end(self) -> float:
+        """The rotation at which a* vanishes, of what holds it up to collapse [rad]. Raises `InputError` without one."""
+        first = self._vanishes(self._bare if self.lost_on_the_way else self.chain.mechanism)
+        if first is None:
+            raise InputError(
+                Problem(
+                    f"in the {self.chain.direction.label} direction a* does not vanish before the kinematic limit: "
+                    "what ties it would hold for ever",
+                    field="ties",
+                    hint="the code counts what is there up to collapse: give the tie as a force, its yield force",
+                )
+            )
+        self._hold_to_a_function(first)
+        return first
+
+    def _vanishes(self, mechanism: Mechanism) -> float | None:
+        try:
+            return mechanism.critical_rotation(self.chain.direction)
+        except NoCriticalRotation:
+            if not mechanism.attached:
+                raise
+            return None
+
+    def _hold_to_a_function(self, end: float) -> None:
+        phi = np.linspace(0.0, end, STEPS + 1)
+        drives = self.chain.mechanism.coefficients(phi, self.chain.direction).B
+        moves = np.diff(self.chain.displacement(phi, self.control))
+        if not ((drives > 0).all() and (moves > 0).all()):
+            raise MechanismError(
+                f"in the {self.chain.direction.label} direction the control point does not move on up to the critical "
+                "rotation: its capacity is no curve over its displacement; choose another control point"
+            )
+
+    def acceleration_at(self, phi: float, *, after: bool = False) -> float:
+        """a* at a rotation [m/s2]; at a break just before it, or after it."""
+        gone = self.torn is not None and (phi > self.torn or (after and phi == self.torn))
+        mechanism = self._bare if gone else self.chain.mechanism
+        here = mechanism.coefficients(np.array([phi]), self.chain.direction)
+        alpha = float(here.restoring(mechanism.gravity)[0] / here.B[0])
+        return alpha * mechanism.gravity / (self.chain.e_star * self.confidence)
+
+    def displacement_at(self, phi: float) -> float:
+        """d at a rotation [m]."""
+        return float(self.chain.displacement(np.array([phi]), self.control)[0])
+
+    def rotation(self, d: float) -> float:
+        """The rotation at a displacement up to the last [rad]."""
+        return root(lambda phi: self.displacement_at(phi) - d, 0.0, self.end)
+
+    @cached_property
+    def a0(self) -> float:
+        """a* at rest [m/s2]."""
+        return self.chain.alpha0 * self.chain.mechanism.gravity / (self.chain.e_star * self.confidence)
+
+    @cached_property
+    def d0(self) -> float:
+        """The displacement at which a* vanishes [m]."""
+        return self.displacement_at(self.end)
+
+    def acceleration(self, d: float) -> float:
+        """a* at a displacement [m/s2]; at a break just before it."""
+        if self.broken is not None and d == self.broken and self.torn is not None:
+            return self.acceleration_at(self.torn)
+        return self.acceleration_at(self.rotation(d))
+
+    @cached_property
+    def largest(self) -> float:
+        """The largest a* of the curve [m/s2]."""
+        return max(self.a0, *(self.acceleration_at(float(phi)) for phi in np.linspace(0.0, self.end, STEPS // 4 + 1)))
+
+    @property
+    def lost_on_the_way(self) -> bool:
+        """Whether the courses have slid apart before what holds the structure with them would vanish."""
+        first = self._vanishes(self.chain.mechanism)
+        return self.torn is not None and (first is None or self.torn < first)
+
+    @cached_property
+    def broken(self) -> float | None:
+        """The displacement of a break that takes more than half of the largest a* [m]; None without one."""
+        if self.torn is None or self.torn > self.end:
+            return None
+        lost = self.acceleration_at(self.torn) - self.acceleration_at(self.torn, after=True)
+        return self.displacement_at(self.torn) if lost > self.largest / 2 else None
+
+    def points(self, count: int = 65) -> tuple[Reals, Reals]:
+        """The curve, displacements [m] and accelerations [m/s2], shape (n,) each."""
+        phi = np.linspace(0.0, self.end, count)
+        return self.chain.displacement(phi, self.control), np.array([self.acceleration_at(float(x)) for x in phi])
+
+
+@dataclass(frozen=True)
+class StraightCurve:
+    """a*(d) on the straight line from a0* [m/s2] at rest to d0* [m]."""
+
+    a0: float
+    d0: float
+    broken: float | None = None
+
+    def acceleration(self, d: float) -> float:
+        """a* at a displacement [m/s2]."""
+        return self.a0 * (1 - d / self.d0)
+
+
+CapacityCurve = ExactCurve | StraightCurve
+
+
+def with_elastic_branch(a: float, d: float, T0: float | None) -> float:
+    """a* at a displacement, on the elastic branch 4 pi^2 d/T0^2 up to where that meets the curve [m/s2]."""
+    return a if T0 is None else min(a, 4 * pi**2 * d / T0**2)

@@ -1,0 +1,240 @@
+"""The blocks that move in a direction of rocking, as a code sees them: weights and virtual displacements at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.attached import Attached, Follow, PointMass, Spot, springs_of
+from rocking_cli.core.coefficients import Coefficients
+from rocking_cli.core.kinematics import Reals
+from rocking_cli.core.reactions import parts
+from rocking_cli.errors import InputError
+
+LEAST = 1e-9  # of the largest virtual displacement: a control point that moves less does not move sideways
+
+
+@dataclass(frozen=True)
+class Weight:
+    """A mass of the chain: where it is, what of it is carried, and what of it is moved sideways.
+
+    Parameters
+    ----------
+    spot : Spot
+        Its place.
+    carried : float
+        P, its weight as far as the block carries it [N].
+    inertial : float
+        P + Q, the weight of the mass that moves sideways with the block [N].
+    """
+
+    spot: Spot
+    carried: float
+    inertial: float
+
+
+@dataclass(frozen=True)
+class Block:
+    """Pieces that move as one, and the loads they carry.
+
+    Parameters
+    ----------
+    bodies : sequence of str
+        The pieces, by their names in the picture.
+    P, PQ : float
+        Weights carried, and weights moved sideways [N].
+    at : complex
+        Barycentre of P + Q at rest [m]; of P where P + Q is zero.
+    dx : float
+        x' of the barycentre of P + Q, positive in the direction of rocking [m].
+    dy : float
+        y' of the barycentre of P, up [m].
+    """
+
+    bodies: Sequence[str]
+    P: float
+    PQ: float
+    at: complex
+    dx: float
+    dy: float
+
+
+@dataclass(frozen=True)
+class Control:
+    """The control point: a point of a body, or without a body the barycentre of P + Q."""
+
+    at: complex
+    body: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """What moves in one direction of rocking.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure, with what hangs on it.
+    direction : Direction
+        Which way it rocks.
+    """
+
+    mechanism: Mechanism
+    direction: Direction
+
+    @cached_property
+    def weights(self) -> Sequence[Weight]:
+        """The masses that move; what rests is left out."""
+        moving = {name for name, number in parts(self.mechanism, self.direction).items() if number}
+        g = self.mechanism.gravity
+        own = [
+            Weight(Spot(body.name, body.centroid), body.mass * g, body.mass * g)
+            for body in self.mechanism.weighed()
+            if body.name in moving
+        ]
+        return own + [
+            Weight(thing.spot, thing.weight * thing.mass * g, thing.horizontal * thing.mass * g)
+            for thing in self.mechanism.attached
+            if isinstance(thing, PointMass) and thing.spot.body in moving
+        ]
+
+    @cached_property
+    def blocks(self) -> Sequence[Block]:
+        """The blocks of the chain: cutting one into pieces that move as one changes nothing."""
+        pairs = zip(self._names_of_blocks, self._weights_of_blocks, strict=True)
+        return [self._block(names, weights) for names, weights in pairs]
+
+    @cached_property
+    def _names_of_blocks(self) -> Sequence[Sequence[str]]:
+        numbers = parts(self.mechanism, self.direction)
+        return [[name for name, number in numbers.items() if number == k] for k in range(1, 1 + max(numbers.values()))]
+
+    @cached_property
+    def _weights_of_blocks(self) -> Sequence[Sequence[Weight]]:
+        return [[each for each in self.weights if each.spot.body in names] for names in self._names_of_blocks]
+
+    def _block(self, names: Sequence[str], weights: Sequence[Weight]) -> Block:
+        P, PQ = (sum(getattr(each, key) for each in weights) for key in ("carried", "inertial"))
+        shares = [each.inertial for each in weights] if PQ else [each.carried for each in weights]
+        at = sum(share * each.spot.at for share, each in zip(shares, weights, strict=True)) / (sum(shares) or 1.0)
+        velocity = [complex(self._follow_at_rest(each.spot).dz[0]) for each in weights]
+        dx = sum(share * v.real for share, v in zip(shares, velocity, strict=True)) / (sum(shares) or 1.0)
+        dy = sum(each.carried * v.imag for each, v in zip(weights, velocity, strict=True)) / (P or 1.0)
+        return Block(names, P, PQ, complex(at), self.direction * dx, dy)
+
+    @cached_property
+    def _follow_at_rest(self) -> Follow:
+        return self.mechanism.followed(np.zeros(1), self.direction)
+
+    @property
+    def inertial(self) -> float:
+        """The sum of P + Q [N]."""
+        return sum(block.PQ for block in self.blocks)
+
+    @property
+    def first(self) -> float:
+        """The sum of (P + Q) x' [N m]."""
+        return sum(block.PQ * block.dx for block in self.blocks)
+
+    @property
+    def second(self) -> float:
+        """The sum of (P + Q) x'^2 [N m2]."""
+        return sum(block.PQ * block.dx**2 for block in self.blocks)
+
+    @property
+    def lifted(self) -> float:
+        """The sum of P y' [N m]."""
+        return sum(block.P * block.dy for block in self.blocks)
+
+    def held_by(self, *, ties: bool) -> float:
+        """The work per unit rotation that ties take at rest, or that forces take: internal work, or -F.r' [N m]."""
+        return sum(self._moment(thing) for thing in self.mechanism.attached if bool(springs_of(thing)) == ties)
+
+    @property
+    def works(self) -> dict[str, float]:
+        """The work per unit rotation that each force and tie takes at rest, by its name [N m]."""
+        held = [thing for thing in self.mechanism.attached if not isinstance(thing, PointMass)]
+        return {thing.name: self._moment(thing) for thing in held}
+
+    def _moment(self, thing: Attached) -> float:
+        rest = np.zeros(1)
+        total = Coefficients(rest, *(np.zeros(1) for _ in range(7)))
+        thing.act(total, self.direction, self._follow_at_rest)
+        return float(total.Q[0])
+
+    @property
+    def alpha0(self) -> float:
+        """The multiplier that starts it."""
+        return (self.lifted + self.held_by(ties=False) + self.held_by(ties=True)) / self.first
+
+    @cached_property
+    def _letter(self) -> tuple[float, float]:
+        """alpha0 and e* with every weight carried in P + Q, also of what has no horizontal inertia."""
+        sums = np.zeros(3)
+        for block, weights in zip(self.blocks, self._weights_of_blocks, strict=True):
+            more = [max(each.carried - each.inertial, 0.0) for each in weights]
+            ways = [self._sideways(each.spot) for each in weights]
+            PQ = block.PQ + sum(more)
+            first = block.PQ * block.dx + sum(m * x for m, x in zip(more, ways, strict=True))
+            sums += np.array([PQ, first, first**2 / PQ if PQ else 0.0])
+        inertial, first, second = sums
+        return self.alpha0 * self.first / float(first), float(first**2 / (inertial * second))
+
+    @property
+    def by_the_letter(self) -> float:
+        """The multiplier with every weight carried in P + Q."""
+        return self._letter[0]
+
+    @property
+    def start_by_the_letter(self) -> float:
+        """What a0* would be by the letter, over what it is."""
+        alpha0, e_star = self._letter
+        return (alpha0 / e_star) / (self.alpha0 / self.e_star)
+
+    @property
+    def is_by_the_letter(self) -> bool:
+        """Whether every weight carried has its horizontal inertia too."""
+        return all(each.carried <= each.inertial * (1 + 1e-12) for each in self.weights)
+
+    def _sideways(self, spot: Spot) -> float:
+        return self.direction * float(self._follow_at_rest(spot).dz[0].real)
+
+    @property
+    def e_star(self) -> float:
+        """The share of the mass that takes part, e*."""
+        return self.first**2 / (self.inertial * self.second)
+
+    @property
+    def barycentre(self) -> Control:
+        """The control point where nobody asks for another: the barycentre of P + Q."""
+        return Control(sum(block.PQ * block.at for block in self.blocks) / self.inertial)
+
+    def sideways(self, control: Control) -> float:
+        """x' of a control point at rest [m]. Raises `InputError` if it does not move in the direction of rocking."""
+        dx = self.first / self.inertial if control.body is None else self._sideways(Spot(control.body, control.at))
+        if not dx > LEAST * max(abs(block.dx) for block in self.blocks):
+            raise InputError(
+                f"`control` does not move in the {self.direction.label} direction: at [{control.at.real:g}, "
+                f"{control.at.imag:g}] the virtual displacement is {dx:.4g} m per rad"
+            )
+        return dx
+
+    def moved(self, phi: Reals, control: Control) -> Reals:
+        """d_C: how far a control point is displaced sideways over rotations, shape (n,) [m]."""
+        follow = self.mechanism.followed(phi, self.direction)
+        if control.body is not None:
+            return np.asarray(self.direction * (follow(Spot(control.body, control.at)).z - control.at).real)
+        ways = [each.inertial * (follow(each.spot).z - each.spot.at).real for each in self.weights]
+        return np.asarray(self.direction * np.sum(ways, axis=0) / self.inertial)
+
+    def displacement_of_control(self, phi: float, control: Control) -> float:
+        """d_C at one rotation [m]."""
+        return float(self.moved(np.array([phi]), control)[0])
+
+    def displacement(self, phi: Reals, control: Control) -> Reals:
+        """d of the one degree of freedom over rotations, shape (n,) [m]."""
+        return np.asarray(self.moved(phi, control) * self.second / (self.sideways(control) * self.first))

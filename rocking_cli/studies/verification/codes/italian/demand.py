@@ -1,0 +1,300 @@
+"""What the ground, or a floor, asks of one degree of freedom: elastic spectra of the Italian code, floors, tables.
+
+Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3 [code: not yet held against the printed text].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf, pi, sqrt
+from typing import Protocol
+
+import numpy as np
+
+from rocking_cli.core.kinematics import Reals
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+
+DAMPING = 0.05  # of a spectrum without a correction, a ratio
+LONG = {"A": 4.5, "B": 5.0, "C": 6.0, "D": 6.0, "E": 6.0}
+"""T_E [s] by the soil, from which displacements go down to those of the ground."""
+GROUND = 10.0  # s: T_F, from which they are those of the ground
+BELOW, ABOVE = 0.8, 1.1  # a and b: of the period of a floor, between which its spectrum is level
+AMPLIFIED = 1.1  # of A, the amplification by a floor
+FALL_BELOW, FALL_ABOVE = 1.6, 1.2  # exponents of either side
+
+
+def correction(damping: float) -> float:
+    """eta = sqrt(10/(5 + xi)), at least 0.55, xi in per cent; of a damping ratio [NTC 3.2.4]."""
+    return max(sqrt(10 / (5 + 100 * damping)), 0.55)
+
+
+class Spectrum(Protocol):
+    """What shakes one degree of freedom, on the ground or above."""
+
+    @property
+    def ag(self) -> float:
+        """Ground acceleration on rock [g]."""
+        ...
+
+    @property
+    def peak(self) -> float:
+        """Largest acceleration of what it stands on [m/s2]: a_g S, or S_Z."""
+        ...
+
+    def with_ag(self, ag: float) -> Spectrum:
+        """The same for another ground acceleration [g]: F0 and T_C held, T_D following."""
+        ...
+
+    def acceleration(self, period: float, damping: float) -> float:
+        """S_e [m/s2]."""
+        ...
+
+    def displacement(self, period: float, damping: float) -> float:
+        """S_De [m]."""
+        ...
+
+
+@dataclass(frozen=True)
+class GroundSpectrum:
+    """The elastic spectrum of the ground.
+
+    Parameters
+    ----------
+    ag : float
+        a_g [g].
+    F0, S : float
+        Amplification, and that by soil and topography.
+    TC : float
+        [s].
+    soil : str or None
+        A to E, which sets T_E; without it the first form holds throughout.
+    """
+
+    ag: float
+    F0: float
+    TC: float
+    S: float
+    soil: str | None = None
+
+    @property
+    def TB(self) -> float:
+        """[s]."""
+        return self.TC / 3
+
+    @property
+    def TD(self) -> float:
+        """[s]."""
+        return 4.0 * self.ag + 1.6
+
+    @property
+    def peak(self) -> float:
+        """a_g S [m/s2]."""
+        return self.ag * self.S * STANDARD_GRAVITY
+
+    def with_ag(self, ag: float) -> GroundSpectrum:
+        """The same for another a_g [g]."""
+        return replace(self, ag=ag)
+
+    def acceleration(self, period: float, damping: float) -> float:
+        """S_e [m/s2; NTC 3.2.2]."""
+        eta, T = correction(damping), period
+        level = self.peak * eta * self.F0
+        if T < self.TB:
+            return level * (T / self.TB + (1 - T / self.TB) / (eta * self.F0))
+        if T < self.TC:
+            return level
+        # a_g beyond what T_D was made for may bring T_C above it: the falling branch is then that of T_D alone.
+        return level * self.TC / T if T < self.TD else level * self.TC * self.TD / T**2
+
+    def displacement(self, period: float, damping: float) -> float:
+        """S_De [m; NTC 3.2.10-12]."""
+        start = LONG[self.soil] if self.soil is not None else inf
+        if period <= start:
+            return self.acceleration(period, damping) * (period / (2 * pi)) ** 2
+        level = self.F0 * correction(damping)
+        share = min((period - start) / (GROUND - start), 1.0)
+        return 0.025 * self.peak * self.TC * self.TD * (level + (1 - level) * share)
+
+
+@dataclass(frozen=True)
+class TableSpectrum:
+    """A spectrum given as ordinates at 5 %, straight between them; others by the correction for damping.
+
+    The correction grows in from T = 0, where there is none, to the period of the largest ordinate.
+
+    Parameters
+    ----------
+    points : sequence of (float, float)
+        Periods [s], from 0 on, and accelerations [g].
+    factor : float
+        On all of them.
+    start : float
+        T0, the period from which displacements are looked at [s]: 0 for a rigid start.
+    field : str
+        Where it stands in the site file, for messages.
+    """
+
+    points: Sequence[tuple[float, float]]
+    factor: float = 1.0
+    start: float = 0.0
+    field: str = "spectrum"
+
+    @property
+    def ag(self) -> float:
+        """The ordinate at T = 0 [g], which is a_g S."""
+        return self.factor * self.points[0][1]
+
+    @property
+    def peak(self) -> float:
+        """The same [m/s2]."""
+        return self.ag * STANDARD_GRAVITY
+
+    @property
+    def S(self) -> float:
+        """Is in the ordinates."""
+        return 1.0
+
+    @cached_property
+    def _known(self) -> tuple[Reals, Reals]:
+        """Periods [s] and accelerations [m/s2], with the factor."""
+        T, a = np.array(self.points, dtype=np.float64).T
+        return T, self.factor * STANDARD_GRAVITY * a
+
+    @cached_property
+    def _ramp(self) -> float:
+        """The period up to which the correction for damping grows in [s]."""
+        return max(self.points, key=lambda each: each[1])[0]
+
+    def with_ag(self, ag: float) -> TableSpectrum:
+        """The same shape with another ordinate at T = 0 [g]."""
+        return replace(self, factor=ag / self.points[0][1])
+
+    def acceleration(self, period: float, damping: float) -> float:
+        """S_e [m/s2]. Raises `InputError` beyond the table."""
+        self._check(period)
+        return float(self._at(np.array([period]), damping)[0])
+
+    def displacement(self, period: float, damping: float) -> float:
+        """The largest S_e (t/2 pi)^2 from T0 to a period [m; C8.7.1.2.1.8]. Raises `InputError` beyond the table."""
+        self._check(period)
+        start = min(self.start, period)
+        knots = np.union1d(self._known[0], self._ramp)
+        t = np.concatenate([[start, period], knots, self._turns(knots, damping)])
+        t = t[(t >= start) & (t <= period)]
+        return float((self._at(t, damping) * (t / (2 * pi)) ** 2).max())
+
+    def _at(self, T: Reals, damping: float) -> Reals:
+        eta = correction(damping)
+        share = np.minimum(T / self._ramp, 1.0) if self._ramp > 0 else np.ones_like(T)
+        return np.asarray(np.interp(T, *self._known) * (1 - (1 - eta) * share))
+
+    def _turns(self, knots: Reals, damping: float) -> Reals:
+        """Where S_e t^2 turns between two periods: S_e is (p + q t)(r + s t) there."""
+        low, high = knots[:-1], knots[1:]
+        a, b = np.interp(low, *self._known), np.interp(high, *self._known)
+        q = (b - a) / (high - low)
+        p, s = a - q * low, np.where(high <= self._ramp, (correction(damping) - 1) / (self._ramp or 1.0), 0.0)
+        r = np.where(high <= self._ramp, 1.0, correction(damping))
+        square, linear, constant = 4 * q * s, 3 * (p * s + q * r), 2 * p * r
+        with np.errstate(divide="ignore", invalid="ignore"):
+            root = np.sqrt(linear**2 - 4 * square * constant)
+            found = [(-linear + sign * root) / (2 * square) for sign in (1, -1)]
+            found = [*found, -constant / linear]  # where it is no square, or nearly none
+        return np.concatenate([each[(each > low) & (each < high)] for each in found])
+
+    def _check(self, period: float) -> None:
+        last = self.points[-1][0]
+        if period > last:
+            raise InputError(
+                Problem(
+                    f"ends at {last:g} s, before the period of {period:.4g} s that is asked for",
+                    field=self.field,
+                    hint="give ordinates up to there: the displacement counts at long periods",
+                )
+            )
+
+
+@dataclass(frozen=True)
+class FloorSpectrum:
+    """The spectrum at a height of a building, of its first mode [C7.2.5-7].
+
+    Parameters
+    ----------
+    ground : Spectrum
+        That of the ground.
+    z, H : float
+        Heights of the floor and of the building above its foundation [m].
+    T1 : float
+        First period of the building [s].
+    xi1 : float
+        Its damping, a ratio.
+    n : int
+        Number of storeys.
+    """
+
+    ground: GroundSpectrum | TableSpectrum
+    z: float
+    H: float
+    T1: float
+    xi1: float
+    n: int
+
+    @property
+    def ag(self) -> float:
+        """a_g of the ground [g]."""
+        return self.ground.ag
+
+    def with_ag(self, ag: float) -> FloorSpectrum:
+        """The same for another a_g of the ground [g]."""
+        return replace(self, ground=self.ground.with_ag(ag))
+
+    @property
+    def gamma(self) -> float:
+        """Participation of the first mode, 3n/(2n + 1)."""
+        return 3 * self.n / (2 * self.n + 1)
+
+    @property
+    def psi(self) -> float:
+        """Shape of the first mode, z/H."""
+        return self.z / self.H
+
+    @property
+    def peak(self) -> float:
+        """S_Z [m/s2]."""
+        shape = self.gamma * self.psi * sqrt(1 + 4 * self.xi1**2)
+        return self.ground.acceleration(self.T1, self.xi1) * shape
+
+    def amplification(self, damping: float) -> float:
+        """A = 1.1 xi_1^-1/2 eta(xi), xi_1 as a ratio: our reading."""
+        return AMPLIFIED * correction(damping) / sqrt(self.xi1)
+
+    def alone(self, period: float, damping: float) -> float:
+        """S_eZ without the bound by the ground [m/s2]."""
+        A, low, high = self.amplification(damping), BELOW * self.T1, ABOVE * self.T1
+        if period < low:
+            return A * self.peak / (1 + (A - 1) * float((1 - period / low) ** FALL_BELOW))
+        if period <= high:
+            return A * self.peak
+        return A * self.peak / (1 + (A - 1) * float((period / high - 1) ** FALL_ABOVE))
+
+    def acceleration(self, period: float, damping: float) -> float:
+        """S_eZ [m/s2]; above T1 never below that of the ground."""
+        own = self.alone(period, damping)
+        return own if period <= self.T1 else max(own, self.ground.acceleration(period, damping))
+
+    def displacement(self, period: float, damping: float) -> float:
+        """The displacement it asks for [m; C8.7.1.12]; above b T1 not below that there, nor below the ground's."""
+        found = self.alone(period, damping) * (period / (2 * pi)) ** 2
+        if period > self.T1:
+            found = max(found, self.ground.displacement(period, damping))
+        if period > ABOVE * self.T1:
+            found = max(found, self.acceleration(self.T1, damping) * (ABOVE * self.T1 / (2 * pi)) ** 2)
+        return found
+
+
+def ordinates(spectrum: Spectrum, periods: Reals, damping: float) -> Reals:
+    """S_e at many periods [m/s2], for pictures and tests."""
+    return np.array([spectrum.acceleration(float(T), damping) for T in periods])

@@ -1,0 +1,139 @@
+"""The three methods of the Italian code for mechanisms of masonry: damage, linear, nonlinear.
+
+Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018 [code: not yet held against the printed
+text].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import pi, sqrt
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.studies.verification.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
+from rocking_cli.studies.verification.chain import Chain, Control
+from rocking_cli.studies.verification.codes.italian import wordings, workings
+from rocking_cli.studies.verification.codes.italian.demand import DAMPING, Spectrum
+from rocking_cli.studies.verification.codes.italian.ground import Ground
+from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
+from rocking_cli.studies.verification.codes.italian.site import ItalianSite
+from rocking_cli.studies.verification.results import Method, State, Verification, Verified
+
+KEY, NAME = "NTC2018", "Italian code"
+EDITION = "NTC 2018 and Circolare 7/2019"
+DAMAGE, LINEAR, NONLINEAR, AT_COLLAPSE = "damage", "linear", "nonlinear", "nonlinear_SLC"
+
+
+@dataclass(frozen=True)
+class _Case:
+    """A direction at a site, on one curve."""
+
+    ground: Ground
+    curve: CapacityCurve
+
+    def state(self, rule: Rule) -> State:
+        """What the curve allows at a limit state, and what the site asks for [C8.7.1.2.1.6, C8.7.1.10-12]."""
+        site, curve = self.ground.site, self.curve
+        d = rule.share * curve.d0
+        if rule.at_breaks and curve.broken is not None:
+            d = min(d, curve.broken)
+        a = with_elastic_branch(curve.acceleration(d), d, site.T0)
+        T = rule.factor * pi * sqrt(d / a)
+        spectrum = self.ground.spectrum(rule.state)
+        return State(d, a, T, None if spectrum is None else spectrum.displacement(T, rule.damping))
+
+    def method(
+        self, title: str, clause: str, state: str, demand: Callable[[Spectrum], float], capacity: float
+    ) -> Method:
+        """What a method says that the structure can take."""
+        spectrum = self.ground.spectrum(state)
+        if spectrum is None:
+            return Method(title, None, None, clause)
+        a_g = self.ground.capacity(state, demand, capacity)
+        return Method(title, a_g, spectrum.ag, clause, *self.ground.lasts(demand, capacity))
+
+    def forces(self, spectrum: Spectrum) -> float:
+        """The acceleration that starts it [m/s2]: of the ground or the floor, of what vibrates its own."""
+        T0 = self.ground.site.T0
+        return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
+
+    def methods(self, states: Mapping[str, State]) -> dict[str, Method]:
+        """All of them."""
+        q, a0 = self.ground.site.q, self.curve.a0
+        found = {
+            DAMAGE: self.method("damage: it begins to rock", "C8.7.1.6-9", "SLV", self.forces, a0),
+            LINEAR: self.method("linear: q times that", "C8.7.1.6-9", "SLV", self.forces, q * a0),
+        }
+        for key, rule in zip((NONLINEAR, AT_COLLAPSE), RULES, strict=True):
+            at = states[rule.state]
+
+            def asked(spectrum: Spectrum, T: float = at.T, damping: float = rule.damping) -> float:
+                return spectrum.displacement(T, damping)
+
+            title = f"nonlinear: displacement at {rule.state}"
+            found[key] = self.method(title, "C8.7.1.2.1.6", rule.state, asked, at.d)
+        found["SLD"] = self.method("damage, held against SLD", "C8.7.1.6-9", "SLD", self.forces, a0)
+        return found
+
+
+def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> Verification:
+    """Verify a structure at a site.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    site : ItalianSite
+        The site.
+    control : Control, optional
+        The control point; by default the barycentre of P + Q.
+
+    Raises
+    ------
+    InputError
+        If a* vanishes nowhere, the control point does not move, or a spectrum ends too early.
+    MechanismError
+        If the structure does not stand.
+    """
+    ground = Ground(site)
+    found = {direction: _verified(mechanism, direction, ground, control) for direction in mechanism.directions}
+    remarks = wordings.of_site(ground, list(found.values()))
+    return Verification(mechanism, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks)
+
+
+def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, control: Control | None) -> Verified:
+    chain = Chain(mechanism, direction)
+    exact = ExactCurve(chain, control or chain.barycentre, ground.site.FC)
+    straight = StraightCurve(exact.a0, exact.d0, exact.broken)
+    case, line = _Case(ground, exact), _Case(ground, straight)
+    states = {rule.state: case.state(rule) for rule in RULES}
+    on_line = {rule.state: line.state(rule) for rule in RULES}
+    methods = case.methods(states)
+    remarks = wordings.of_direction(exact, states, ground)
+    if control is not None:
+        usual = ExactCurve(chain, chain.barycentre, ground.site.FC)
+        by_it = _Case(ground, usual)
+        others = by_it.methods({rule.state: by_it.state(rule) for rule in RULES})
+        remarks.append(wordings.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
+    return Verified(
+        direction=direction,
+        exact=exact,
+        lambda_=mechanism.uplift(direction),
+        a0=exact.a0,
+        d0=exact.d0,
+        M=chain.e_star * chain.inertial / mechanism.gravity if mechanism.has_mass else None,
+        states=states,
+        straight_states=on_line,
+        methods=methods,
+        straight_methods=line.methods(on_line),
+        governs=_governs(methods),
+        workings=workings.of_direction(exact, states, methods, ground),
+        remarks=remarks,
+    )
+
+
+def _governs(methods: Mapping[str, Method]) -> str:
+    """The method that counts: the nonlinear one is never below damage."""
+    damage, nonlinear = methods[DAMAGE].a_g, methods[NONLINEAR].a_g
+    return DAMAGE if damage is not None and nonlinear is not None and damage > nonlinear else NONLINEAR

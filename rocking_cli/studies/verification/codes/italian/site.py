@@ -1,0 +1,142 @@
+"""A site for the Italian code: what the ground does there, on which floor the structure stands, and what is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from rocking_cli.core.fields import quantity
+from rocking_cli.io.yaml_file import Place
+from rocking_cli.studies.fragility.together import Part, Sound
+from rocking_cli.studies.verification.site_file import Site
+
+SIZES = ("ag", "F0", "TC", "S")
+MOST = 10_000  # rows of a table
+Period = Annotated[float, Field(gt=0, le=100)]
+Ordinate = Annotated[list[Annotated[float, Field(ge=0, le=1000)]], Field(min_length=2, max_length=2)]
+Row = Annotated[list[Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=4, max_length=4)]
+
+
+def _ordinates(**more: Any) -> Any:
+    return quantity(
+        "elastic spectrum at 5 %: [period in s, acceleration in g], from T = 0 on, straight between",
+        default=None, min_length=2, max_length=MOST, **more,
+    )  # fmt: skip
+
+
+class Shaking(Part):
+    """The ground of one limit state: by its parameters, or as ordinates of a spectrum."""
+
+    ag: float | None = quantity("ground acceleration on rock", unit="g", symbol="a_g", default=None, gt=0, le=10)
+    F0: float | None = quantity("amplification of the spectrum", default=None, ge=1, le=10)
+    TC: float | None = quantity("end of its level part", unit="s", symbol="T_C", default=None, gt=0, le=10)
+    S: float | None = quantity("factor of soil and topography", default=None, ge=0.5, le=5)
+    spectrum: list[Ordinate] | None = _ordinates()
+
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """It is given in one way, and whole; a spectrum is a function."""
+        there = [name for name in SIZES if given.get(name) is not None]
+        if given.get("spectrum") is not None and there:
+            yield ("spectrum",), f"goes not with {there[0]}: give the parameters or the ordinates"
+        elif given.get("spectrum") is None and cls._needs_sizes(given):
+            for name in SIZES:
+                if name not in there:
+                    yield (name,), f"is missing: {cls.model_fields[name].description}"
+        yield from _late_corner(given, sound)
+        yield from _no_function(given, sound)
+
+    @classmethod
+    def _needs_sizes(cls, given: dict[str, Any]) -> bool:
+        """Whether the parameters must be there where no spectrum is."""
+        return True
+
+
+def _late_corner(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+    if given.get("ag") is None or given.get("TC") is None or not (sound("ag") and sound("TC")):
+        return
+    if given["TC"] > (TD := 4.0 * given["ag"] + 1.6):
+        yield ("TC",), f"is above T_D = 4 a_g/g + 1.6 = {TD:.4g} s: got {given['TC']:g} s"
+
+
+def _no_function(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+    points: Any = given.get("spectrum")
+    if not points or not sound("spectrum"):
+        return
+    if points[0][0] != 0:
+        yield ("spectrum", 0), f"begins at {points[0][0]:g} s: the first ordinate is at T = 0, that of the ground"
+    for k, (T, acceleration) in enumerate(points):
+        if acceleration <= 0:
+            yield ("spectrum", k), f"has no acceleration at {T:g} s: it must be more than 0"
+            return
+    for k, ((before, _), (after, _)) in enumerate(pairwise(points), 1):
+        if after == before:
+            yield ("spectrum", k), f"is no function: it has two ordinates at {after:g} s"
+            return
+        if after < before:
+            yield ("spectrum", k), f"goes back from {before:g} to {after:g} s: periods must increase"
+            return
+
+
+class Floor(Part):
+    """The floor of a building on which the structure stands."""
+
+    z: float = quantity("height of the floor above the foundation", unit="m", gt=0, le=1000)
+    H: float = quantity("height of the building", unit="m", gt=0, le=1000)
+    T1: Period = quantity("first period of the building", unit="s")
+    xi1: float = quantity("its damping, a ratio: 0.05 for 5 %", gt=0, le=0.5)
+    n: int = quantity("number of storeys", ge=1, le=200)
+
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """A floor is not above the roof."""
+        z, H = given.get("z"), given.get("H")
+        if z is not None and H is not None and sound("z") and sound("H") and z > H:
+            yield ("z",), f"is above the roof: the building is {H:g} m high, got {z:g} m"
+
+
+class ItalianSite(Shaking, Site):
+    """What a site file holds: the ground of one limit state (SLV), and of others; or the hazard of all of them."""
+
+    FC: float = quantity("confidence factor, by which accelerations are divided", ge=1, le=2)
+    q: float = quantity("behaviour factor of the linear method", default=2.0, ge=1, le=10)
+    SLC: Shaking | None = Field(None, description="the ground at collapse")
+    SLD: Shaking | None = Field(None, description="the ground at damage")
+    soil: Literal["A", "B", "C", "D", "E"] | None = Field(None, description="category of the soil")
+    topography: Literal["T1", "T2", "T3", "T4"] = Field("T1", description="category of the topography")
+    hazard: Annotated[list[Row], Field(min_length=2, max_length=MOST)] | None = Field(
+        None, description="rows of [return period in years, ag in g, F0, TC* in s], with VN, CU and soil"
+    )
+    VN: float | None = quantity("nominal life", unit="years", default=None, gt=0, le=1000)
+    CU: float | None = quantity("coefficient of use", default=None, gt=0, le=10)
+    floor: Floor | None = Field(None, description="the floor on which the structure stands; left out, the ground")
+    T0: Period | None = quantity(
+        "period of an element that is free to vibrate before it rocks, such as a parapet", unit="s", default=None
+    )
+
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """The ground is given in one way; a hazard has what belongs to it."""
+        yield from super().between(given, sound)
+        if given.get("hazard") is None:
+            for name in ("VN", "CU"):
+                if given.get(name) is not None:
+                    yield (name,), "goes with a hazard, the table of return periods"
+            return
+        for name in (*SIZES, "spectrum", "SLC", "SLD"):
+            if given.get(name) is not None:
+                yield (name,), "goes not with hazard, from which it follows: give one of them"
+        for name in ("VN", "CU", "soil"):
+            if given.get(name) is None:
+                yield (name,), f"is missing: a hazard needs the {cls.model_fields[name].description}"
+        if sound("hazard"):
+            for k, (before, after) in enumerate(pairwise(given["hazard"]), 1):
+                if after[0] <= before[0]:
+                    yield ("hazard", k), f"return periods must increase, got {after[0]:g} after {before[0]:g} years"
+
+    @classmethod
+    def _needs_sizes(cls, given: dict[str, Any]) -> bool:
+        return given.get("hazard") is None

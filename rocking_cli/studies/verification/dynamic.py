@@ -1,0 +1,69 @@
+"""Histories of one degree of freedom on the capacity curve, with the confidence factor and without.
+
+FC divides what holds the structure back: I phi.. + J phi.^2 + V'/FC = -s B u_g''. In the time t sqrt(FC) that is the
+structure itself under a motion FC times as strong and sqrt(FC) times as quick, so that nothing but the motion changes;
+without FC it is the structure's own history. Its inertia is that of the mechanism, and e* is not in it: our choice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import isnan, sqrt
+
+from rocking_cli.core import Direction
+from rocking_cli.dynamics.history import History, follow
+from rocking_cli.dynamics.model import Model
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.studies.verification.capacity import ExactCurve
+from rocking_cli.studies.verification.results import RecordPeak
+
+
+def with_confidence(motion: GroundMotion, FC: float) -> GroundMotion:
+    """The motion under which a structure moves as it would, held back 1/FC as much, under the motion itself."""
+    quick = sqrt(FC)
+    vertical = motion.vertical and replace(motion.vertical, dt=motion.vertical.dt / quick)
+    return replace(motion, dt=motion.dt / quick, acceleration=FC * motion.acceleration, vertical=vertical)
+
+
+def peaks(
+    model: Model, curves: Mapping[Direction, ExactCurve], motion: GroundMotion, signs: Sequence[int]
+) -> dict[Direction, RecordPeak]:
+    """The largest displacement in each direction under one record, the worse of several polarities.
+
+    Parameters
+    ----------
+    model : Model
+        The nonlinear one of the structure.
+    curves : mapping
+        The capacity curve of each direction, with its FC.
+    motion : GroundMotion
+        The record, as scaled.
+    signs : sequence of int
+        Polarities, of 1 and -1.
+
+    Raises
+    ------
+    SolverError
+        If a motion cannot be followed to its end.
+    """
+    under = [motion.scaled(sign) if sign != 1 else motion for sign in signs]
+    own = [follow(model, each) for each in under]
+    factors = {curve.confidence for curve in curves.values()}
+    weaker = {FC: own if FC == 1 else [follow(model, with_confidence(each, FC)) for each in under] for FC in factors}
+    return {
+        direction: RecordPeak(
+            motion.name, _largest(curve, direction, weaker[curve.confidence]), _largest(curve, direction, own)
+        )
+        for direction, curve in curves.items()
+    }
+
+
+def _largest(curve: ExactCurve, direction: Direction, histories: Sequence[History]) -> float | None:
+    """The largest d of several histories in a direction [m]; None if one overturned that way."""
+    found = [history.peak_positive if direction > 0 else history.peak_negative for history in histories]
+    if any(isnan(phi) for phi in found):
+        return None
+    phi = max(found)
+    d = curve.displacement_at(phi)
+    return max(d, curve.d0) if phi >= curve.end else d  # beyond, the control point may come back

@@ -1,0 +1,217 @@
+"""What a verification by any code found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.studies.verification.capacity import ExactCurve
+from rocking_cli.studies.verification.chain import Chain
+from rocking_cli.studies.verification.working import Working
+
+CLOSE = 1e-12  # of a demand: what rounding may take from a capacity that equals it
+
+
+@dataclass(frozen=True)
+class State:
+    """A limit state on a capacity curve.
+
+    Parameters
+    ----------
+    d, a, T : float
+        Displacement that it allows [m], acceleration there [m/s2], and the period of both [s].
+    demand : float or None
+        Displacement that the site asks for [m]; None where the site file does not give this limit state.
+    """
+
+    d: float
+    a: float
+    T: float
+    demand: float | None
+
+    @property
+    def ratio(self) -> float | None:
+        """Capacity over demand: it passes from 1."""
+        return None if self.demand is None else self.d / self.demand
+
+    @property
+    def passes(self) -> bool | None:
+        """Whether it does."""
+        return None if self.ratio is None else self.ratio >= 1 - CLOSE
+
+
+@dataclass(frozen=True)
+class Method:
+    """What one method of verification says that the structure can take.
+
+    Parameters
+    ----------
+    title : str
+        What to call it.
+    a_g : float or None
+        Ground acceleration on rock that it can take [g]; None where the site does not say what that depends on.
+    asked : float or None
+        That of its limit state at the site [g].
+    clause : str
+        Where in the code.
+    return_period : float or None
+        The same capacity as a return period, where the hazard is known [years].
+    beyond : bool
+        Whether the capacity is beyond the table, whose end the return period then is.
+    """
+
+    title: str
+    a_g: float | None
+    asked: float | None
+    clause: str
+    return_period: float | None = None
+    beyond: bool = False
+
+    @property
+    def zeta(self) -> float | None:
+        """zeta_E, capacity over what is asked for."""
+        return None if self.a_g is None or self.asked is None else self.a_g / self.asked
+
+
+@dataclass(frozen=True)
+class RecordPeak:
+    """The largest displacement under one record [m], with FC and without; None where the structure overturned."""
+
+    name: str
+    with_confidence: float | None
+    without: float | None
+
+
+@dataclass(frozen=True)
+class Dynamic:
+    """What histories say of a direction.
+
+    Parameters
+    ----------
+    records : sequence of RecordPeak
+        What each record did.
+    d0 : float
+        Displacement that no record may pass [m].
+    allowed : mapping of str to float
+        The displacement of each limit state that the mean may reach [m].
+    enough : int
+        How many records the code wants.
+    """
+
+    records: Sequence[RecordPeak]
+    d0: float
+    allowed: Mapping[str, float]
+    enough: int
+
+    def mean(self, *, confident: bool) -> float | None:
+        """The mean of the largest displacements [m]; None where one overturned or passed d0*."""
+        found = self.peaks(confident=confident)
+        known = [each for each in found if each is not None and each < self.d0]
+        return sum(known) / len(found) if len(known) == len(found) else None
+
+    def peaks(self, *, confident: bool) -> list[float | None]:
+        """The largest displacement under each record [m]."""
+        return [each.with_confidence if confident else each.without for each in self.records]
+
+    def passed(self, *, confident: bool) -> list[str]:
+        """The records that pass d0*."""
+        pairs = zip(self.records, self.peaks(confident=confident), strict=True)
+        return [record.name for record, d in pairs if d is None or d >= self.d0]
+
+    def holds(self, state: str, *, confident: bool) -> bool:
+        """Whether it holds at a limit state."""
+        mean = self.mean(confident=confident)
+        return mean is not None and mean <= self.allowed[state]
+
+
+@dataclass(frozen=True, eq=False)
+class Verified:
+    """What was found in one direction of rocking.
+
+    Parameters
+    ----------
+    direction : Direction
+    lambda_, a0, d0, M : float
+        Uplift acceleration over g; a0* [m/s2]; d0* [m]; M* [kg], None without masses.
+    exact : ExactCurve
+        The capacity curve as the mechanism moves, with the control point and FC.
+    states, straight_states : mapping of str to State
+        The limit states on the exact curve, and on the straight line.
+    methods, straight_methods : mapping of str to Method
+        What each method says on either.
+    governs : str
+        The method that counts.
+    workings : sequence of Working
+        How its numbers came about.
+    remarks : sequence of str
+        Sentences on what to know of them.
+    dynamic : Dynamic, optional
+        What histories say.
+    """
+
+    direction: Direction
+    lambda_: float
+    a0: float
+    d0: float
+    M: float | None
+    exact: ExactCurve
+    states: Mapping[str, State]
+    straight_states: Mapping[str, State]
+    methods: Mapping[str, Method]
+    straight_methods: Mapping[str, Method]
+    governs: str
+    workings: Sequence[Working]
+    remarks: Sequence[str]
+    dynamic: Dynamic | None = None
+
+    @property
+    def chain(self) -> Chain:
+        """What moves, with its sums."""
+        return self.exact.chain
+
+    @property
+    def counts(self) -> Method:
+        """The method that governs."""
+        return self.methods[self.governs]
+
+
+@dataclass(frozen=True, eq=False)
+class Verification:
+    """A structure held against a code.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    code, name, edition : str
+        By which code, as site files call it and as people do, and which edition of it.
+    first : str
+        The limit state by which directions are compared.
+    directions : mapping of Direction to Verified
+        What was found in each direction that it can rock in.
+    workings : sequence of Working
+        Of what is the same in both, such as the ground.
+    remarks : sequence of str
+        Sentences on the whole.
+    """
+
+    mechanism: Mechanism
+    code: str
+    name: str
+    edition: str
+    first: str
+    directions: Mapping[Direction, Verified]
+    workings: Sequence[Working]
+    remarks: Sequence[str]
+
+    @property
+    def governs(self) -> Direction:
+        """The direction with the smaller ratio of displacements."""
+
+        def ratio(direction: Direction) -> float:
+            found = self.directions[direction].states[self.first].ratio
+            return found if found is not None and isfinite(found) else float("inf")
+
+        return min(self.directions, key=ratio)

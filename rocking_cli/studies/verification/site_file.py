@@ -1,0 +1,94 @@
+"""A site from its YAML file, by the fields that its code asks for, with every problem placed at file:line:column."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, ValidationError
+
+from rocking_cli.core.fields import Name
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.field_problems import place_of, problems
+from rocking_cli.io.yaml_file import Document, parse, read_text
+from rocking_cli.studies.fragility.together import Part, between_fields
+from rocking_cli.text import did_you_mean
+
+HINT = "`rocking new site` prints one to start from"
+USUAL = "NTC2018"
+"""The code of a site file that names none."""
+
+
+class Site(Part):
+    """What every site file may hold; a code adds what it needs."""
+
+    code: str = Field(USUAL, description="the code to verify by")
+    name: Name | None = Field(None, description="what to call the site")
+
+
+@dataclass(frozen=True)
+class SiteFile:
+    """A site, and where everything in it stands.
+
+    Parameters
+    ----------
+    site : Site
+        What it says.
+    document : Document
+        The file.
+    """
+
+    site: Site
+    document: Document
+
+    def placed(self, error: InputError) -> InputError:
+        """The same problems, those of fields of the site with their place in the file."""
+        return InputError(*(self._placed(each) for each in error.problems))
+
+    def _placed(self, problem: Problem) -> Problem:
+        place = tuple((problem.field or "").split("."))
+        if problem.file is not None or place not in self.document.values:
+            return problem
+        return self.document.at(place, problem.message, problem.hint)
+
+
+def read_site(path: Path, codes: Mapping[str, type[Site]]) -> SiteFile:
+    """Read a site from its YAML file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    codes : mapping of str to type
+        The codes there are, and what a site is for each.
+
+    Raises
+    ------
+    InputError
+        With every problem of the file: place, field, and what would be right.
+    """
+    return site_of(parse(read_text(path, "site"), str(path), "site", HINT), codes)
+
+
+def site_of(document: Document, codes: Mapping[str, type[Site]]) -> SiteFile:
+    """The site in a parsed file. Raises as `read_site`."""
+    code = document.data.get("code", USUAL)
+    if isinstance(code, str) and code not in codes:
+        problem = document.at(("code",), f"there is no code {code!r}", did_you_mean(code, list(codes)))
+        raise InputError(*document.problems, problem)
+    model = codes[code if isinstance(code, str) else USUAL]
+    site = None
+    try:
+        site = model.model_validate(document.data)
+    except ValidationError as error:
+        found: Any = error.errors(include_url=False)
+        alone = [each for each in found if each["type"] != "geometry"]  # what is wrong between fields is found below
+        document.problems += problems(document, model, alone, owner="the site", lister=HINT)
+        places = {place_of(document.data, each) for each in alone}
+        for place, message in between_fields(model, document.data, places):
+            document.problems.append(document.at(place, message))
+    document.check()
+    assert site is not None  # else there is a problem
+    return SiteFile(site, document)

@@ -1,0 +1,47 @@
+"""How a number of a verification came about: its formula, what was put in, its clause, and how far that was checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Standing = Literal["code", "ours"]
+"""Of a formula: of the code, and not yet held against its printed text; or ours, where the code leaves it open."""
+MEANING: dict[Standing, str] = {
+    "code": "a formula of the code that was not yet held against its printed text",
+    "ours": "our reading, or our choice where the code leaves it open",
+}
+
+
+@dataclass(frozen=True)
+class Working:
+    """A line of a calculation.
+
+    Parameters
+    ----------
+    symbol : str
+        What is computed, as the code calls it.
+    meaning : str
+        What it is, in a few words.
+    formula : str
+        By which formula, in plain text.
+    numbers : str
+        The same with numbers put in; empty where they are many.
+    value : float
+        The result.
+    unit : str
+        Its unit; empty for a pure number.
+    clause : str
+        Where in the code.
+    standing : {"code", "ours"}
+        How far the formula was checked, see `MEANING`.
+    """
+
+    symbol: str
+    meaning: str
+    formula: str
+    numbers: str
+    value: float
+    unit: str
+    clause: str
+    standing: Standing = "code"

@@ -1,0 +1,228 @@
+"""A verification by a code, as people and programs read it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isclose
+from typing import Any
+
+from rocking_cli.studies.verification.results import Dynamic, Method, State, Verification, Verified
+from rocking_cli.studies.verification.working import Working
+from rocking_cli.views import verification_words as words
+from rocking_cli.views.view import ABSENT, Table, View, heading, number
+
+AGREE = 1e-9  # relative: directions that differ by less are shown once
+CURVES = ("exact", "straight")
+
+
+def view(found: Verification, site: str | None = None) -> View:
+    """The methods side by side for each direction, which governs, and why they differ."""
+    sides = shown(found)
+    parts: list[Table | str] = [
+        f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
+    ]
+    parts.append(_site(found))
+    for where, each in sides.items():
+        parts += _of_direction(found, each, where)
+    if len(found.directions) > 1 and len(sides) > 1:
+        parts.append(words.which_direction(found))
+    parts += found.remarks
+    all_workings = [*found.workings, *(line for each in sides.values() for line in each.workings)]
+    parts.append(words.standing(all_workings))
+    parts += [f"Caution: {found.mechanism.caution}"] if found.mechanism.caution else []
+    return View(lambda: data(found), [part for part in parts if part])
+
+
+def shown(found: Verification) -> dict[str, Verified]:
+    """The directions that differ, by what they are called."""
+    each = list(found.directions.values())
+    if len(each) == 1:
+        return {f"{each[0].direction.label.capitalize()} direction": each[0]}
+    if _alike(*each):
+        return {"Both directions": each[0]}
+    return {f"{one.direction.label.capitalize()} direction": one for one in each}
+
+
+def _alike(one: Verified, other: Verified) -> bool:
+    pairs = [(one.a0, other.a0), (one.d0, other.d0), (one.chain.e_star, other.chain.e_star)]
+    pairs += [(one.states[key].a, other.states[key].a) for key in one.states]
+    same = all(isclose(a, b, rel_tol=AGREE) for a, b in pairs)
+    return same and _same_peaks(one.dynamic, other.dynamic)
+
+
+def _same_peaks(one: Dynamic | None, other: Dynamic | None) -> bool:
+    """Histories are of one direction: the ground is not symmetric."""
+    return one is None and other is None
+
+
+def _of_direction(found: Verification, each: Verified, where: str) -> list[Table | str]:
+    parts: list[Table | str] = [_capacity(each, where), _methods(each)]
+    parts.append(words.verdict(each, found.first, where))
+    parts += words.differences(each, found.first)
+    parts += words.beyond_first(each, found.first)
+    parts += each.remarks
+    if each.dynamic is not None:
+        parts += [_records(each.dynamic), *words.of_histories(each.dynamic, each.exact.confidence)]
+    return parts
+
+
+def _site(found: Verification) -> Table:
+    """What is the same in both directions, with the formula of each number; a column for each limit state."""
+    rows: dict[str, dict[str, Working]] = {}
+    for line in found.workings:
+        symbol, _, state = line.symbol.partition(",")
+        rows.setdefault(symbol, {})[state] = line
+    states = list(dict.fromkeys(state for each in rows.values() for state in each if state))
+    cells = []
+    for symbol, each in rows.items():
+        known = [each.get(state, each.get("")) for state in states]
+        one = next(iter(each.values()))
+        known = known or [each[""]]
+        values = [number(line.value) if line is not None else ABSENT for line in known]
+        cells.append([symbol, *values, one.unit, one.formula, _clause(one)])
+    return Table("Site", ["", *states, "unit", "formula", "clause"], cells, numbers=range(1, len(states) + 1))
+
+
+def _clause(line: Working) -> str:
+    """Where a formula is in the code, and that it is our reading where it is."""
+    return line.clause if line.standing == "code" else f"{line.clause}, ours"
+
+
+def _capacity(each: Verified, where: str) -> Table:
+    """The capacity curve, exactly and on the straight line."""
+    clause = {line.symbol: _clause(line) for line in each.workings}
+    rows = [
+        ["alpha0", number(each.chain.alpha0), "", "", clause["alpha0"]],
+        ["lambda", number(each.lambda_), "", "", ""],
+        ["e*", number(each.chain.e_star), "", "", clause["e*"]],
+        ["M*", number(each.M), "", "kg" if each.M is not None else "no masses", clause.get("M*", "")],
+        ["a0*", number(each.a0), number(each.a0), "m/s2", clause["a0*"]],
+        ["d0*", number(each.d0), number(each.d0), "m", clause["d0*"]],
+    ]
+    for name, at in each.states.items():
+        line = each.straight_states[name]
+        rows += [
+            [f"d_{name}", number(at.d), number(line.d), "m", clause[f"d_{name}"]],
+            [f"a*(d_{name})", number(at.a), number(line.a), "m/s2", clause[f"a*(d_{name})"]],
+            [f"T_{name}", number(at.T), number(line.T), "s", clause[f"T_{name}"]],
+        ]
+        if at.demand is not None:
+            rows += [
+                [f"asked at {name}", number(at.demand), number(line.demand), "m", clause[f"S_De(T_{name})"]],
+                [f"d over it, {name}", number(at.ratio, 4), number(line.ratio, 4), "passes from 1", ""],
+            ]
+    return Table(f"{where}: capacity", ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
+
+
+def _methods(each: Verified) -> Table:
+    """What each method says that it can take."""
+    known = any(method.return_period is not None for method in each.methods.values())
+    rows = []
+    for key, method in each.methods.items():
+        if method.a_g is None:
+            continue
+        line = each.straight_methods[key]
+        years = [_years(method)] if known else []
+        governs = "governs" if key == each.governs else ""
+        rows.append(
+            [
+                method.title,
+                *(number(each, 4) for each in (method.a_g, line.a_g, method.asked, method.zeta)),
+                *years,
+                method.clause,
+                governs,
+            ]
+        )
+    heads = ["", "a_g [g]\nexact", "straight\nline", "asked\n[g]", "zeta_E", *(["TR\n[years]"] if known else [])]
+    return Table("It can take", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
+
+
+def _years(method: Method) -> str:
+    """A return period, and whether it is beyond the table."""
+    if method.return_period is None:
+        return ABSENT
+    mark = ""
+    if method.beyond and method.zeta is not None:
+        mark = ">" if method.zeta >= 1 else "<"
+    return f"{mark}{method.return_period:.0f}"
+
+
+def _records(found: Dynamic) -> Table:
+    rows = [[each.name, *(_peak(d, found) for d in (each.with_confidence, each.without))] for each in found.records]
+    return Table("Histories: largest d [m]", ["record", "with FC", "without"], rows, numbers=(1, 2))
+
+
+def _peak(d: float | None, found: Dynamic) -> str:
+    if d is None:
+        return "overturns"
+    return f"{d:.4g}{' past d0*' if d >= found.d0 else ''}"
+
+
+def data(found: Verification) -> dict[str, Any]:
+    """As plain data."""
+    return {
+        "code": found.code,
+        "edition": found.edition,
+        "directions": {direction.label: _data(each) for direction, each in found.directions.items()},
+        "governs": found.governs.label,
+    }
+
+
+def _data(each: Verified) -> dict[str, Any]:
+    control = each.exact.control
+    periods = _return_periods(each.methods)
+    return {
+        "control": {"x": control.at.real, "y": control.at.imag, "body": control.body},
+        "alpha0": each.chain.alpha0,
+        "lambda": each.lambda_,
+        "e_star": each.chain.e_star,
+        "M_star": each.M,
+        "a0_star": each.a0,
+        "d0_star": each.d0,
+        "states": {name: _state(at) for name, at in each.states.items()},
+        "a_g": {key: method.a_g for key, method in each.methods.items() if key != "SLD"},
+        "zeta": {key: method.zeta for key, method in each.methods.items()},
+        "governs": each.governs,
+        "dynamic": _histories(each.dynamic) if each.dynamic is not None else None,
+        **({"return_period": periods} if periods else {}),
+    }
+
+
+def _state(at: State) -> dict[str, float | None]:
+    return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio}
+
+
+def _return_periods(methods: Mapping[str, Method]) -> dict[str, dict[str, Any]]:
+    """Of each method, where the hazard is known."""
+    known = {key: each for key, each in methods.items() if each.return_period is not None}
+    return {key: {"years": each.return_period, "beyond": each.beyond} for key, each in known.items()}
+
+
+def _histories(found: Dynamic) -> dict[str, Any]:
+    def of(confident: bool) -> dict[str, Any]:
+        return {
+            "mean": found.mean(confident=confident),
+            "past_d0": found.passed(confident=confident),
+            "holds": {state: found.holds(state, confident=confident) for state in found.allowed},
+        }
+
+    return {
+        "records": [
+            {"name": each.name, "d_with_FC": each.with_confidence, "d_without_FC": each.without}
+            for each in found.records
+        ],
+        "wanted": found.enough,
+        "with_FC": of(True),
+        "without_FC": of(False),
+    }
+
+
+def table(found: Verification) -> dict[str, Sequence[Any]]:
+    """A row for each direction and method."""
+    rows = [
+        [direction.label, key, method.a_g, method.asked, method.zeta, method.return_period, key == each.governs]
+        for direction, each in found.directions.items()
+        for key, method in each.methods.items()
+    ]
+    names = ["direction", "method", "a_g [g]", "asked [g]", "zeta_E", "TR [years]", "governs"]
+    return {name: [row[k] for row in rows] for k, name in enumerate(names)}
