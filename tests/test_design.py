@@ -253,3 +253,17 @@ class TestCommand:
     def test_a_range_without_any_structure_is_a_result(self):
         said = run("design", BLOCK, "--vary", "width=-2:-1", "--until", "lambda < 1", "--plot", "p.png").stdout
         assert "lambda has no value at any of them" in said and "From -2 m to -1 m there is no value" in said
+
+
+def test_a_wall_is_designed_for_a_code():
+    """The facade of 8 m passes by the nonlinear method from where d_SLV, 0.4 of d0*, is what the ground asks for."""
+    import rocking_cli as rk
+
+    site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    found = rk.design(rk.Block(width=0.6, height=8.0), "width=0.4m:0.9m", "zeta_nonlinear >= 1", site=site)
+    just = rk.verify(rk.Block(width=found.value, height=8.0), site)
+    counts = just.directions[rk.Direction.POSITIVE]
+    assert counts.methods["nonlinear"].zeta == pytest.approx(1, abs=1e-6)
+    assert counts.states["SLV"].ratio == pytest.approx(1, abs=1e-6)
+    wide = rk.design(rk.Block(width=0.6, height=8.0), "width=0.4m:0.9m", "alpha0 >= 0.1")
+    assert wide.value == pytest.approx(0.8, rel=1e-9)

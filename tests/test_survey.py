@@ -408,3 +408,20 @@ class TestPython:
         assert "the most vulnerable first" in from_file._repr_html_()
         with pytest.raises(InputError, match="same length"):
             rk.survey({"mechanism": ["block"], "width": []})
+
+
+def test_a_site_ranks_by_what_its_code_allows(tmp_path):
+    import rocking_cli as rk
+
+    site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    (tmp_path / "site.yaml").write_text("".join(f"{key}: {value}\n" for key, value in site.items()))
+    (tmp_path / "t.csv").write_text(
+        "mechanism,name,width,height\nblock,facade,0.6,8\nblock,thick,1.2,8\nblock,thin,0.3,4\nblock,none,-1,2\n"
+    )
+    data = json.loads(some("survey", tmp_path / "t.csv", "--site", tmp_path / "site.yaml", "--json").stdout)
+    assert data["ranked_by"] == "ratio" and [each["name"] for each in data["bad"]] == ["none"]
+    ratios = {each["name"]: each["ratio"] for each in data["rows"]}
+    assert [each["name"] for each in data["rows"]] == sorted(ratios, key=ratios.get)
+    found = rk.verify(rk.Block(width=0.6, height=8.0), site).to_dict()["directions"]["positive"]
+    assert ratios["facade"] == pytest.approx(found["states"]["SLV"]["ratio"])
+    assert [row.name for row in rk.survey(tmp_path / "t.csv", site=site).rows] == [e["name"] for e in data["rows"]]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking_cli.api.answer import Answer
 from rocking_cli.api.verbs import Motion, Structure, _each, _motion, _structure
+from rocking_cli.api.verification import _site
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,6 +26,7 @@ def survey(
     *,
     scale: float = 1.0,
     polarities: Sequence[int] = (1,),
+    site: Mapping[str, Any] | str | Path | None = None,
     threads: int | None = None,
 ) -> Answer[Survey]:
     """Rank many structures by how vulnerable they are.
@@ -40,6 +42,8 @@ def survey(
         Factor on the motions.
     polarities : sequence of int
         Of 1 and -1; with both, the worse counts.
+    site : mapping, str or Path, optional
+        The fields of a site file, or the file: each is verified by its code, and they are ranked by the ratio.
     threads : int, optional
         How many structures at a time; without it, one for each processor.
 
@@ -68,7 +72,8 @@ def survey(
     from rocking_cli.views.survey import columns, title, view
 
     shaken = [_motion(each).scaled(scale) for each in _each(motions)]
-    found = study(_entries(structures), shaken, polarities, threads=threads)
+    where = _site(site) if site is not None else None
+    found = study(_entries(structures), shaken, polarities, site=where, threads=threads)
 
     def figure() -> Figure:
         from rocking_cli.plotting.survey import draw_survey
@@ -98,6 +103,7 @@ def design(
     scale: float = 1.0,
     polarities: Sequence[int] = (1,),
     neighbours: int = 200,
+    site: Mapping[str, Any] | str | Path | None = None,
     points: int = 41,
 ) -> Answer[Design]:
     """Find for which values of one of its numbers a structure meets a requirement.
@@ -111,7 +117,8 @@ def design(
         the field. A place in a list is its number, from 0, or the name of the entry.
     until : str
         The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number. The metrics are
-        `lambda`, `phi_cr`, `p`, and with motions `peak_ratio` and `overturned`, of their neighbours.
+        `lambda`, `phi_cr`, `p`, `alpha0`, with motions `peak_ratio` and `overturned`, of their neighbours, and with a
+        site `zeta_damage`, `zeta_linear` and `zeta_nonlinear`.
     motions : GroundMotion, Pulse, str or Path, or a sequence of these
         What shakes it; the worst counts.
     scale : float
@@ -120,6 +127,8 @@ def design(
         Of 1 and -1; with both, the worse counts.
     neighbours : int
         How many motions next to each are followed.
+    site : mapping, str or Path, optional
+        The fields of a site file, or the file.
     points : int
         How many values are tried first.
 
@@ -150,7 +159,8 @@ def design(
     span = Span.parse(vary) if isinstance(vary, str) else Span(vary[0], repr(float(vary[1])), repr(float(vary[2])))
     varied = Varied(ready.mechanism, span.field, Path(ready.file).parent if ready.file is not None else None)
     shaken = [_motion(each).scaled(scale) for each in _each(motions)]
-    shaking = Shaking(shaken, polarities, Around(neighbours)) if shaken else None
+    where = _site(site) if site is not None else None
+    shaking = Shaking(shaken, polarities, Around(neighbours), where) if shaken or where is not None else None
     found = study(varied, span.in_unit(varied.unit), Aim.parse(until), shaking, points=points)
 
     def figure() -> Figure:

@@ -38,7 +38,8 @@ def _aim() -> Callable[[str], Any]:
 )  # fmt: skip
 @click.option(
     "--until", required=True, type=Parsed("requirement", _aim), metavar="'METRIC OP NUMBER'",
-    help="What is to hold: lambda, phi_cr, p, peak_ratio or overturned, <, <=, > or >=, and a number.",
+    help="What is to hold: lambda, phi_cr, p, peak_ratio, overturned, alpha0, zeta_damage, zeta_linear or "
+    "zeta_nonlinear, <, <=, > or >=, and a number.",
 )  # fmt: skip
 @click.option(
     "--points", type=click.IntRange(2, 10_000), default=41, show_default=True, metavar="N",
@@ -48,6 +49,7 @@ def _aim() -> Callable[[str], Any]:
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse of the two")
 @options.around
+@options.site
 @options.out(".csv", ".parquet", what="Write the values tried and the metric there (.csv or .parquet).")
 @options.plot("Draw the metric over the field")
 @options.as_json
@@ -61,6 +63,7 @@ def command(
     points: int,
     asked: GroundMotions,
     near: Near,
+    site: str | None,
     output: Output,
 ) -> None:
     """Find the least thickness, width or tie force, or the largest load, for which a requirement holds.
@@ -68,6 +71,7 @@ def command(
     The metrics are lambda, phi_cr and p of `rocking equiv`, the smaller phi_cr and lambda and the larger p of both
     directions; and, with a ground motion, of the motions next to it the share that overturn (overturned) and the peak
     over the critical rotation that half of them do not exceed (peak_ratio). Of several motions the worst counts.
+    alpha0 and, with --site, the zeta_E of a method are those of `rocking verify`, the smaller of both directions.
 
     The range is scanned first. Where the metric never turns over it, there is one answer, found closely; where it does,
     every range in which the requirement holds is given. That it holds nowhere, or everywhere, is a result.
@@ -87,6 +91,10 @@ def command(
         raise click.UsageError(f"{until.metric.name} is of the structure alone: leave out --record and --pulse.")
     if until.metric.shaken and not near.neighbours:
         raise click.UsageError(f"{until.metric.name} is of neighbours: --neighbours must be at least 1 here.")
+    if until.metric.sited and site is None:
+        raise click.UsageError(f"{until.metric.name} is of a site: give --site FILE; `rocking new site` prints one.")
+    if site is not None and not until.metric.sited:
+        raise click.UsageError(f"{until.metric.name} asks for no site: leave --site out.")
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
@@ -107,6 +115,11 @@ def command(
         if not chosen:
             ctx.exit(InputError.exit_code)
         shaking = _shaking(chosen, asked, near)
+    elif site is not None:
+        from rocking_cli.studies.metrics import Shaking as Conditions
+        from rocking_cli.studies.verification.check import read_site
+
+        shaking = Conditions([], site=read_site(Path(site)))
     found = _design(varied, span, until, shaking, points)
     output.write(lambda: [columns(found)], lambda: _draw(found))
     terminal.show(view(found, shaking), as_json=output.as_json)

@@ -296,6 +296,10 @@ def scaling(*polarities: str, both: str = "one after the other", default: str = 
     )
 
 
+site: Decorator = click.option(
+    "--site", type=click.Path(), metavar="SITE.yaml", help="Where it stands, as for `rocking verify`."
+)
+
 shape: Decorator = click.option(
     "--shape",
     default="sine",

@@ -67,6 +67,7 @@ class Results:
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse of the two")
+@options.site
 @click.option(
     "--top", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="How many are shown."
 )  # fmt: skip
@@ -79,7 +80,7 @@ class Results:
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, results=Results)
-def command(ctx: click.Context, file: str, asked: GroundMotions, results: Results) -> None:
+def command(ctx: click.Context, file: str, asked: GroundMotions, site: str | None, results: Results) -> None:
     """Rank many structures, a row of a table each, by how vulnerable they are.
 
     Columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for what is inside (loads.0.mass,
@@ -87,7 +88,8 @@ def command(ctx: click.Context, file: str, asked: GroundMotions, results: Result
     change. An empty cell is a field that is not given; units stand in cells (800 mm) or headings (width [mm]).
 
     Without a ground motion they are ranked by the acceleration at uplift; with some by the share of the motions that
-    overturn them, then by the largest peak, by the nonlinear model. TABLE.csv may be - for standard input.
+    overturn them, then by the largest peak, by the nonlinear model. With --site each is verified by its code, and they
+    are ranked by the ratio. TABLE.csv may be - for standard input.
 
     A row that cannot be used is reported with its line, the others are done, and the exit code is 5.
 
@@ -111,7 +113,7 @@ def command(ctx: click.Context, file: str, asked: GroundMotions, results: Result
         chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, 0.0)
         if not chosen:
             ctx.exit(InputError.exit_code)
-    found = _survey(table, chosen, asked)
+    found = _survey(table, chosen, asked, site)
     _report(found, table.sheet.file)
     if not found.rows:
         first = found.bad[0].error
@@ -143,16 +145,18 @@ def _table(file: str) -> StructureTable:
     return table
 
 
-def _survey(table: StructureTable, chosen: list[Scaled], asked: GroundMotions) -> Survey:
+def _survey(table: StructureTable, chosen: list[Scaled], asked: GroundMotions, site: str | None) -> Survey:
     from rocking_cli.cli.waiting import compile_first
     from rocking_cli.studies.survey import survey
+    from rocking_cli.studies.verification.check import read_site
 
+    where = read_site(Path(site)) if site is not None else None
     motions: list[Any] = [each.motion.scaled(each.factor) for each in chosen]
     if motions:
         compile_first()
-    count = _processes(len(table), bool(motions))
+    count = _processes(len(table), bool(motions) or where is not None)
     with terminal.progress(len(table), "structures") as advance:
-        return survey(table, motions, asked.signs, processes=count, progress=advance)
+        return survey(table, motions, asked.signs, site=where, processes=count, progress=advance)
 
 
 def _processes(rows: int, shaken: bool) -> int | None:

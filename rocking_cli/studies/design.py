@@ -225,6 +225,9 @@ def design(
     metric that turns there may hide a range. Where a metric of histories turns over the scan, edges are its values and
     no closer: a root would be one of many.
     """
+    if aim.metric.sited and (shaking is None or shaking.site is None):
+        hint = "give the file of a site: `rocking new site` prints one"
+        raise InputError(Problem(f"{aim.metric.name} is of a site", field="`site`", hint=hint))
     if aim.metric.shaken and (shaking is None or not shaking.motions or not shaking.around.count):
         message = f"{aim.metric.name} needs a ground motion, and neighbours of it"
         raise InputError(Problem(message, hint="give `records` or `pulses`"))

@@ -10,6 +10,9 @@ from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
+from rocking_cli.studies.verification.chain import Chain
+from rocking_cli.studies.verification.check import verify
+from rocking_cli.studies.verification.site_file import SiteFile
 from rocking_cli.text import cut, did_you_mean
 
 
@@ -25,11 +28,14 @@ class Shaking:
         Of 1 and -1; the worse counts.
     around : Around
         How the neighbours of each motion are drawn.
+    site : SiteFile, optional
+        Where it stands, for what a code asks.
     """
 
     motions: Sequence[GroundMotion]
     polarities: Sequence[int] = (1,)
     around: Around = field(default_factory=Around)
+    site: SiteFile | None = None
 
     def each(self, structure: Prepared) -> list[Neighbours]:
         """The neighbours of every motion, both ways where a structure and the polarities differ."""
@@ -55,6 +61,8 @@ class Metric:
         `InputError` or `MechanismError` where the structure has none.
     shaken : bool
         Whether it needs ground motions: then it is a share of histories, or a fractile, and moves by steps.
+    sited : bool
+        Whether it needs a site.
     """
 
     name: str
@@ -62,6 +70,7 @@ class Metric:
     meaning: str
     value: Callable[[Prepared, Shaking | None], float]
     shaken: bool = False
+    sited: bool = False
 
 
 def _lambda(structure: Prepared, shaking: Shaking | None) -> float:
@@ -87,6 +96,21 @@ def _overturned(structure: Prepared, shaking: Shaking | None) -> float:
     return max(near.overturned for near in shaking.each(structure))
 
 
+def _alpha0(structure: Prepared, shaking: Shaking | None) -> float:
+    mechanism = structure.mechanism
+    structure.statics  # noqa: B018 - what does not stand is refused with its name
+    return min(Chain(mechanism, direction).alpha0 for direction in mechanism.directions)
+
+
+def _zeta(method: str) -> Callable[[Prepared, Shaking | None], float]:
+    def value(structure: Prepared, shaking: Shaking | None) -> float:
+        assert shaking is not None and shaking.site is not None
+        found = [each.methods[method].zeta for each in verify(structure, shaking.site).directions.values()]
+        return min((each for each in found if each is not None), default=nan)
+
+    return value
+
+
 METRICS: Mapping[str, Metric] = {
     each.name: each
     for each in (
@@ -96,6 +120,12 @@ METRICS: Mapping[str, Metric] = {
         Metric("peak_ratio", "", "peak rotation over the critical one that half of the neighbours do not exceed",
                _peak_ratio, shaken=True),
         Metric("overturned", "", "share of the neighbours that overturn", _overturned, shaken=True),
+        Metric("alpha0", "", "multiplier that starts the mechanism, by the code of `verify`, the smaller one", _alpha0),
+        *(
+            Metric(f"zeta_{method}", "", f"what it can take over what is asked for, by the {method} method of `verify`",
+                   _zeta(method), sited=True)
+            for method in ("damage", "linear", "nonlinear")
+        ),
     )
 }  # fmt: skip
 """Every metric; one more is one more line here."""

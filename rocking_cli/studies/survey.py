@@ -20,6 +20,8 @@ from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.processes import in_processes
 from rocking_cli.errors import InputError, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.studies.verification.check import verify
+from rocking_cli.studies.verification.site_file import SiteFile
 
 PART = 8  # structures that a thread has in memory at a time: the tables of each are one megabyte, at most ten
 
@@ -88,6 +90,9 @@ class Surveyed:
         What is doubtful about its size.
     under : Under, optional
         What ground motions do to it, if there are any.
+    ratio : float
+        What the code of a site allows over what it asks for, in the direction where that is less: it passes from 1.
+        NaN without a site.
     """
 
     row: int
@@ -105,6 +110,7 @@ class Surveyed:
     no_block: str | None = None
     doubt: str | None = None
     under: Under | None = None
+    ratio: float = nan
 
 
 @dataclass(frozen=True)
@@ -150,7 +156,11 @@ def _by_response(found: Surveyed) -> tuple[float, ...]:
     return (-found.under.overturned, -(inf if isnan(peak) else peak), found.uplift)
 
 
-ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response}
+def _by_ratio(found: Surveyed) -> tuple[float, ...]:
+    return (found.ratio, found.uplift)
+
+
+ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "ratio": _by_ratio}
 """By what structures are ranked: of two the one with the smaller key is the more vulnerable."""
 
 
@@ -181,6 +191,7 @@ def survey(
     motions: Sequence[GroundMotion] = (),
     polarities: Sequence[int] = (1,),
     *,
+    site: SiteFile | None = None,
     threads: int | None = None,
     processes: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -195,6 +206,8 @@ def survey(
         What shakes them, as scaled.
     polarities : sequence of int
         Of 1 and -1; with both, the worse counts.
+    site : SiteFile, optional
+        Where they stand: each is verified by its code.
     threads : int, optional
         How many at a time; without it, one for each processor.
     processes : int, optional
@@ -207,35 +220,44 @@ def survey(
     -------
     Survey
         Ranked by uplift acceleration; with motions by the share that overturns, then by the largest peak, then by
-        uplift acceleration. Equal ones keep their order.
+        uplift acceleration; with a site by the ratio of its code. Equal ones keep their order.
     """
     found: list[Surveyed | Bad | None] = [None] * len(entries)
 
     def work(first: int, stop: int) -> None:
-        found[first:stop] = _part(entries, range(first, stop), motions, polarities)
+        found[first:stop] = _part(entries, range(first, stop), motions, polarities, site)
 
     if processes is None:
         in_parts(work, len(entries), PART, threads, progress)
     else:
-        whole = partial(_places, entries, motions, polarities)
+        whole = partial(_places, entries, motions, polarities, site)
         for first, part in in_processes(whole, len(entries), PART, processes):
             found[first : first + len(part)] = part
             if progress is not None:
                 progress(len(part))
-    by = "response" if motions else "lambda"
+    by = "ratio" if site is not None else "response" if motions else "lambda"
     good = sorted((each for each in found if isinstance(each, Surveyed)), key=ORDERS[by])
     return Survey(good, [each for each in found if isinstance(each, Bad)], [each.name for each in motions], by)
 
 
 def _places(
-    entries: Sequence[Entry], motions: Sequence[GroundMotion], polarities: Sequence[int], first: int, stop: int
+    entries: Sequence[Entry],
+    motions: Sequence[GroundMotion],
+    polarities: Sequence[int],
+    site: SiteFile | None,
+    first: int,
+    stop: int,
 ) -> list[Surveyed | Bad | None]:
     """What is found of the structures from a number to before another, in any process."""
-    return _part(entries, range(first, stop), motions, polarities)
+    return _part(entries, range(first, stop), motions, polarities, site)
 
 
 def _part(
-    entries: Sequence[Entry], places: range, motions: Sequence[GroundMotion], polarities: Sequence[int]
+    entries: Sequence[Entry],
+    places: range,
+    motions: Sequence[GroundMotion],
+    polarities: Sequence[int],
+    site: SiteFile | None,
 ) -> list[Surveyed | Bad | None]:
     """What is found of some structures."""
     ready: dict[int, Prepared] = {}
@@ -245,7 +267,7 @@ def _part(
         entry = entries[place]
         try:
             ready[k] = Prepared(entry.make())
-            found[k] = _alone(place, entry, ready[k])
+            found[k] = _alone(place, entry, ready[k], site)
             if _may_lift(ready[k], motions):
                 models[k] = ready[k].model("nonlinear")
         except RockingError as error:
@@ -272,7 +294,7 @@ def _placed(error: RockingError, entry: Entry) -> RockingError:
     )
 
 
-def _alone(place: int, entry: Entry, structure: Prepared) -> Surveyed:
+def _alone(place: int, entry: Entry, structure: Prepared, site: SiteFile | None) -> Surveyed:
     """A structure without ground motions."""
     mechanism, sides = structure.mechanism, structure.statics
     k = int(sides[1].lambda_ < sides[0].lambda_ * (1 - 1e-9))
@@ -294,7 +316,16 @@ def _alone(place: int, entry: Entry, structure: Prepared) -> Surveyed:
         structure.etas[k],
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
         doubtful_size(mechanism),
+        ratio=_ratio(structure, site) if site is not None else nan,
     )
+
+
+def _ratio(structure: Prepared, site: SiteFile) -> float:
+    """What the code of a site allows over what it asks for: in the direction that governs, by what governs there."""
+    found = verify(structure, site)
+    worst = found.directions[found.governs]
+    ratios = [worst.states[found.first].ratio, worst.counts.zeta if worst.governs == "damage" else None]
+    return next((each for each in reversed(ratios) if each is not None), nan)
 
 
 def _may_lift(structure: Prepared, motions: Sequence[GroundMotion]) -> bool:

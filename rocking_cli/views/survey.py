@@ -21,6 +21,7 @@ FORMULA = ("=", "+", "-", "@")
 """What a text begins with that a spreadsheet would take for a formula."""
 RANKED = {
     "lambda": "by the ground acceleration that lifts them",
+    "ratio": "by what the code of the site allows over what it asks for: those below 1 do not pass",
     "response": "by the share of motions that overturn them, then by the largest peak of the others, then by uplift",
 }
 
@@ -55,12 +56,14 @@ def _row(rank: int, each: Surveyed) -> dict[str, Any]:
             "peak_over": each.under.over,
             "worst": each.under.worst,
         }
+    verified = {} if isnan(each.ratio) else {"ratio": each.ratio}
     return {
         "rank": rank,
         "name": each.name,
         "mechanism": each.mechanism,
         "row": each.row,
         "line": each.line,
+        **verified,
         **shaken,
         "lambda": each.lambda_,
         "uplift": each.uplift,
@@ -106,7 +109,8 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_sprea
 def headings(found: Survey) -> list[str]:
     """Those of `cells`."""
     shaken = ["overturn\nit", "largest\npeak"] if found.motions else []
-    return ["rank", "name", "mechanism", *shaken, "lambda", "p\n[rad/s]", "phi_cr\n[rad]", "kappa2", "eta"]
+    ratio = ["ratio"] if found.by == "ratio" else []
+    return ["rank", "name", "mechanism", *ratio, *shaken, "lambda", "p\n[rad/s]", "phi_cr\n[rad]", "kappa2", "eta"]
 
 
 def cells(rank: int, each: Surveyed, longest: int | None = NAME) -> list[str]:
@@ -120,6 +124,7 @@ def cells(rank: int, each: Surveyed, longest: int | None = NAME) -> list[str]:
         str(rank),
         cut(name, longest) if longest is not None else name,
         each.mechanism,
+        *([] if isnan(each.ratio) else [number(each.ratio, 4)]),
         *shaken,
         *(number(value, 4) for value in numbers),
     ]
