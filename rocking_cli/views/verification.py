@@ -67,18 +67,19 @@ def _of_direction(found: Verification, each: Verified, where: str) -> list[Table
 
 
 def _site(found: Verification) -> Table:
-    """What is the same in both directions, with the formula of each number."""
-    rows = [
-        [
-            line.symbol,
-            number(line.value),
-            line.unit,
-            f"{line.formula} = {line.numbers}".removesuffix(" = "),
-            _clause(line),
-        ]
-        for line in found.workings
-    ]
-    return Table("Site", ["", "value", "unit", "formula", "clause"], rows, numbers=(1,))
+    """What is the same in both directions, with the formula of each number; a column for each limit state."""
+    rows: dict[str, dict[str, Working]] = {}
+    for line in found.workings:
+        symbol, _, state = line.symbol.partition(",")
+        rows.setdefault(symbol, {})[state] = line
+    states = list(dict.fromkeys(state for each in rows.values() for state in each if state))
+    cells = []
+    for symbol, each in rows.items():
+        known = [each.get(state, each.get("")) for state in states]
+        one = next(iter(each.values()))
+        values = [number(line.value) if line is not None else ABSENT for line in known]
+        cells.append([symbol, *values, one.unit, one.formula, _clause(one)])
+    return Table("Site", ["", *states, "unit", "formula", "clause"], cells, numbers=range(1, len(states) + 1))
 
 
 def _clause(line: Working) -> str:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from math import inf, pi, sqrt
 from typing import Protocol
 
@@ -156,7 +155,14 @@ class TableSpectrum:
         return 1.0
 
     @cached_property
+    def _known(self) -> tuple[Reals, Reals]:
+        """Periods [s] and accelerations [m/s2], with the factor."""
+        T, a = np.array(self.points, dtype=np.float64).T
+        return T, self.factor * STANDARD_GRAVITY * a
+
+    @cached_property
     def _ramp(self) -> float:
+        """The period up to which the correction for damping grows in [s]."""
         return max(self.points, key=lambda each: each[1])[0]
 
     def with_ag(self, ag: float) -> TableSpectrum:
@@ -166,28 +172,35 @@ class TableSpectrum:
     def acceleration(self, period: float, damping: float) -> float:
         """S_e [m/s2]. Raises `InputError` beyond the table."""
         self._check(period)
-        known = np.array(self.points)
-        eta = correction(damping)
-        by = eta if period >= self._ramp else 1 - (1 - eta) * period / self._ramp
-        return float(np.interp(period, known[:, 0], known[:, 1])) * by * self.factor * STANDARD_GRAVITY
+        return float(self._at(np.array([period]), damping)[0])
 
     def displacement(self, period: float, damping: float) -> float:
         """The largest S_e (t/2 pi)^2 from T0 to a period [m; C8.7.1.2.1.8]. Raises `InputError` beyond the table."""
         self._check(period)
-        where = [min(self.start, period), period]
-        knots = sorted({*(T for T, _ in self.points), self._ramp})
-        for low, high in pairwise(knots):
-            where += [low, *self._turns(low, high, damping)]
-        counted = [t for t in where if where[0] <= t <= period]
-        return max(self.acceleration(t, damping) * (t / (2 * pi)) ** 2 for t in counted)
+        start = min(self.start, period)
+        knots = np.union1d(self._known[0], self._ramp)
+        t = np.concatenate([[start, period], knots, self._turns(knots, damping)])
+        t = t[(t >= start) & (t <= period)]
+        return float((self._at(t, damping) * (t / (2 * pi)) ** 2).max())
 
-    def _turns(self, low: float, high: float, damping: float) -> list[float]:
-        """Where S_e t^2 turns between two periods, between which it is a polynomial."""
-        middle = [low + share * (high - low) for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
-        values = [self.acceleration(t, damping) * t**2 for t in middle]
-        slope = np.polynomial.Polynomial.fit(middle, values, 4, domain=[low, high]).deriv()
-        found = [complex(z) for z in slope.roots()]
-        return [z.real for z in found if abs(z.imag) < 1e-9 and low < z.real < high]
+    def _at(self, T: Reals, damping: float) -> Reals:
+        eta = correction(damping)
+        share = np.minimum(T / self._ramp, 1.0) if self._ramp > 0 else np.ones_like(T)
+        return np.asarray(np.interp(T, *self._known) * (1 - (1 - eta) * share))
+
+    def _turns(self, knots: Reals, damping: float) -> Reals:
+        """Where S_e t^2 turns between two periods: S_e is (p + q t)(r + s t) there."""
+        low, high = knots[:-1], knots[1:]
+        a, b = np.interp(low, *self._known), np.interp(high, *self._known)
+        q = (b - a) / (high - low)
+        p, s = a - q * low, np.where(high <= self._ramp, (correction(damping) - 1) / (self._ramp or 1.0), 0.0)
+        r = np.where(high <= self._ramp, 1.0, correction(damping))
+        square, linear, constant = 4 * q * s, 3 * (p * s + q * r), 2 * p * r
+        with np.errstate(divide="ignore", invalid="ignore"):
+            root = np.sqrt(linear**2 - 4 * square * constant)
+            found = [(-linear + sign * root) / (2 * square) for sign in (1, -1)]
+            found = [*found, -constant / linear]  # where it is no square, or nearly none
+        return np.concatenate([each[(each > low) & (each < high)] for each in found])
 
     def _check(self, period: float) -> None:
         last = self.points[-1][0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from math import sqrt
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -24,8 +24,9 @@ from rocking_cli.studies.verification.codes.italian.hazard import (
 )
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
 from rocking_cli.studies.verification.results import Method, State
-from rocking_cli.studies.verification.working import Working
+from rocking_cli.studies.verification.working import Standing, Working
 
+CHAIN = "C8.7.1.1"
 STATES = ("SLD", "SLV", "SLC")
 
 
@@ -55,10 +56,10 @@ def _of_hazard(ground: Ground, state: str) -> Iterator[Working]:
     ag, F0, TC_star = hazard.parameters(TR)
     S_S, S_T, C_C = soil_factor(site.soil or "A", F0, ag), TOPOGRAPHY[site.topography], corner_factor(
         site.soil or "A", TC_star)  # fmt: skip
-    table = "interpolated on logarithms at TR"
-    yield Working(f"a_g,{state}", "ground acceleration on rock", table, f"TR = {_n(TR)}", ag, "g", "3.2")
-    yield Working(f"F0,{state}", "amplification", table, f"TR = {_n(TR)}", F0, "", "3.2")
-    yield Working(f"TC*,{state}", "period on rock", table, f"TR = {_n(TR)}", TC_star, "s", "3.2")
+    table = "interpolated on logarithms"
+    yield Working(f"a_g,{state}", "ground acceleration on rock", table, f"at TR = {_n(TR)}", ag, "g", "3.2")
+    yield Working(f"F0,{state}", "amplification", table, f"at TR = {_n(TR)}", F0, "", "3.2")
+    yield Working(f"TC*,{state}", "period on rock", table, f"at TR = {_n(TR)}", TC_star, "s", "3.2")
     put = f"{_n(S_S)} x {_n(S_T)}"
     yield Working(f"S,{state}", "soil and topography", "S_S S_T", put, S_S * S_T, "", "3.2.3")
     put = f"{_n(C_C)} x {_n(TC_star)}"
@@ -117,15 +118,14 @@ def of_direction(
 
 
 def _of_chain(chain: Chain) -> Iterator[Working]:
+    letter: Standing = "code" if chain.is_by_the_letter else "ours"
+    size, unit = (1e3, "kN") if chain.mechanism.has_mass else (1.0, "N per kg")
     for k, block in enumerate(chain.blocks, 1):
-        which = f"of {' and '.join(block.bodies)}"
-        at = f"barycentre of P + Q at [{_n(block.at.real)}, {_n(block.at.imag)}] m"
-        yield Working(f"P{k}", f"weight carried {which}", "", "", block.P / 1e3, "kN", "C8.7.1.1")
-        yield Working(
-            f"P{k} + Q{k}", f"weight moved sideways {which}", "", at, block.PQ / 1e3, "kN", "C8.7.1.1", "ours"
-        )
-        yield Working(f"x{k}'", f"virtual displacement sideways {which}", "", "", block.dx, "m", "C8.7.1.1")
-        yield Working(f"y{k}'", f"virtual displacement upwards {which}", "", "", block.dy, "m", "C8.7.1.1")
+        which, at = f"of {' and '.join(block.bodies)}", f"at [{_n(block.at.real)}, {_n(block.at.imag)}] m"
+        yield Working(f"P{k}", f"weight carried {which}", "", "", block.P / size, unit, CHAIN)
+        yield Working(f"P{k} + Q{k}", f"weight moved sideways {which}", "", at, block.PQ / size, unit, CHAIN, letter)
+        yield Working(f"x{k}'", f"virtual displacement sideways {which}", "", "", block.dx, "m", CHAIN)
+        yield Working(f"y{k}'", f"virtual displacement upwards {which}", "", "", block.dy, "m", CHAIN)
     forces, ties = chain.held_by(ties=False), chain.held_by(ties=True)
     put = f"({_n(chain.lifted)} + {_n(forces)} + {_n(ties)})/{_n(chain.first)}"
     formula = "(sum P y' - sum F.r' + internal work)/sum (P+Q) x'"
@@ -153,7 +153,7 @@ def _of_curve(curve: ExactCurve) -> Iterator[Working]:
     at = f"[{_n(curve.control.at.real)}, {_n(curve.control.at.imag)}] m"
     yield Working(
         "x_C'", f"virtual displacement of the control point, {where}", "", at, chain.sideways(curve.control), "m",
-        "C8.7.1.4", "ours",
+        "C8.7.1.4", "ours" if curve.control.body is None else "code",
     )  # fmt: skip
 
 
@@ -207,8 +207,3 @@ def _of_methods(methods: Mapping[str, Method]) -> Iterator[Working]:
         if method.zeta is not None and method.asked is not None:
             put = f"{_n(method.a_g)}/{_n(method.asked)}"
             yield Working(f"zeta_E,{key}", "capacity over demand", "a_g S of both", put, method.zeta, "", method.clause)
-
-
-def marked(workings: Sequence[Working]) -> list[str]:
-    """The symbols that are our reading, each once."""
-    return list(dict.fromkeys(each.symbol for each in workings if each.standing == "ours"))
