@@ -30,6 +30,7 @@ from rocking_cli.api.verbs import respond_each as respond_each
 from rocking_cli.api.verbs import response_spectrum as response_spectrum
 from rocking_cli.api.verbs import spectrum as spectrum
 from rocking_cli.api.verbs import write_report as write_report
+from rocking_cli.api.verification import verify as verify
 from rocking_cli.core import Body as Body
 from rocking_cli.core import Direction as Direction
 from rocking_cli.core import Equivalence as Equivalence

@@ -259,7 +259,7 @@ class TestCompletion:
         [
             (("resp",), {"respond"}),
             (("mechanisms", "a"), {"arch", "asymmetric_frame"}),
-            (("new", "s"), {"spanning_wall", "statue", "study", "symmetric_frame"}),
+            (("new", "s"), {"site", "spanning_wall", "statue", "study", "symmetric_frame"}),
             (("pulse", "--shape", "ric"), {"ricker", "ricker_antisymmetric"}),
             (("respond", "--pulse", "s"), {"sine:"}),
             (("respond", "--model", "linear1,"), {"linear1,nonlinear", "linear1,linear2"}),

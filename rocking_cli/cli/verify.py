@@ -48,12 +48,19 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse of the two")
+@options.plot("Draw the capacity curves")
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions)
 def command(
-    ctx: click.Context, file: str | None, site_file: str, control: Point | None, asked: GroundMotions, as_json: bool
-) -> None:  # fmt: skip
+    ctx: click.Context,
+    file: str | None,
+    site_file: str,
+    control: Point | None,
+    asked: GroundMotions,
+    plot: Path | None,
+    as_json: bool,
+) -> None:
     """Verify a rocking mechanism by the code that the site file names: the Italian, NTC 2018 and Circolare 7/2019.
 
     Damage, linear and nonlinear method side by side for each direction, on the exact capacity curve and on the
@@ -76,16 +83,23 @@ def command(
     if not asked and asked.polarity != "1":
         raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
     from rocking_cli.cli import structures
+    from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.verification.check import control_at, read_site, verify
     from rocking_cli.views.verification import view
 
     paths, missing = motion_files.find(asked.records)
+    keep_apart([("--plot", plot)], [file, site_file, *(str(each.path) for each in paths)])
     site = read_site(Path(site_file))
     structure = structures.prepared([file] if file else [])
     found = verify(structure, site, control_at(structure.mechanism, *control) if control is not None else None)
     refused = 0
     if asked:
         found, refused = _histories(found, structure, site, asked, paths)
+    if plot is not None:
+        from rocking_cli.cli.pictures import write_picture
+        from rocking_cli.plotting.verification import draw_verification
+
+        write_picture(plot, draw_verification(found))
     terminal.show(view(found, site.site.name), as_json=as_json)
     if missing or refused:
         ctx.exit(INCOMPLETE)

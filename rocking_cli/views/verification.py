@@ -17,23 +17,23 @@ CURVES = ("exact", "straight")
 
 def view(found: Verification, site: str | None = None) -> View:
     """The methods side by side for each direction, which governs, and why they differ."""
-    shown = _shown(found)
+    sides = shown(found)
     parts: list[Table | str] = [
         f"{heading(found.mechanism)}, by the {found.code} ({found.edition}){f', at {site}' if site else ''}"
     ]
     parts.append(_site(found))
-    for where, each in shown.items():
+    for where, each in sides.items():
         parts += _of_direction(found, each, where)
-    if len(found.directions) > 1 and len(shown) > 1:
+    if len(found.directions) > 1 and len(sides) > 1:
         parts.append(words.which_direction(found))
     parts += found.remarks
-    all_workings = [*found.workings, *(line for each in shown.values() for line in each.workings)]
+    all_workings = [*found.workings, *(line for each in sides.values() for line in each.workings)]
     parts.append(words.standing(all_workings))
     parts += [f"Caution: {found.mechanism.caution}"] if found.mechanism.caution else []
     return View(lambda: data(found), [part for part in parts if part])
 
 
-def _shown(found: Verification) -> dict[str, Verified]:
+def shown(found: Verification) -> dict[str, Verified]:
     """The directions that differ, by what they are called."""
     each = list(found.directions.values())
     if len(each) == 1:
@@ -78,6 +78,7 @@ def _site(found: Verification) -> Table:
     for symbol, each in rows.items():
         known = [each.get(state, each.get("")) for state in states]
         one = next(iter(each.values()))
+        known = known or [each[""]]
         values = [number(line.value) if line is not None else ABSENT for line in known]
         cells.append([symbol, *values, one.unit, one.formula, _clause(one)])
     return Table("Site", ["", *states, "unit", "formula", "clause"], cells, numbers=range(1, len(states) + 1))

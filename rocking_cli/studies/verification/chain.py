@@ -154,6 +154,12 @@ class Chain:
         """The work per unit rotation that ties take at rest, or that forces take: internal work, or -F.r' [N m]."""
         return sum(self._moment(thing) for thing in self.mechanism.attached if bool(springs_of(thing)) == ties)
 
+    @property
+    def works(self) -> dict[str, float]:
+        """The work per unit rotation that each force and tie takes at rest, by its name [N m]."""
+        held = [thing for thing in self.mechanism.attached if not isinstance(thing, PointMass)]
+        return {thing.name: self._moment(thing) for thing in held}
+
     def _moment(self, thing: Attached) -> float:
         rest = np.zeros(1)
         total = Coefficients(rest, *(np.zeros(1) for _ in range(7)))

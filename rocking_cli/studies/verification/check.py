@@ -11,16 +11,26 @@ from rocking_cli.core.attachments import Carrier, Refused
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.io.yaml_file import Document
 from rocking_cli.studies.verification import dynamic, site_file
 from rocking_cli.studies.verification.chain import Control
 from rocking_cli.studies.verification.codes import codes
 from rocking_cli.studies.verification.results import Dynamic, Verification
-from rocking_cli.studies.verification.site_file import SiteFile
+from rocking_cli.studies.verification.site_file import Site, SiteFile
 
 
 def read_site(path: Path) -> SiteFile:
     """Read a site, for any code there is. Raises `InputError` with every problem of the file."""
-    return site_file.read_site(path, {key: code.site for key, code in codes().items()})
+    return site_file.read_site(path, _models())
+
+
+def site_in(document: Document) -> SiteFile:
+    """The site in a parsed file. Raises `InputError` with every problem of it."""
+    return site_file.site_of(document, _models())
+
+
+def _models() -> dict[str, type[Site]]:
+    return {key: code.site for key, code in codes().items()}
 
 
 def control_at(mechanism: Mechanism, x: float, y: float, body: str | None) -> Control:

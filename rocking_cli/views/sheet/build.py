@@ -96,21 +96,15 @@ def _reading(say: Language, found: Verification) -> Part:
 def _inputs(say: Language, found: Verification, title: TitleBlock, made: Made) -> Part:
     files = [("structure_file", made.structure), ("site_file", made.site)]
     rows = [[say.say(kind), file.name, file.checksum] for kind, file in files]
-    rows += [
-        [
-            say.say("record_file"),
-            name if file is None else file.name,
-            say.say("pulse") if file is None else file.checksum,
-        ]
-        for name, file in made.records.items()
-    ]
+    for name, file in made.records.items():
+        seen = [name, say.say("pulse")] if file is None else [file.name, file.checksum]
+        rows.append([say.say("record_file"), *seen])
+    versions = [[*each] for each in made.versions.items()]
     items: list[Item] = [
         Sentence(say.say("inputs_are")),
         Listing(title.command),
         Grid(say.say("files"), ["", say.say("file"), "SHA-256"], rows),
-        Grid(
-            say.say("versions"), [say.say("package"), say.say("version")], [[*each] for each in made.versions.items()]
-        ),
+        Grid(say.say("versions"), [say.say("package"), say.say("version")], versions),
         Sentence(say.say("source", source=found.mechanism.source)),
     ]
     texts = [Part(kind, say.say(kind), list(_text(say, file))) for kind, file in

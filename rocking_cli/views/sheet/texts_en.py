@@ -31,10 +31,10 @@ TEXTS = {
     # how to read it
     "reading": "How to read it",
     "reading_digits": (
-        "Every number is printed to {digits} significant digits, and computed on with all of its digits: recomputed from "
-        "printed numbers, a result agrees to one unit or so of the fifth digit. Lengths are in m, forces in {force}, "
-        "accelerations in m/s² or in g = 9.80665 m/s², angles in rad. A virtual displacement is per unit rotation of "
-        "the mechanism. A symbol has the value that was last computed for it above."
+        "Every number is printed to {digits} significant digits, and computed on with all of its digits: recomputed "
+        "from printed numbers, a result agrees to one unit or so of the fifth digit. Lengths are in m, forces in "
+        "{force}, accelerations in m/s² or in g = 9.80665 m/s², angles in rad. A virtual displacement is per unit "
+        "rotation of the mechanism. A symbol has the value that was last computed for it above."
     ),
     "reading_marks": (
         "† is a formula of the code that was not yet held against its printed text: check it there before you rely on "

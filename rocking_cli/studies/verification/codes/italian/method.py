@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.studies.verification.chain import Chain, Control
 from rocking_cli.studies.verification.codes.italian import wordings, workings
@@ -100,7 +99,13 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     ground = Ground(site)
     found = {direction: _verified(mechanism, direction, ground, control) for direction in mechanism.directions}
     return Verification(
-        mechanism, NAME, EDITION, "SLV", found, workings.of_ground(ground), wordings.of_site(ground, found.values())
+        mechanism,
+        NAME,
+        EDITION,
+        "SLV",
+        found,
+        workings.of_ground(ground),
+        wordings.of_site(ground, list(found.values())),
     )
 
 
@@ -112,7 +117,13 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
     states = {rule.state: case.state(rule) for rule in RULES}
     on_line = {rule.state: line.state(rule) for rule in RULES}
     methods = case.methods(states)
-    verified = Verified(
+    remarks = wordings.of_direction(exact, states, ground)
+    if control is not None:
+        usual = ExactCurve(chain, chain.barycentre, ground.site.FC)
+        by_it = _Case(ground, usual)
+        others = by_it.methods({rule.state: by_it.state(rule) for rule in RULES})
+        remarks.append(wordings.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
+    return Verified(
         direction=direction,
         exact=exact,
         lambda_=mechanism.uplift(direction),
@@ -125,17 +136,11 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         straight_methods=line.methods(on_line),
         governs=_governs(methods),
         workings=workings.of_direction(exact, states, methods, ground),
-        remarks=wordings.of_direction(exact, states, ground, standard=control is None),
+        remarks=remarks,
     )
-    return verified
 
 
 def _governs(methods: Mapping[str, Method]) -> str:
     """The method that counts: the nonlinear one is never below damage."""
     damage, nonlinear = methods[DAMAGE].a_g, methods[NONLINEAR].a_g
     return DAMAGE if damage is not None and nonlinear is not None and damage > nonlinear else NONLINEAR
-
-
-def in_g(acceleration: float) -> float:
-    """An acceleration [m/s2] in standard gravity."""
-    return acceleration / STANDARD_GRAVITY

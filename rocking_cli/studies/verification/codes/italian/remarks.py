@@ -52,6 +52,10 @@ ENGLISH = {
     "control": (
         "With this control point d0* is {d0:.4g} m, {change:.3g} % {side} than {own:.4g} m by the barycentre of P + Q."
     ),
+    "control_a_g": (
+        "With this control point d0* is {d0:.4g} m, {change:.3g} % {side} than {own:.4g} m by the barycentre of P + Q; "
+        "the nonlinear method allows {a_g:.4g} g, by the barycentre {usual:.4g} g."
+    ),
 }
 ITALIAN = {
     "and": "{one} e {other}",
@@ -107,6 +111,10 @@ ITALIAN = {
     "control": (
         "Con questo punto di controllo d0* vale {d0:.4g} m, il {change:.3g} % {side} rispetto a {own:.4g} m del "
         "baricentro di P + Q."
+    ),
+    "control_a_g": (
+        "Con questo punto di controllo d0* vale {d0:.4g} m, il {change:.3g} % {side} rispetto a {own:.4g} m del "
+        "baricentro di P + Q; il metodo non lineare ammette {a_g:.4g} g, con il baricentro {usual:.4g} g."
     ),
 }
 TEXTS = {"en": ENGLISH, "it": ITALIAN}

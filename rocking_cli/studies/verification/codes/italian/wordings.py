@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -13,7 +13,7 @@ from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.hazard import LONGEST, SHORTEST, return_period
 from rocking_cli.studies.verification.codes.italian.remarks import TEXTS
 from rocking_cli.studies.verification.codes.italian.rules import RULES
-from rocking_cli.studies.verification.results import State, Verified
+from rocking_cli.studies.verification.results import Method, State, Verified
 from rocking_cli.studies.verification.told import Told
 
 LONG = 4.0  # s: above it the code asks for a study of the site, or records
@@ -31,7 +31,7 @@ def _named(states: Sequence[str]) -> str:
     return states[0] if len(states) == 1 else _told("and", one=states[0], other=states[1])
 
 
-def of_site(ground: Ground, found: Iterable[Verified]) -> list[str]:
+def of_site(ground: Ground, found: Collection[Verified]) -> list[str]:
     """Of the site and of both directions."""
     said: list[str] = [*_of_spectrum(ground), *_of_lives(ground)]
     periods = [state.T for each in found for state in each.states.values() if state.demand is not None]
@@ -41,7 +41,8 @@ def of_site(ground: Ground, found: Iterable[Verified]) -> list[str]:
     missing = [state for state in ("SLC", "SLD") if ground.spectrum(state) is None]
     if missing:
         said.append(_told("missing", states=_named(missing)))
-    if ground.site.FC < LEAST_CONFIDENT:
+    crushes = any(each.chain.mechanism.crushing is not None for each in found)
+    if ground.site.FC < LEAST_CONFIDENT and not crushes:
         said.append(_told("confidence", FC=ground.site.FC, least=LEAST_CONFIDENT))
     said.append(_told("seats"))
     return said
@@ -74,11 +75,9 @@ def _of_lives(ground: Ground) -> list[str]:
     return said
 
 
-def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground, *, standard: bool) -> list[str]:
+def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -> list[str]:
     """Of one direction."""
     said = [*_of_line(curve, states), *_of_ties(curve), *_of_break(curve, states), *_of_letter(curve.chain, curve)]
-    if not standard:
-        said += _of_control(curve)
     T0 = ground.site.T0
     if T0 is not None:
         on = [rule.state for rule in RULES if states[rule.state].a < curve.acceleration(states[rule.state].d)]
@@ -126,10 +125,12 @@ def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:
     return said
 
 
-def _of_control(curve: ExactCurve) -> list[str]:
-    own = ExactCurve(curve.chain, curve.chain.barycentre, curve.confidence)
-    change = curve.d0 / own.d0 - 1
+def of_control(chosen: Method, usual: Method, d0: float, usual_d0: float) -> str:
+    """What a chosen control point changes: d0* [m] and the nonlinear method, against the barycentre of P + Q."""
+    change = d0 / usual_d0 - 1
     if abs(change) < ROUNDING:
-        return [_told("control_same", d0=own.d0)]
-    side = _told("more" if change > 0 else "less")
-    return [_told("control", d0=curve.d0, change=100 * abs(change), side=side, own=own.d0)]
+        return _told("control_same", d0=d0)
+    given = {"d0": d0, "change": 100 * abs(change), "side": _told("more" if change > 0 else "less"), "own": usual_d0}
+    if chosen.a_g is None or usual.a_g is None:
+        return _told("control", **given)
+    return _told("control_a_g", **given, a_g=chosen.a_g, usual=usual.a_g)

@@ -26,7 +26,7 @@ from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
 from rocking_cli.studies.verification.results import Method, State
 from rocking_cli.studies.verification.working import Standing, Working
 
-CHAIN = "C8.7.1.1"
+CHAIN, METHODS = "C8.7.1.1", "C8.7.1.6-9"
 STATES = ("SLD", "SLV", "SLC")
 
 
@@ -36,7 +36,11 @@ def _n(value: float) -> str:
 
 def of_ground(ground: Ground) -> list[Working]:
     """Of the site: the ground at each limit state that is known, and the floor."""
-    found: list[Working] = []
+    site = ground.site
+    found = [
+        Working("FC", "confidence factor, by which accelerations are divided", "given", "", site.FC, "", "C8.7.1.3"),
+        Working("q", "behaviour factor of the linear method", "given", "", site.q, "", METHODS),
+    ]
     for state in STATES:
         found += _of_hazard(ground, state)
         spectrum = ground.spectrum(state)
@@ -88,7 +92,7 @@ def _of_spectrum(ground: Ground, state: str, spectrum: Spectrum) -> Iterator[Wor
         name = "S_eZ" if isinstance(spectrum, FloorSpectrum) else "S_e"
         yield Working(
             f"{name}(T0),{state}", "what starts an element that vibrates", f"{name}(T0, 5 %)", f"T0 = {_n(T0)}",
-            value, "g", "C8.7.1.6-9",
+            value, "g", METHODS,
         )  # fmt: skip
 
 
@@ -126,6 +130,8 @@ def _of_chain(chain: Chain) -> Iterator[Working]:
         yield Working(f"P{k} + Q{k}", f"weight moved sideways {which}", "", at, block.PQ / size, unit, CHAIN, letter)
         yield Working(f"x{k}'", f"virtual displacement sideways {which}", "", "", block.dx, "m", CHAIN)
         yield Working(f"y{k}'", f"virtual displacement upwards {which}", "", "", block.dy, "m", CHAIN)
+    for name, work in chain.works.items():
+        yield Working(f"L({name})", f"work of {name} per unit rotation, at rest", "", "", work, "N m", CHAIN)
     forces, ties = chain.held_by(ties=False), chain.held_by(ties=True)
     put = f"({_n(chain.lifted)} + {_n(forces)} + {_n(ties)})/{_n(chain.first)}"
     formula = "(sum P y' - sum F.r' + internal work)/sum (P+Q) x'"

@@ -1,0 +1,95 @@
+"""Verification by a code, in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking_cli.api.answer import Answer
+from rocking_cli.api.verbs import Motion, Structure, _motion, _structure
+from rocking_cli.errors import InputError
+from rocking_cli.io.json_text import json_text
+from rocking_cli.io.yaml_file import parse
+from rocking_cli.studies.verification.results import Verification
+from rocking_cli.studies.verification.site_file import HINT, SiteFile
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def verify(
+    structure: Structure,
+    site: Mapping[str, Any] | str | Path,
+    *,
+    control: tuple[float, float] | tuple[float, float, str] | None = None,
+    motions: Sequence[Motion] = (),
+    polarities: Sequence[int] = (1,),
+) -> Answer[Verification]:
+    """A rocking mechanism of masonry held against a code, such as the Italian: NTC 2018 and Circolare 7/2019.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    site : mapping, str or Path
+        The fields of a site file, or the file.
+    control : tuple, optional
+        Control point x, y [m], and the body it is on; by default the barycentre of the weights that move.
+    motions : sequence of GroundMotion, Pulse, str or Path
+        For the dynamic method: records that fit the spectrum of the site, as scaled.
+    polarities : sequence of int
+        Which way round these are, of 1 and -1; the worse of several counts.
+
+    Returns
+    -------
+    Answer of Verification
+        `directions` has what was found in each, with `methods`, `states` and `workings`.
+
+    Raises
+    ------
+    InputError
+        If the site, the control point or a file cannot be used, or the structure has no capacity curve.
+    MechanismError
+        If the structure does not stand.
+    SolverError
+        If a motion cannot be followed to its end.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    >>> answer = rk.verify(rk.Block(width=0.6, height=8.0), site)
+    >>> round(answer.directions[rk.Direction.POSITIVE].counts.a_g, 6)
+    0.193382
+    """
+    from rocking_cli.studies.verification.check import control_at, verify, with_histories
+    from rocking_cli.views import verification as views
+
+    wrong = [sign for sign in polarities if sign not in (1, -1)]
+    if wrong or not polarities:
+        raise InputError(f"polarities must be of 1 and -1, got {', '.join(map(str, wrong)) or 'none'}")
+    ready, known = _structure(structure), _site(site)
+    point = None
+    if control is not None:
+        x, y, *body = control
+        point = control_at(ready.mechanism, x, y, body[0] if body else None)
+    found = verify(ready, known, point)
+    if motions:
+        found = with_histories(found, ready, known, [_motion(each) for each in motions], polarities)
+
+    def draw() -> Figure:
+        from rocking_cli.plotting.verification import draw_verification
+
+        return draw_verification(found)
+
+    view = views.view(found, known.site.name)
+    return Answer("verification", found, view, lambda: views.table(found), draw)
+
+
+def _site(given: Mapping[str, Any] | str | Path) -> SiteFile:
+    from rocking_cli.studies.verification.check import read_site, site_in
+
+    if isinstance(given, Mapping):
+        return site_in(parse(json_text(given), "site", "site", HINT))
+    return read_site(Path(given))

@@ -1,0 +1,47 @@
+"""Capacity curves of a verification: exact and straight, with what each limit state allows and asks for."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.verification.results import Verification, Verified
+from rocking_cli.views.verification import shown
+from rocking_cli.views.view import heading
+
+
+def draw_verification(found: Verification) -> Figure:
+    """Draw the capacity curve of each direction that differs.
+
+    Parameters
+    ----------
+    found : Verification
+        What a code says.
+    """
+    sides = shown(found)
+    figure = style.new_figure(3.4 * len(sides))
+    axes = figure.subplots(len(sides), 1, squeeze=False)[:, 0]
+    for each, (where, side) in zip(axes, sides.items(), strict=True):
+        _draw(each, side)
+        style.heading(each, f"{heading(found.mechanism)}: {where.lower()}, FC = {side.exact.confidence:g}")
+        style.tidy(each)
+    axes[-1].set_xlabel("displacement d of the one degree of freedom [m]", fontsize=style.LABEL)
+    return figure
+
+
+def _draw(axes: Axes, side: Verified) -> None:
+    d, a = side.exact.points()
+    axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label="exact")
+    axes.plot([0, side.d0], [side.a0, 0], color=style.MEASURE, linestyle="--", linewidth=style.MEDIUM, label="straight")
+    for k, (name, at) in enumerate(side.states.items()):
+        look = style.distinct(k + 1)
+        color = look["color"]
+        axes.plot(at.d, at.a, marker=look["marker"], color=color, linestyle="none", label=f"d_{name}, allowed")
+        if at.demand is not None:
+            axes.axvline(at.demand, color=color, linestyle=look["linestyle"], linewidth=style.MEDIUM,
+                         label=f"asked for at {name}")  # fmt: skip
+    axes.set_xlim(left=0)
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel("acceleration a* [m/s2]", fontsize=style.LABEL)
+    axes.legend(**style.LEGEND)

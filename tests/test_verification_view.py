@@ -1,0 +1,178 @@
+"""What a verification shows: the form of its JSON, its tables, and sentences held against its numbers."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.core import Direction
+from rocking_cli.studies.verification.codes import codes
+from rocking_cli.views import verification_words as words
+from rocking_cli.views.verification import view
+from rocking_cli.views.view import Table
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+FACADE = rk.Block(width=0.6, height=8.0, name="facade")
+WALL = rk.Wall(thickness=0.3, height=3.0, name="wall")
+PARAPET = rk.Block(width=0.25, height=1.2, name="parapet")
+
+
+def verified(mechanism, **site):
+    code = codes()["NTC2018"]
+    return code.verify(mechanism, code.site.model_validate({**SITE, **site}), None)
+
+
+def positive(mechanism, **site):
+    return verified(mechanism, **site).directions[Direction.POSITIVE]
+
+
+@pytest.fixture
+def files(tmp_path):
+    (tmp_path / "site.yaml").write_text("".join(f"{key}: {value}\n" for key, value in SITE.items()), encoding="utf-8")
+    (tmp_path / "b.yaml").write_text("mechanism: block\nname: b\nwidth: 0.6\nheight: 8\n", encoding="utf-8")
+
+
+def test_json_has_exactly_its_form(files):
+    data = run_json("verify", "b.yaml", "--site", "site.yaml")
+    assert list(data) == ["code", "edition", "directions", "governs"]
+    assert list(data["directions"]) == ["positive", "negative"]
+    for side in data["directions"].values():
+        assert list(side) == [
+            "control", "alpha0", "lambda", "e_star", "M_star", "a0_star", "d0_star", "states", "a_g", "zeta", "governs",
+            "dynamic",
+        ]  # fmt: skip
+        assert list(side["states"]) == ["SLV", "SLC"]
+        assert list(side["states"]["SLV"]) == ["d", "a", "T", "demand", "ratio"]
+        assert list(side["a_g"]) == ["damage", "linear", "nonlinear", "nonlinear_SLC"]
+        assert side["dynamic"] is None and side["M_star"] is None  # without masses
+        slv = side["states"]["SLV"]
+        assert slv["ratio"] == pytest.approx(slv["d"] / slv["demand"])
+        assert side["zeta"]["nonlinear"] == pytest.approx(side["a_g"]["nonlinear"] / 0.2)
+    assert data["directions"]["positive"]["a_g"]["nonlinear"] == pytest.approx(0.193382, abs=6e-7)
+
+
+def test_a_failed_verification_is_a_result_and_so_is_the_example():
+    site = EXAMPLES / "verify" / "site.yaml"
+    data = run_json("verify", EXAMPLES / "verify" / "facade.yaml", "--site", site)
+    side = data["directions"]["positive"]
+    assert side["states"]["SLC"]["demand"] > 0 and side["M_star"] == pytest.approx(43200)  # the roof slides on it
+    assert side["return_period"]["nonlinear"]["years"] > 30
+
+
+def test_the_direction_with_the_smaller_ratio_governs():
+    leaning = rk.RigidBody(polygon=[[0, 0], [1.0, 0], [0.9, 5.0], [0.3, 5.0]], name="leaning")
+    found = verified(leaning)
+    ratios = {direction: each.states["SLV"].ratio for direction, each in found.directions.items()}
+    assert found.governs is min(ratios, key=ratios.get) and ratios[Direction.POSITIVE] != ratios[Direction.NEGATIVE]
+    said = [part for part in view(found).parts if isinstance(part, str)]
+    assert any(f"The {found.governs.label} direction governs: d over demand is {min(ratios.values()):.3g}" in each
+               for each in said)  # fmt: skip
+    assert not any("direction governs" in part for part in view(verified(FACADE)).parts if isinstance(part, str))
+
+
+class TestWords:
+    @pytest.mark.parametrize("ag", [0.1, 0.15, 0.19, 0.2, 0.24, 0.26, 0.4])
+    @pytest.mark.parametrize("mechanism", [FACADE, WALL, PARAPET], ids=lambda each: each.name)
+    def test_the_verdict_is_that_of_the_numbers(self, mechanism, ag):
+        found = positive(mechanism, ag=ag)
+        said = words.verdict(found, "SLV", "Here")
+        capacity = max(found.methods["damage"].a_g, found.methods["nonlinear"].a_g)
+        assert ("SLV: passes" in said) == (capacity >= ag)
+        assert ("SLV: fails" in said) == (capacity < ag)
+        assert f"zeta_E = {capacity / ag:.3g}" in said
+        by_damage = found.methods["damage"].a_g > found.methods["nonlinear"].a_g
+        assert ("Damage governs" in said) == by_damage
+        assert f"is {found.states['SLV'].d / found.states['SLV'].demand:.3g} times" in said
+
+    @pytest.mark.parametrize("mechanism", [FACADE, WALL, PARAPET], ids=lambda each: each.name)
+    def test_why_the_linear_method_differs(self, mechanism):
+        found = positive(mechanism)
+        linear, counts = found.methods["linear"].a_g, found.counts.a_g
+        said = next(words.differences(found, "SLV"))
+        assert ("not on the safe side" in said) == (linear > counts)
+        assert (f"{100 * linear / counts:.3g} % of that" if linear < counts else f"{linear / counts:.3g} times") in said
+
+    def test_two_that_agree_say_so(self):
+        found = positive(FACADE)
+        same = replace(found.methods["linear"], a_g=found.counts.a_g * 1.001)
+        (said, *_) = words.differences(replace(found, methods={**found.methods, "linear": same}), "SLV")
+        assert said.startswith("The linear method says the same")
+
+    def test_the_straight_line_is_said_where_it_changes_the_answer(self):
+        assert not any("straight line" in each for each in words.differences(positive(FACADE), "SLV"))
+        found = positive(rk.Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7))
+        (said,) = [each for each in words.differences(found, "SLV") if "straight line" in each]
+        change = found.straight_methods["nonlinear"].a_g / found.methods["nonlinear"].a_g - 1
+        assert f"{100 * abs(change):.2g} % {'more' if change > 0 else 'less'}" in said
+
+    def test_the_other_limit_states_are_said_where_the_site_gives_them(self):
+        assert list(words.beyond_first(positive(FACADE), "SLV")) == []
+        ground = {key: value for key, value in SITE.items() if key != "FC"}
+        said = list(words.beyond_first(positive(FACADE, SLC=ground, SLD={**ground, "ag": 0.03}), "SLV"))
+        assert re.search(r"^SLC: .* passes\.$", said[0]) and re.search(r"^SLD: .* passes\.$", said[1])
+        said = list(words.beyond_first(positive(FACADE, SLC={**ground, "ag": 0.9}, SLD=ground), "SLV"))
+        assert said[0].endswith("fails.") and said[1].endswith("fails.")
+
+    @pytest.mark.parametrize(
+        ("site", "said"),
+        [
+            ({}, "No soil is given"),
+            ({"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}}, "xi1 as a ratio: our reading"),
+            ({"floor": {"z": 1.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}}, "S_Z = 0.2141 g, is below"),
+            ({"SLC": {key: value for key, value in SITE.items() if key != "FC"}}, "A period of 4.46 s is above 4 s"),
+            ({"FC": 1.2}, "FC = 1.2: it is 1.35"),
+        ],
+    )
+    def test_what_to_know_of_the_site(self, site, said):
+        assert any(said in each for each in verified(FACADE, **site).remarks)
+        other = verified(WALL, soil="B") if "floor" not in site else verified(FACADE)
+        assert not any(said in each for each in other.remarks)
+
+
+def test_a_control_point_is_typed_and_its_influence_said(files):
+    text = run("verify", "b.yaml", "--site", "site.yaml", "--control", "0.3,8").stdout
+    assert "With this control point d0* is" in text
+    at = run_json("verify", "b.yaml", "--site", "site.yaml", "--control", "0.3,8,block")
+    assert at["directions"]["positive"]["control"] == {"x": 0.3, "y": 8.0, "body": "block"}
+    assert "'4' is no point" in run("verify", "b.yaml", "--site", "site.yaml", "--control", "4", code=2).stderr
+    wrong = run("verify", "b.yaml", "--site", "site.yaml", "--control", "0.3,0", code=2).stderr
+    assert "--control does not move in the positive direction" in wrong
+    assert "lies outside block" in run("verify", "b.yaml", "--site", "site.yaml", "--control", "9,0", code=2).stderr
+
+
+def test_every_number_of_the_tables_has_its_clause():
+    found = verified(
+        rk.Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, density=2000.0, depth=1.0, name="a")
+    )
+    tables = [part for part in view(found).parts if isinstance(part, Table)]
+    for table in tables:
+        where = list(table.columns).index("clause")
+        for row in table.rows:
+            if not row[0].startswith(("d over", "lambda")):
+                assert row[where], row
+    assert any(row[0] == "M*" and row[-1].endswith("ours") for table in tables for row in table.rows)
+    said = " ".join(part for part in view(found).parts if isinstance(part, str))
+    assert "none was yet held against its printed text" in said and "M*, x_C'" in said
+
+
+class TestInPython:
+    def test_it_is_the_answer_of_the_command(self, files, tmp_path):
+        answer = rk.verify("b.yaml", "site.yaml", control=(0.3, 8.0, "block"))
+        assert answer.to_dict() == run_json("verify", "b.yaml", "--site", "site.yaml", "--control", "0.3,8,block")
+        assert len(answer.to_frame()) == 10
+        answer.plot(tmp_path / "a.png")
+        assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+        assert repr(answer).startswith("<verification: ")
+
+    def test_a_site_may_be_a_mapping(self):
+        with pytest.raises(rk.InputError, match="FC: must be at least 1"):
+            rk.verify(FACADE, {**SITE, "FC": 0.5})
+        with pytest.raises(rk.InputError, match="polarities must be of 1 and -1, got 2"):
+            rk.verify(FACADE, SITE, polarities=(2,))
+        answer = rk.verify(FACADE, SITE, motions=["sine:0.15g:0.6s"])
+        assert answer.directions[Direction.POSITIVE].dynamic is not None
