@@ -28,6 +28,7 @@ SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
 FLOOR = {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}
 FACADE = rk.Block(width=0.6, height=8.0)
 TIED = {"width": 0.6, "height": 8.0, "density": WEIGHT, "depth": 5.0, "one_sided": "positive", "rebound": 0.4}
+FRAME = rk.SymmetricFrame(column_width=1.0, column_height=6.0, mass_ratio=2.0)
 OPPENHEIM = rk.Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7)
 GROUND = GroundSpectrum(0.2, 2.5, 0.4, 1.2)
 
@@ -364,7 +365,7 @@ class TestDemand:
 
 class TestMethods:
     @pytest.mark.parametrize("site", [{}, {"floor": FLOOR}, {"soil": "A"}, {"T0": 0.2}, {"floor": FLOOR, "T0": 0.35}])
-    @pytest.mark.parametrize("mechanism", [FACADE, rk.Wall(thickness=0.3, height=3.0), OPPENHEIM])
+    @pytest.mark.parametrize("mechanism", [FACADE, rk.Wall(thickness=0.3, height=3.0), FRAME])
     def test_at_its_capacity_the_demand_is_met(self, site, mechanism):
         """Every a_g is put back into the site: then the displacement asked for is that allowed."""
         found = verified(mechanism, **site)
@@ -457,6 +458,10 @@ class TestHazard:
         assert nonlinear.asked == own.ag
         wanted = own.with_ag(nonlinear.a_g).displacement(found.states["SLV"].T, 0.08)
         assert wanted == pytest.approx(0.12, rel=1e-9)
+
+    def test_what_is_beyond_the_table_stops_at_its_end(self):
+        strong = verified(rk.Block(width=4.0, height=8.0), **AT_HAZARD).methods["nonlinear"]
+        assert strong.return_period == 2475.0 and strong.beyond and strong.zeta > 1
 
     def test_a_limit_state_off_the_table_is_refused(self):
         with pytest.raises(InputError, match=r"that of SLC, 974\.8 years, is not between"):
