@@ -18,16 +18,17 @@ MINUS = "−"
 
 
 class Table(NamedTuple):
-    """The texts of a language, its months, and what it calls mechanisms and says of them."""
+    """The texts of a language, its months, what it calls mechanisms and says of them, and the words of pictures."""
 
     texts: Mapping[str, str]
     months: Sequence[str]
     mechanisms: Mapping[str, str]
     cautions: Mapping[str, str]
+    pictures: Mapping[str, str]
 
 
 TABLES = {
-    key: Table(each.TEXTS, each.MONTHS, each.MECHANISMS, each.CAUTIONS)
+    key: Table(each.TEXTS, each.MONTHS, each.MECHANISMS, each.CAUTIONS, each.PICTURES)
     for key, each in (("en", texts_en), ("it", texts_it))
 }
 
@@ -81,6 +82,11 @@ class Language:
     def day(self, when: date) -> str:
         """A date."""
         return f"{when.day} {TABLES[self.key].months[when.month - 1]} {when.year}"
+
+    @property
+    def words_of_pictures(self) -> Mapping[str, str]:
+        """The lines of pictures, by what they are in English."""
+        return TABLES[self.key].pictures
 
     def mechanism(self, key: str, title: str) -> str:
         """What a mechanism is; one that is not known here by its own words."""

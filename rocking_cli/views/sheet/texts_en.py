@@ -8,6 +8,7 @@ MONTHS = (
 )  # fmt: skip
 MECHANISMS: dict[str, str] = {}
 CAUTIONS: dict[str, str] = {}
+PICTURES: dict[str, str] = {}
 TEXTS = {
     # head
     "lang": "en",

@@ -29,6 +29,11 @@ CAUTIONS = {
         "sia lo spostamento disponibile."
     ),
 }
+PICTURES = {
+    "at rest": "a riposo",
+    "positive (clockwise)": "verso positivo (orario)",
+    "negative (anticlockwise)": "verso negativo (antiorario)",
+}
 TEXTS = {
     # head
     "lang": "it",
