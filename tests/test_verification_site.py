@@ -49,7 +49,7 @@ WRONG = [
     (SPECTRUM.replace("[0.4, 0.6]", "[0, 0.6]"), 4, "spectrum[2]", "is no function: it has two ordinates at 0 s"),
     (SPECTRUM.replace("[9, 0.01]", "[0.3, 0.6]"), 5, "spectrum[3]", "goes back from 0.4 to 0.3 s"),
     (SPECTRUM.replace("[0, 0.24]", "[0.1, 0.24]"), 3, "spectrum[1]", "the first ordinate is at T = 0"),
-    (SPECTRUM.replace("[0, 0.24]", "[0, 0]"), 3, "spectrum[1]", "no acceleration at T = 0"),
+    (SPECTRUM.replace("[9, 0.01]", "[9, 0]"), 5, "spectrum[3]", "has no acceleration at 9 s"),
     (TABLE.replace("[475", "[20"), 5, "hazard[2]", "return periods must increase, got 20 after 30 years"),
     (TABLE.replace("soil: B\n", ""), 1, "soil", "is missing: a hazard needs"),
     (TABLE + "ag: 0.2\n", 6, "ag", "goes not with hazard"),
@@ -76,12 +76,15 @@ def test_a_spectrum_that_ends_early_is_placed_in_the_file(site, tmp_path):
     (tmp_path / "b.yaml").write_text("mechanism: block\nwidth: 0.6\nheight: 8\n", encoding="utf-8")
     result = run("verify", "b.yaml", "--site", site(SPECTRUM.replace("[9,", "[2,")), code=2)
     assert "site.yaml:3:1: spectrum: ends at 2 s, before the period of 3.201 s" in result.stderr
+    late = GOOD + "SLC:\n  spectrum: [[0, 0.3], [4, 0.1]]\n"
+    result = run("verify", "b.yaml", "--site", site(late), code=2)
+    assert "site.yaml:7:13: SLC.spectrum: ends at 4 s, before the period of 4.459 s" in result.stderr
 
 
 class TestTheStarter:
     def test_it_works_as_it_is(self, tmp_path):
         (tmp_path / "s.yaml").write_text(run("new", "site").stdout, encoding="utf-8")
-        assert run_json("verify", "--site", "s.yaml")["code"] == "Italian code"
+        assert run_json("verify", "--site", "s.yaml")["code"] == "NTC2018"
 
     @pytest.mark.parametrize("way", ["hazard", "spectrum", "floor", "T0", "SLC"])
     def test_so_do_the_lines_that_are_commented_out(self, way, site):
@@ -115,7 +118,7 @@ class Plain(Site):
 def verify(mechanism, site, control):
     asked = {"FC": 1.0, "ag": site.strength, "F0": 2.5, "TC": 0.4, "S": 1.0}
     found = italian.CODE.verify(mechanism, italian.CODE.site.model_validate(asked), control)
-    return replace(found, code="A test", edition="2026")
+    return replace(found, code="TEST1", name="A test", edition="2026")
 
 
 CODE = Code("TEST1", "A test", "2026", Plain, "strength: 0.2\\n", 3, verify)
@@ -128,7 +131,7 @@ def test_a_code_is_added_by_a_file(tmp_path, monkeypatch, site):
     codes.cache_clear()
     try:
         data = run_json("verify", "--site", site("code: TEST1\nstrength: 0.3\n"))
-        assert data["code"] == "A test" and data["directions"]["positive"]["zeta"]["nonlinear"] > 0
+        assert data["code"] == "TEST1" and data["directions"]["positive"]["zeta"]["nonlinear"] > 0
         wrong = run("verify", "--site", site("code: TEST1\nag: 0.3\n"), code=2)
         assert "site.yaml:2:1: ag: is not a field of the site" in wrong.stderr
     finally:

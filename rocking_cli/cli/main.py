@@ -171,6 +171,7 @@ def main(verbose: bool, debug: bool) -> None:
       rocking overturning block.yaml --plot map.png
       rocking fragility study.yaml
       rocking spectrum block.yaml --record "records/*.AT2"
+      rocking verify block.yaml --site site.yaml
       rocking report block.yaml --record accel.csv -o report.html
 
     Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,

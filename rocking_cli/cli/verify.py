@@ -143,4 +143,5 @@ def _histories(
         raise InputError("no ground motion can be used")
     compile_first()
     motions = [each.motion.scaled(each.factor) for each in chosen]
-    return with_histories(found, structure, site, motions, asked.signs), chosen, refused
+    with terminal.progress(len(motions), "records") as advance:
+        return with_histories(found, structure, site, motions, asked.signs, advance), chosen, refused

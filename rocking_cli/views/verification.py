@@ -19,7 +19,7 @@ def view(found: Verification, site: str | None = None) -> View:
     """The methods side by side for each direction, which governs, and why they differ."""
     sides = shown(found)
     parts: list[Table | str] = [
-        f"{heading(found.mechanism)}, by the {found.code} ({found.edition}){f', at {site}' if site else ''}"
+        f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
     ]
     parts.append(_site(found))
     for where, each in sides.items():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -81,9 +81,14 @@ def verify(
 
 
 def with_histories(
-    found: Verification, structure: Prepared, site: SiteFile, motions: Sequence[GroundMotion], signs: Sequence[int]
+    found: Verification,
+    structure: Prepared,
+    site: SiteFile,
+    motions: Sequence[GroundMotion],
+    signs: Sequence[int],
+    progress: Callable[[int], object] = int,
 ) -> Verification:
-    """The same with histories under records, as scaled.
+    """The same with histories under records, as scaled; `progress` is told of each record.
 
     Raises
     ------
@@ -94,7 +99,10 @@ def with_histories(
     """
     model = structure.model("nonlinear")
     curves = {direction: each.exact for direction, each in found.directions.items()}
-    every = [dynamic.peaks(model, curves, motion, signs) for motion in motions]
+    every = []
+    for motion in motions:
+        every.append(dynamic.peaks(model, curves, motion, signs))
+        progress(1)
     enough = codes()[site.site.code].records
     directions = {
         direction: replace(

@@ -145,7 +145,7 @@ class Displaced:
         here = (mechanism.model_copy(update={"interlock": None}) if torn else mechanism).coefficients(
             np.array([self.phi]), self.chain.direction
         )
-        return _Sums(float(here.restoring(mechanism.gravity)[0]), float(here.B[0]))
+        return _Sums(float(here.restoring(mechanism.gravity)[0]) * mechanism.gravity, float(here.B[0]))
 
     @property
     def alpha(self) -> float:

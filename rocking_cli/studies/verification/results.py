@@ -190,8 +190,8 @@ class Verification:
     ----------
     mechanism : Mechanism
         The structure.
-    code, edition : str
-        By which code, and which edition of it.
+    code, name, edition : str
+        By which code, as site files call it and as people do, and which edition of it.
     first : str
         The limit state by which directions are compared.
     directions : mapping of Direction to Verified
@@ -204,6 +204,7 @@ class Verification:
 
     mechanism: Mechanism
     code: str
+    name: str
     edition: str
     first: str
     directions: Mapping[Direction, Verified]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -48,9 +48,10 @@ class SiteFile:
         return InputError(*(self._placed(each) for each in error.problems))
 
     def _placed(self, problem: Problem) -> Problem:
-        if problem.file is not None or problem.field not in self.document.data:
+        place = tuple((problem.field or "").split("."))
+        if problem.file is not None or place not in self.document.values:
             return problem
-        return replace(self.document.at((problem.field,), problem.message, problem.hint), field=problem.field)
+        return self.document.at(place, problem.message, problem.hint)
 
 
 def read_site(path: Path, codes: Mapping[str, type[Site]]) -> SiteFile:

@@ -15,6 +15,22 @@ from rocking_cli.views.sheet import texts_en, texts_it
 DIGITS = 6  # significant: recomputed from printed numbers, a result agrees to five
 ABSENT = "–"
 MINUS = "−"
+SPELLED = {
+    "alpha0": "α_[0]",
+    "lambda": "λ",
+    "a0*": "a_[0]^[*]",
+    "d0*": "d_[0]^[*]",
+    "a*": "a^[*]",
+    "d_SLV": "d_[SLV]",
+    "d_SLC": "d_[SLC]",
+    "xi1^-1/2 eta(xi)": "ξ_[1]^[−1/2] η(ξ)",
+    "xi1": "ξ_[1]",
+    "S_Z": "S_[Z]",
+    "a_g": "a_[g]",
+    "T0": "T_[0]",
+    "m/s2": "m/s²",
+}
+"""The symbols of plain sentences, as they are printed."""
 
 
 class Table(NamedTuple):
@@ -56,8 +72,8 @@ class Language:
         return filled(self.texts[key], self.key, ready)
 
     def remark(self, text: str) -> str:
-        """A sentence of the study, in this language where it knows it."""
-        return said_in(self.key, text)
+        """A sentence of the study, in this language where it knows it, with its symbols as they are printed."""
+        return re.sub("|".join(map(re.escape, SPELLED)), lambda found: SPELLED[found[0]], said_in(self.key, text))
 
     def number(self, value: float | None, digits: int = DIGITS) -> str:
         """A number as it is printed."""

@@ -92,6 +92,7 @@ TEXTS = {
     "given_FC": "confidence factor",
     "given_q": "behaviour factor of the linear method",
     "given_ag": "ground acceleration on rock, {state}",
+    "given_ordinate": "ground acceleration, the ordinate of the table at T = 0, {state}",
     "given_F0": "amplification of the spectrum, {state}",
     "given_TC": "end of its level part, {state}",
     "given_S": "factor of soil and topography, {state}",

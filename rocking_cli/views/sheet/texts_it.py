@@ -122,6 +122,7 @@ TEXTS = {
     "given_FC": "fattore di confidenza",
     "given_q": "fattore di comportamento del metodo lineare",
     "given_ag": "accelerazione al suolo su roccia, {state}",
+    "given_ordinate": "accelerazione al suolo, ordinata della tabella a T = 0, {state}",
     "given_F0": "amplificazione spettrale massima, {state}",
     "given_TC": "fine del tratto ad accelerazione costante, {state}",
     "given_S": "coefficiente di sottosuolo e topografia, {state}",

@@ -101,7 +101,8 @@ class Methods:
         in_ratio = is_close(method.a_g, method.asked * asked.capacity / own)
         if in_ratio:
             put = say.put("{ag} · {c}/{d}", ag=method.asked, c=asked.capacity, d=own)
-            formula = f"a_[g] · {asked.name}/{asked.demand}"
+            under = f"({asked.demand})" if " " in asked.demand else asked.demand
+            formula = f"a_[g] · {asked.name}/{under}"
             rows.append(Working(symbol, say.say("a_g_method"), formula, put, method.a_g, "g", method.clause))
         else:
             formula = f"{asked.demand}(a_[g]) = {asked.name}"

@@ -64,6 +64,8 @@ def _given(say: Language, ground: Ground) -> Grid:
 
 
 def _sizes(say: Language, state: str, given: Shaking | None) -> Iterator[list[str]]:
+    if given is not None and given.spectrum is not None:
+        yield ["a_[g]", say.say("given_ordinate", state=state), say.number(given.spectrum[0][1]), "g"]
     if given is None or given.ag is None:
         return
     for key in SIZES:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib.resources import files
 
 from rocking_cli.studies.verification.code import Code
-from rocking_cli.studies.verification.codes.italian.method import EDITION, NAME, verify
+from rocking_cli.studies.verification.codes.italian.method import EDITION, KEY, NAME, verify
 from rocking_cli.studies.verification.codes.italian.site import ItalianSite
 
 STARTER = (files(__name__) / "site.yaml").read_text(encoding="utf-8")
-CODE = Code("NTC2018", NAME, EDITION, ItalianSite, STARTER, 7, verify)
+CODE = Code(KEY, NAME, EDITION, ItalianSite, STARTER, 7, verify)

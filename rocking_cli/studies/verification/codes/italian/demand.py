@@ -133,11 +133,14 @@ class TableSpectrum:
         On all of them.
     start : float
         T0, the period from which displacements are looked at [s]: 0 for a rigid start.
+    field : str
+        Where it stands in the site file, for messages.
     """
 
     points: Sequence[tuple[float, float]]
     factor: float = 1.0
     start: float = 0.0
+    field: str = "spectrum"
 
     @property
     def ag(self) -> float:
@@ -213,7 +216,7 @@ class TableSpectrum:
             raise InputError(
                 Problem(
                     f"ends at {last:g} s, before the period of {period:.4g} s that is asked for",
-                    field="spectrum",
+                    field=self.field,
                     hint="give ordinates up to there: the displacement counts at long periods",
                 )
             )

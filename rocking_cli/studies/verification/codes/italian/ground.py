@@ -53,7 +53,8 @@ class Ground:
         if given is None:
             return None
         if given.spectrum is not None:
-            return TableSpectrum(tuple((T, a) for T, a in given.spectrum), 1.0, self.site.T0 or 0.0)
+            field = "spectrum" if state == "SLV" else f"{state}.spectrum"
+            return TableSpectrum(tuple((T, a) for T, a in given.spectrum), 1.0, self.site.T0 or 0.0, field)
         assert given.ag is not None and given.F0 is not None and given.TC is not None and given.S is not None
         return GroundSpectrum(given.ag, given.F0, given.TC, given.S, self.site.soil)
 
@@ -72,7 +73,10 @@ class Ground:
         return ground if floor is None else FloorSpectrum(ground, floor.z, floor.H, floor.T1, floor.xi1, floor.n)
 
     def capacity(self, state: str, demand: Callable[[Spectrum], float], capacity: float) -> float | None:
-        """The a_g at which a demand reaches a capacity [g]; F0 and T_C those of a limit state, T_D following."""
+        """The a_g at which a demand reaches a capacity [g]; F0 and T_C those of a limit state, T_D following.
+
+        None where the file does not give the limit state.
+        """
         spectrum = self.spectrum(state)
         if spectrum is None:
             return None

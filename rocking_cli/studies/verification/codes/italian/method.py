@@ -20,7 +20,7 @@ from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
 from rocking_cli.studies.verification.codes.italian.site import ItalianSite
 from rocking_cli.studies.verification.results import Method, State, Verification, Verified
 
-NAME = "Italian code"
+KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"
 DAMAGE, LINEAR, NONLINEAR, AT_COLLAPSE = "damage", "linear", "nonlinear", "nonlinear_SLC"
 
@@ -98,15 +98,8 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     """
     ground = Ground(site)
     found = {direction: _verified(mechanism, direction, ground, control) for direction in mechanism.directions}
-    return Verification(
-        mechanism,
-        NAME,
-        EDITION,
-        "SLV",
-        found,
-        workings.of_ground(ground),
-        wordings.of_site(ground, list(found.values())),
-    )
+    remarks = wordings.of_site(ground, list(found.values()))
+    return Verification(mechanism, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks)
 
 
 def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, control: Control | None) -> Verified:

@@ -68,8 +68,10 @@ def _no_function(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, s
         return
     if points[0][0] != 0:
         yield ("spectrum", 0), f"begins at {points[0][0]:g} s: the first ordinate is at T = 0, that of the ground"
-    if points[0][1] <= 0:
-        yield ("spectrum", 0), "has no acceleration at T = 0: there it is that of the ground"
+    for k, (T, acceleration) in enumerate(points):
+        if acceleration <= 0:
+            yield ("spectrum", k), f"has no acceleration at {T:g} s: it must be more than 0"
+            return
     for k, ((before, _), (after, _)) in enumerate(pairwise(points), 1):
         if after == before:
             yield ("spectrum", k), f"is no function: it has two ordinates at {after:g} s"
