@@ -202,6 +202,9 @@ class _Writer:
         for piece in runs(text):
             run = paragraph.add_run(printable(piece.text))
             run.bold = bold or None
-            run.font.subscript, run.font.superscript = piece.place == "sub" or None, piece.place == "sup" or None
+            if piece.place == "sub":
+                run.font.subscript = True
+            elif piece.place == "sup":
+                run.font.superscript = True
             if size is not None:
                 run.font.size = Pt(size)

@@ -35,7 +35,8 @@ TEXTS = {
         "Every number is printed to {digits} significant digits, and computed on with all of its digits: recomputed "
         "from printed numbers, a result agrees to one unit or so of the fifth digit. Lengths are in m, forces in "
         "{force}, accelerations in m/s² or in g = 9.80665 m/s², angles in rad. A virtual displacement is per unit "
-        "rotation of the mechanism. A symbol has the value that was last computed for it above."
+        "rotation of the mechanism. A symbol has the value that was last computed for it above, one of the ground that "
+        "of the limit state in the heading."
     ),
     "reading_marks": (
         "† is a formula of the code that was not yet held against its printed text: check it there before you rely on "
@@ -198,7 +199,7 @@ TEXTS = {
     "method_nonlinear": "Nonlinear method, displacement at SLV",
     "method_nonlinear_SLC": "Nonlinear method, displacement at SLC",
     "method_SLD": "Damage, held against SLD",
-    "and_line": "The same on the straight line:",
+    "and_line": "on the straight line",
     "qa0": "capacity of the linear method",
     "a_g_method": "ground acceleration on rock that it can take",
     "a_g_solved": "ground acceleration on rock that it can take, by trial",

@@ -64,7 +64,7 @@ TEXTS = {
         "rifatto con i numeri stampati, un risultato coincide a meno di circa un'unità della quinta cifra. Le "
         "lunghezze sono in m, le forze in {force}, le accelerazioni in m/s² o in g = 9,80665 m/s², gli angoli in rad. "
         "Gli spostamenti virtuali sono riferiti a una rotazione unitaria del meccanismo. Ogni simbolo ha l'ultimo "
-        "valore calcolato più sopra."
+        "valore calcolato più sopra; quelli dell'azione sismica sono dello stato limite indicato nel titolo."
     ),
     "reading_marks": (
         "† indica una formula della norma non ancora confrontata con il testo a stampa: va controllata prima di fare "
@@ -232,7 +232,7 @@ TEXTS = {
     "method_nonlinear": "Metodo non lineare, verifica a SLV",
     "method_nonlinear_SLC": "Metodo non lineare, verifica a SLC",
     "method_SLD": "Attivazione del meccanismo, verifica a SLD",
-    "and_line": "Lo stesso sulla retta:",
+    "and_line": "sulla retta",
     "qa0": "capacità del metodo lineare",
     "a_g_method": "accelerazione al suolo su roccia sopportata",
     "a_g_solved": "accelerazione al suolo su roccia sopportata, per tentativi",

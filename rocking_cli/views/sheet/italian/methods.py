@@ -57,13 +57,15 @@ class Methods:
         for name, method in self.found.methods.items():
             if method.a_g is None:
                 continue
-            asked = self._asked(name, self.found.states, "")
-            items = list(self._items(name, method, asked))
+            heading = self.say.say(f"method_{name}")
+            yield Part(
+                f"{key}-{name}", heading, list(self._items(name, method, self._asked(name, self.found.states, "")))
+            )
             if name in RULE:
                 line = self.found.straight_methods[name]
                 asked = self._asked(name, self.found.straight_states, f",{LINE}")
-                items += [Sentence(self.say.say("and_line")), *self._items(name, line, asked, f",{LINE}")]
-            yield Part(f"{key}-{name}", self.say.say(f"method_{name}"), items)
+                items = list(self._items(name, line, asked, f",{LINE}"))
+                yield Part(f"{key}-{name}-line", f"{heading}, {self.say.say('and_line')}", items)
 
     def _asked(self, name: str, states: Mapping[str, State], more: str) -> Asked:
         if name in RULE:
@@ -112,7 +114,7 @@ class Methods:
             yield Sentence(say.say("check", state=asked.state))
             yield Steps(list(self._checked(spectrum.with_ag(method.a_g), asked)))
         put = say.put("{a}/{b}", a=method.a_g, b=method.asked)
-        zeta = Working(f"ζ_[E]{more}", say.say("zeta", state=asked.state), f"{symbol}/a_[g]", put, method.zeta or 0.0,
+        zeta = Working(f"ζ_[E{more}]", say.say("zeta", state=asked.state), f"{symbol}/a_[g]", put, method.zeta or 0.0,
                        "", method.clause)  # fmt: skip
         yield Steps([zeta])
         yield from self._lasts(method, asked, more)
@@ -140,7 +142,7 @@ class Methods:
             yield Sentence(say.say("beyond_long" if (method.zeta or 0) >= 1 else "beyond_short", TR=say.number(TR)))
             return
         formula = f"{asked.demand}(T_[R]) = {asked.name}"
-        yield Steps([Working(f"T_[R]{more}", say.say("TR_capacity"), formula, "", TR, years, "3.2.1")])
+        yield Steps([Working(f"T_[R{more}]", say.say("TR_capacity"), formula, "", TR, years, "3.2.1")])
         yield Sentence(say.say("check_TR"))
         spectrum = self.ground.at_return_period(TR)
         yield Steps([*hazard_at(say, hazard, TR), *self._checked(spectrum, asked)])
