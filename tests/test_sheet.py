@@ -599,10 +599,10 @@ def test_hostile_names_break_nothing(suffix, language, tmp_path):
 
 
 class TestAskingForIt:
-    def asked(self, tmp_path, *more, exit_code=2):
+    def asked(self, tmp_path, *more, code=2):
         (tmp_path / "site.yaml").write_text(SITE, encoding="utf-8")
         (tmp_path / "s.yaml").write_text(FACADE, encoding="utf-8")
-        return run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", *more, exit_code=exit_code)
+        return run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", *more, code=code)
 
     def test_a_pdf_is_refused_with_what_to_do(self, tmp_path):
         result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf")
@@ -621,7 +621,7 @@ class TestAskingForIt:
         (tmp_path / "in.html").write_text(FACADE, encoding="utf-8")
         (tmp_path / "site.yaml").write_text(SITE, encoding="utf-8")
         files = (tmp_path / "in.html", "--site", tmp_path / "site.yaml", "--sheet", tmp_path / "in.html")
-        run("verify", *files, exit_code=2)
+        run("verify", *files, code=2)
         assert (tmp_path / "in.html").read_text(encoding="utf-8") == FACADE
 
     def test_without_the_package_it_says_what_to_install(self, tmp_path, monkeypatch):
@@ -633,7 +633,7 @@ class TestAskingForIt:
     def test_head_files_and_versions(self, tmp_path):
         out = tmp_path / "o.html"
         head = ("--project", "Church", "--place", "Norcia", "--author", "An engineer")
-        self.asked(tmp_path, "--sheet", out, *head, "--language", "it", exit_code=0)
+        self.asked(tmp_path, "--sheet", out, *head, "--language", "it", code=0)
         words = Page(out.read_text(encoding="utf-8")).words
         for each in (
             "Church",
@@ -646,7 +646,7 @@ class TestAskingForIt:
             assert each in words, each
         for file in ("s.yaml", "site.yaml"):
             assert hashlib.sha256((tmp_path / file).read_bytes()).hexdigest() in words
-        assert version("rocking-cli") in words and "--language it" in words
+        assert version("rocking-cli") in words and "rocking verify " in words and "--language it" in words
 
 
 def test_both_languages_have_the_same_texts_and_slots():

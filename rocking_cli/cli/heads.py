@@ -123,7 +123,7 @@ def command_line(ctx: click.Context) -> str:
     """The command as it was given, for a POSIX shell, with the user's defaults, which hold nowhere else."""
     from click.core import ParameterSource
 
-    said = ["rocking", ctx.command.name or ""]
+    said = ["rocking", ctx.info_name or ""]
     taken = defaults.of_run(ctx)
     for param in sorted(ctx.command.params, key=lambda each: _place(ctx.params.get(each.name or ""))):
         value = ctx.params.get(param.name or "")
