@@ -40,6 +40,7 @@ _HOME = {
     ],
     "api.motions": ["correct", "on_floor", "respond_around"],
     "api.selection": ["select"],
+    "api.survey": ["design", "survey"],
     "api.verification": ["verify"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
     "core.registry": ["Registry"],

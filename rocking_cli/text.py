@@ -69,3 +69,15 @@ def did_you_mean(word: str, known: list[str]) -> str | None:
 
     close = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
     return f"did you mean {close[0]}?" if close else f"known: {', '.join(sorted(known))}" if known else None
+
+
+def exact(number: float) -> str:
+    """A number in as few digits as read back to the same one.
+
+    Examples
+    --------
+    >>> exact(25.0), exact(0.1), exact(9 / 7)
+    ('25', '0.1', '1.2857142857142858')
+    """
+    short = f"{number:g}"
+    return short if float(short) == number else repr(float(number))

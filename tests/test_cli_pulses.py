@@ -37,7 +37,9 @@ class TestInPlaceOfARecord:
 
     def test_json_says_which_pulse(self):
         record = run_json("respond", "--pulse", "mavroeidis:0.3g:0.8s:45deg:1.5")["record"]
-        assert list(record) == ["name", "npts", "dt", "unit", "pga", "format", "pulse", "vertical", "scale", "polarity"]
+        assert list(record) == [
+            "name", "npts", "dt", "unit", "pga", "format", "processing", "pulse", "vertical", "scale", "polarity"
+        ]  # fmt: skip
         assert (record["name"], record["format"]) == ("mavroeidis:0.3g:0.8s:45deg:1.5", "pulse")
         assert record["pga"] == pytest.approx(0.3, rel=1e-4)
         assert record["pulse"] == {

@@ -88,7 +88,7 @@ def test_every_kind_of_picture_is_in_the_gallery(made):
     drawing = {what.split()[1] for kind, what in made.parts.asked(text_of("gallery.md"))}
     assert drawing == {
         "draw", "error", "record", "respond", "animate", "margin", "overturning", "equivalent", "spectrum", "fragility",
-        "figure", "report",
+        "figure", "report", "select",
     }  # fmt: skip
 
 

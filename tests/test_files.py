@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import stat
 import sys
-import tempfile
 from pathlib import Path
 
 import pytest
@@ -150,8 +149,12 @@ class TestSpecialFiles:
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has it")
 def test_what_the_system_refused_is_said_whatever_the_library_makes_of_it(tmp_path, monkeypatch):
-    full = os.open("/dev/full", os.O_WRONLY)
-    monkeypatch.setattr(tempfile, "mkstemp", lambda **where: (full, str(tmp_path / ".a.csv.x")))
+    full, really = os.open("/dev/full", os.O_WRONLY), os.open
+
+    def on_a_full_disk(path, *how, **where):
+        return full if Path(path).name.startswith(".a.csv.") else really(path, *how, **where)
+
+    monkeypatch.setattr(os, "open", on_a_full_disk)
 
     def library(file):
         try:

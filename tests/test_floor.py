@@ -75,7 +75,8 @@ class TestFloor:
     def test_storeys_give_the_participation(self):
         assert Floor.parse("T1=0.4,z=1,n=3").participation == pytest.approx(9 / 7)
         assert Floor.parse({"T1": 0.4, "xi": "5%", "z": 0.67, "gamma": 1.29}) == Floor.parse(FLOOR)
-        assert Floor.parse(str(Floor.parse(FLOOR))) == Floor.parse(FLOOR)
+        for text in (FLOOR, "T1=0.4,z=1,n=3"):
+            assert Floor.parse(str(Floor.parse(text))) == Floor.parse(text)
 
     @pytest.mark.parametrize(
         ("text", "words"),
@@ -85,6 +86,13 @@ class TestFloor:
             ("z=0.5,n=2", "T1 must be given"),
             ("T1=0.4,z=1.5,n=2", "z must be from 0 to 1"),
             ("T1=0.4,z=0.5,n=2.5", "number of storeys"),
+            ("T1=0.4,z=0.5,n=inf", "n must be a number, got 'inf'"),
+            ("T1=0.4,z=0.5,n=nan", "n must be a number, got 'nan'"),
+            ("T1=0.4,z=0.5,n=1e308", "number of storeys"),
+            ("T1=0.4,z=０.５,n=2", "z must be a number"),
+            ("T1=0.4,z=1_0,n=2", "z must be a number"),
+            ("T1=1e-300,z=0.5,n=2", "T1 must be from 1e-06 to"),
+            ("T1=0.4,z=0.5,gamma=1e30", "gamma must be a positive number, 100 at most"),
             ("T1=-1,z=0.5,n=2", "positive number of seconds"),
             ("T1=0.4,xi=2,z=0.5,n=2", "damping ratio"),
             ("T1=0.4,zz=0.5,n=2", "'zz' is none of"),
@@ -96,6 +104,11 @@ class TestFloor:
     def test_what_is_no_floor(self, text, words):
         with pytest.raises(InputError, match=words):
             Floor.parse(text)
+
+    def test_a_floor_that_no_memory_holds(self):
+        long = GroundMotion("long", 0.01, np.zeros(1_000_001))
+        with pytest.raises(InputError, match=r"asks for 6.4e\+07 samples"):
+            Floor(1e-3, 0.05, 1, 1.5).of(long)
 
     def test_targets_are_of_the_ground(self):
         data = run_json("respond", "--neighbours", 0, "--record", ACCEL, "--target-pga", 0.2, "--floor", FLOOR)
@@ -172,12 +185,14 @@ class TestTurned:
             (("--with", "EAST"), "give --azimuth"),
             (("--azimuth", "30"), "give --with FILE"),
             (("--with", "EAST", "--azimuth", "x"), "give degrees, such as 30"),
-            (("--with", str(ACCEL), "--azimuth", "30"), "is the first component too"),
+            (("--with", str(ACCEL), "--azimuth", "30"), "--with: is the first component too"),
+            (("--with", "AGAIN", "--azimuth", "30"), "give the channel of the second with --with-channel"),
             (("--with", "EAST", "--azimuth", "all", "--polarity", "both"), "has both polarities in it"),
         ],
     )
     def test_wrong_options(self, pair, options, words):
-        options = [str(pair) if each == "EAST" else each for each in options]
+        again = EXAMPLES / ".." / EXAMPLES.name / ACCEL.name
+        options = [str({"EAST": pair, "AGAIN": again}.get(each, each)) for each in options]
         assert words in run("respond", "--record", ACCEL, *options, code=2).stderr
 
     def test_all_is_for_respond(self, pair):

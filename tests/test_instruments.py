@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.sensor import Gain
+from rocking_cli.processing.reading import Reading
+from rocking_cli.processing.steps import parse_steps
 from tests.conftest import SHARED
 from tests.test_cli import run, run_json
 
@@ -87,6 +90,44 @@ class TestDerivatives:
         doubt = remarks["resolution"]
         assert doubt.value == pytest.approx(0.001 / DT**2 / STANDARD_GRAVITY)
 
+    @pytest.mark.parametrize("steps", [["baseline linear"], ["highpass 0.5"], ["taper 0.05"], ["factor 2"], []])
+    def test_corrections_do_not_hide_coarse_steps(self, tmp_path, steps):
+        file = write(tmp_path / "steps.csv", "t [s],u [m]", T, np.round(U, 3))
+        asked = Reading(quantity="displacement", steps=parse_steps(steps))
+        (doubt,) = (each for each in asked.read(file).remarks if each.kind == "resolution")
+        size = 2 if steps == ["factor 2"] else 1
+        assert doubt.value == pytest.approx(size * 0.001 / DT**2 / STANDARD_GRAVITY)
+        turned = replace(asked, other=write(tmp_path / "b.csv", "t [s],u [m]", T, np.round(U, 4)), azimuth=30.0)
+        assert doubt.value in [pytest.approx(each.value) for each in turned.read(file).remarks]
+        filtered = replace(asked, steps=(*asked.steps, *parse_steps(["lowpass 20"])))
+        assert "resolution" not in [each.kind for each in filtered.read(file).remarks]
+
+    @pytest.mark.parametrize(
+        ("header", "quantity", "units", "words"),
+        [
+            ("t [s],u [mm]", "displacement", "m", "the header says the unit is mm, but `units` says m"),
+            ("t [s],v [cm/s]", "displacement", "mm", "are in cm/s, a unit of velocities"),
+            ("t [s],a [g]", "velocity", "m/s", "are in g, a unit of accelerations"),
+            ("t [s],v [cm/s]", "displacement", None, "is it `from` velocity"),
+        ],
+    )
+    def test_a_header_that_says_something_else(self, tmp_path, header, quantity, units, words):
+        file = write(tmp_path / "x.csv", header, T, U)
+        with pytest.raises(InputError, match=words):
+            read_record(file, quantity=quantity, units=units)
+
+    def test_a_default_unit_of_accelerations_says_nothing_of_others(self, moved, tmp_path, monkeypatch):
+        monkeypatch.setenv("ROCKING_UNITS", "g")
+        bare = write(tmp_path / "bare.csv", "# a laser", T, U)
+        said = run("record", bare, "--from", "displacement", code=2).stderr
+        assert "does not say what unit its displacements are in" in said
+        assert run_json("record", moved, "--from", "displacement")["unit"] == "mm"
+        assert "no such file" in run("record", tmp_path / "none.txt", "--gain", "2g/V", code=2).stderr
+
+    def test_the_command_says_what_differences_leave(self, moved):
+        said = run("record", moved, "--from", "displacement").stderr
+        assert f"half of what is at {0.44295 / DT:.3g} Hz" in said
+
     def test_a_format_of_accelerations_has_no_other(self, tmp_path):
         file = tmp_path / "x.json"
         file.write_text('{"dT": 0.01, "info": "in g", "accel_data": [0, 1, 0]}')
@@ -112,6 +153,8 @@ class TestGain:
         gain = Gain.parse(text)
         assert (gain.size, gain.quantity) == (pytest.approx(size), quantity)
         assert Gain.parse(str(gain)) == gain
+        fine = Gain.parse("1.23456789e-5 m/count")
+        assert Gain.parse(str(fine)).size == fine.size == 1.23456789e-5
 
     @pytest.mark.parametrize(
         ("text", "words"),
@@ -122,6 +165,10 @@ class TestGain:
             ("1 kg/V", "'kg' is no unit of"),
             ("1 V/m", "'V' is no unit of"),
             ("nan m/V", "is not a number"),
+            ("1e308 g/V", "is not a number"),
+            ("1e-320 m/V", "is not a number"),
+            ("5 g/s", "'s' no output of an instrument"),
+            ("1 m/min", "'min' no output of an instrument"),
         ],
     )
     def test_what_is_none(self, text, words):
@@ -196,6 +243,20 @@ class TestUnevenTimes:
         assert doubt.kind == "uneven"
         assert doubt.value == pytest.approx(np.abs(np.diff(t) - motion.dt).max())
         assert f"to {np.diff(t).max():.3g} s" in doubt.text
+
+    def test_the_first_of_several_columns_may_be_such_times(self, jittered, tmp_path):
+        _, t = jittered
+        a = np.interp(t, T, ACC)
+        file = write(tmp_path / "three.csv", "# as the logger wrote it", t, a, 2 * a)
+        with pytest.raises(InputError):
+            read_record(file, channel="column 2", units="m/s2")
+        motion = read_record(file, channel="column 2", units="m/s2", uneven=True)
+        assert motion.acceleration == pytest.approx(np.interp(motion.time, t, a))
+
+    def test_a_gap_is_not_filled_with_a_line(self, tmp_path):
+        file = write(tmp_path / "gap.csv", "t [s],a [g]", np.array([0, 0.01, 0.02, 1e9]), np.zeros(4))
+        with pytest.raises(InputError, match=r"gap.csv:5: nothing was recorded from 0.02 to 1e\+09 s"):
+            read_record(file, uneven=True)
 
     def test_time_must_still_go_on(self, tmp_path):
         file = write(tmp_path / "back.csv", "t [s],a [g]", np.array([0, 0.1, 0.05, 0.2]), np.zeros(4))

@@ -8,16 +8,19 @@ import numpy as np
 import pytest
 from scipy import signal
 
+from rocking_cli.cli.motion_files import find
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
+from rocking_cli.processing.entry import Entry, of_reading
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import STEPS, parse_step, parse_steps, process
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
 ACCEL = EXAMPLES / "accel.csv"
+TRANSVERSE = EXAMPLES / "accel_transverse.csv"
 
 
 @pytest.fixture(scope="module")
@@ -90,6 +93,35 @@ class TestShape:
         assert found.dt == pytest.approx(0.013, rel=1e-7)
         assert found.duration <= motion.duration * (1 + 1e-9) < found.duration + found.dt
 
+    @pytest.mark.parametrize("count", [100, 101, 102, 103])
+    @pytest.mark.parametrize(("dt", "parts", "of"), [(0.015, 2, 3), (0.02, 1, 2), (0.03, 1, 3)])
+    def test_a_coarser_interval_keeps_every_sample_within_the_record(self, count, dt, parts, of):
+        found = process(GroundMotion("one", 0.01, np.ones(count)), parse_steps([{"resample": dt}]))
+        assert found.npts == (count - 1) * parts // of + 1
+
+    def test_a_negative_factor_leaves_the_vertical_upright(self, motion, tmp_path):
+        from dataclasses import replace
+
+        both = replace(motion, vertical=motion)
+        found = process(both, parse_steps(["factor -1.5"]))
+        assert (found.acceleration == -1.5 * motion.acceleration).all()
+        assert (found.vertical.acceleration == 1.5 * motion.acceleration).all()
+        alone = Reading(steps=parse_steps(["factor -1.5"])).vertical(ACCEL)
+        assert (alone.acceleration == 1.5 * Reading().read(ACCEL).acceleration).all()
+
+    def test_a_floor_is_corrected_with_its_ground(self):
+        import rocking_cli as rk
+
+        found = rk.correct(rk.on_floor(ACCEL, "T1=0.4,z=1,n=3"), "trim 1:9", "lowpass 5")
+        assert found.of_ground.pga == rk.correct(ACCEL, "trim 1:9", "lowpass 5").pga
+
+    def test_histories_of_a_pulse_stay_as_fine_when_it_is_resampled(self):
+        import rocking_cli as rk
+
+        pulse = rk.correct("sine:0.3g:0.8s")
+        found = rk.correct("sine:0.3g:0.8s", "resample 0.01")
+        assert pulse.every > 1 and found.kept.dt <= max(pulse.kept.dt, found.dt) * 1.01
+
     def test_trim_takes_what_is_between(self, motion):
         found = process(motion, parse_steps([{"trim": "2:12.5"}]))
         assert (found.acceleration == motion.acceleration[200:1251]).all()
@@ -127,6 +159,7 @@ class TestRefusals:
             ("trim 3:3.001", "fewer than two samples"),
             ("resample 20", "fewer than two samples"),
             ("resample 1e-9", "less than a 1000th"),
+            ("resample 2000", "fewer than two samples"),
         ],
     )
     def test_what_the_record_does_not_allow(self, motion, step, words):
@@ -154,6 +187,13 @@ class TestRefusals:
         with pytest.raises(InputError, match=words.replace("is no.*", "is not a")):
             parse_step(name, given)
 
+    def test_intervals_that_no_memory_holds(self):
+        long = GroundMotion("long", 0.01, np.zeros(200_001))
+        with pytest.raises(InputError, match=r"2e\+08 samples would be made"):
+            done(long, "resample 0.00001")
+        with pytest.raises(InputError, match="is more than 100000 of the"):
+            done(long, "resample 1500")
+
     def test_too_few_samples(self):
         with pytest.raises(InputError, match="12 samples are too few for a filter"):
             done(GroundMotion("short", 0.01, np.ones(12)), "lowpass 20")
@@ -169,6 +209,13 @@ def test_every_step_says_itself_as_it_is_asked_for():
         step = parse_step(name, given)
         assert parse_steps([str(step)]) == (step,)
     assert len(STEPS) == 7
+
+
+@pytest.mark.parametrize("name", ["highpass", "lowpass", "taper", "trim", "resample", "factor"])
+def test_what_is_said_reads_back_to_the_last_digit(name):
+    third = repr(0.1 / 3)
+    step = parse_step(name, f"{third}:{1 / 3!r}" if name == "trim" else third)
+    assert parse_steps([str(step)]) == (step,)
 
 
 def test_doubts_of_samples_are_those_of_the_record_as_read():
@@ -232,6 +279,55 @@ class TestCommands:
         plain = run_json("respond", "--neighbours", 0, "--record", ACCEL, "--highpass", 0.2, "--lowpass", 20)
         assert data["record"]["pga"] == pytest.approx(1.5 * plain["record"]["pga"], rel=0.05)
 
+    @pytest.mark.parametrize(
+        ("entry", "words"),
+        [
+            (f"{{file: '{ACCEL.as_posix()}', azimuth: 30}}", "an azimuth is between two components"),
+            (f"{{file: '{ACCEL.as_posix()}', with: east.csv}}", "--azimuth: is missing beside the file"),
+            (f"{{file: '{ACCEL.as_posix()}', with_channel: '2'}}", "--with-channel: is of one of two components"),
+            ("{file: set.yaml}", "is a list of records itself"),
+        ],
+    )
+    def test_entries_that_say_half_of_it(self, tmp_path, entry, words):
+        (tmp_path / "set.yaml").write_text(f"records:\n  - {entry}\n")
+        assert words in run("respond", "--record", tmp_path / "set.yaml", code=2).stderr
+
+    def test_an_entry_without_an_azimuth_takes_that_of_the_options(self, tmp_path):
+        entry = f"{{file: '{ACCEL.as_posix()}', with: '{TRANSVERSE.as_posix()}'}}"
+        (tmp_path / "set.yaml").write_text(f"records:\n  - {entry}\n")
+        asked = ("--with", ACCEL, "--azimuth", 40, "--neighbours", 0)
+        found = run_json("respond", "--record", tmp_path / "set.yaml", *asked)["record"]
+        assert found["processing"] == ["with accel_transverse.csv", "azimuth 40"]
+
+    def test_what_is_written_of_a_reading_reads_so_again(self, tmp_path):
+        for azimuth in (0.0, 30.0):
+            asked = Reading(other=TRANSVERSE, azimuth=azimuth, steps=parse_steps(["highpass 0.2"]))
+            entry = Entry.model_validate({"file": ACCEL.name, **of_reading(asked, ACCEL.parent)})
+            assert entry.reading(ACCEL.parent).read(ACCEL).processing == asked.read(ACCEL).processing
+
+    def test_a_structure_is_no_list(self, tmp_path):
+        said = run("respond", "--record", EXAMPLES / "block.yaml", code=2).stderr
+        assert "this is a structure, and no list of records" in said
+
+    def test_a_vertical_component_goes_through_what_a_list_says(self, tmp_path):
+        (tmp_path / "set.yaml").write_text(f"records:\n  - {{file: '{ACCEL.as_posix()}', factor: -0.5}}\n")
+        result = run("respond", "--neighbours", 0, "--record", tmp_path / "set.yaml", "--vertical", TRANSVERSE)
+        assert "factor 0.5" in next(line for line in result.stderr.splitlines() if line.startswith("vertical"))
+
+    def test_entries_that_are_the_same_are_read_once(self, tmp_path):
+        one = f"  - {{file: '{ACCEL.as_posix()}', factor: 2}}\n"
+        other = f"  - {{file: '{ACCEL.as_posix()}', factor: 1}}\n"
+        (tmp_path / "set.yaml").write_text(f"records:\n{one}{other}{one}")
+        found, bad = find([str(tmp_path / "set.yaml"), str(ACCEL), str(ACCEL)])
+        assert bad == 0 and [each.entry.factor if each.entry else None for each in found] == [2, 1, None]
+
+    def test_a_clean_file_is_read_whatever_was_done(self, tmp_path):
+        east = tmp_path / "acc in g.csv"
+        east.write_text(TRANSVERSE.read_text())
+        run("record", ACCEL, "--with", east, "--azimuth", 30, "-o", tmp_path / "clean.csv")
+        assert "acc in g.csv" in (tmp_path / "clean.csv").read_text().splitlines()[0]
+        assert run_json("record", tmp_path / "clean.csv")["unit"] == "m/s2"
+
     def test_mistakes_in_a_list_have_their_lines(self, tmp_path):
         (tmp_path / "set.yaml").write_text(
             "records:\n  - file: none.csv\n  - {file: accel.csv, processing: [{hipass: 1}]}\n  - {gain: 3 kg/V}\n"
@@ -250,3 +346,13 @@ def test_a_report_says_what_was_done_and_how_to_do_it_again(tmp_path):
     assert data["motions"][0]["processing"] == ["lowpass 15", "baseline linear"]
     assert "--lowpass 15 --baseline linear" in data["command"]
     assert "lowpass 15" in out.read_text(encoding="utf-8")
+
+
+def test_record_takes_lists_and_patterns(tmp_path):
+    for name, factor in (("one", 1.0), ("two", 2.0)):
+        (tmp_path / f"{name}.csv").write_bytes(ACCEL.read_bytes())
+        (tmp_path / f"{name}.yaml").write_text(f"records: [{{file: {name}.csv, factor: {factor}}}]\n")
+    said = [json.loads(line) for line in run("record", tmp_path / "*.yaml", "--json").stdout.splitlines()]
+    assert [each["pga"] for each in said] == pytest.approx([0.55, 1.1])
+    run("record", tmp_path / "two.yaml", "--plot", tmp_path / "two.png", "-o", tmp_path / "clean")
+    assert run_json("record", tmp_path / "clean" / "two.csv")["pga"] == pytest.approx(1.1)

@@ -323,6 +323,65 @@ class TestChanges:
         assert len(caught.value.problems) == 1
         assert dump(place) == dump(whole[2])
 
+    ENTRY = "{file: a.csv, units: m, from: displacement, with: b.csv, azimuth: 30, processing: [lowpass 20]}"
+
+    @pytest.mark.parametrize(
+        ("old", "new", "said"),
+        [
+            ("azimuth: 30", "azimuth: 40", "azimuth was 30.0, is now 40.0"),
+            ("lowpass 20", "lowpass 15", "processing[1] was lowpass 20, is now lowpass 15"),
+            ("from: displacement", "gain: 1 m/V", "records[1]"),
+            ("units: m,", "units: mm,", "units was m, is now mm"),
+        ],
+    )
+    def test_a_changed_reading_is_named(self, tmp_path, old, new, said):
+        """What a store has of an entry is read back, and held against what is asked for now."""
+        t = 0.01 * np.arange(401)
+        for name in "ab":
+            u = 0.05 * np.sin(np.pi * t / 4) ** 2 * np.sin((8 if name == "a" else 9) * t)
+            np.savetxt(tmp_path / f"{name}.csv", np.column_stack([t, u]), delimiter=",")
+        text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: [{self.ENTRY}]\nmethod: cloud\n"
+        path, place = write(tmp_path, text), tmp_path / "study.db"
+        carry_out(path, place)
+        carry_out(path, place)
+        path.write_text(text.replace(old, new).replace("units: m, gain", "gain"), encoding="utf-8")
+        with pytest.raises(InputError) as caught:
+            carry_out(path, place)
+        assert said in str(caught.value) and "`restart`" in str(caught.value)
+
+    @pytest.mark.parametrize(
+        ("old", "new"), [("lowpass: 20", "lowpass: 10"), ("factor: 1.5", "factor: 3"), ("factor: 2", "factor: 4")]
+    )
+    def test_what_an_entry_makes_of_a_list_is_part_of_the_study(self, tmp_path, old, new):
+        texts = {
+            "study.yaml": f"structures: ['{EXAMPLES / 'block.yaml'}']\nmethod: cloud\n"
+            "records: [{file: set.yaml, processing: [{lowpass: 20}], factor: 1.5}]\n",
+            "set.yaml": f"records:\n  - {{file: '{EXAMPLES / 'accel.csv'}', processing: [highpass 0.3], factor: 2}}\n",
+        }
+        for name, text in texts.items():
+            (tmp_path / name).write_text(text, encoding="utf-8")
+        before = load_study(tmp_path / "study.yaml")
+        assert before.sources[0].read().processing == ("highpass 0.3", "factor 2", "lowpass 20", "factor 1.5")
+        for name, text in texts.items():
+            (tmp_path / name).write_text(text.replace(old, new), encoding="utf-8")
+        found = [*differences(before.description(), load_study(tmp_path / "study.yaml").description())]
+        assert len(found) == 1
+
+    @pytest.mark.parametrize(
+        ("entry", "words"),
+        [
+            ("{file: set.yaml, vertical: a.csv}", "this is a list of them"),
+            ("{file: a.csv, with: a.csv}", "azimuth is missing"),
+            ("{file: a.csv, with_channel: '2'}", "is of a second component"),
+        ],
+    )
+    def test_entries_that_say_half_of_it(self, tmp_path, entry, words):
+        (tmp_path / "a.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        (tmp_path / "set.yaml").write_text("records: [{file: a.csv}]\n", encoding="utf-8")
+        text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: [{entry}]\nmethod: cloud\n"
+        with pytest.raises(InputError, match=words):
+            load_study(write(tmp_path, text))
+
     def test_a_changed_record_is_named(self, tmp_path):
         (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
         path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))

@@ -196,3 +196,19 @@ class TestWeights:
         path.write_text(path.read_text().replace("a.csv, weight: 2", "a.csv, weight: 5"))
         run("fragility", path, "--jobs", 1)
         assert "count by their weights, 2 to 5" in run("results", folder / "study.db").stdout
+
+
+def test_channels_and_directions_of_one_file_are_records_of_their_own(folder):
+    rows = np.column_stack([0.01 * np.arange(300), np.sin(np.arange(300) / 9), np.cos(np.arange(300) / 7)])
+    body = "\n".join(",".join(f"{x:.6g}" for x in row) for row in rows)
+    (folder / "two.csv").write_text(f"t [s],x [g],y [g]\n{body}\n")
+    (folder / "b.csv").write_text((folder / "a.csv").read_text())  # of one length and interval
+    records = (
+        "  - {file: two.csv, channel: x}\n  - {file: two.csv, channel: y}\n"
+        "  - {file: a.csv, with: 'b*.csv', azimuth: 30}\n  - {file: a.csv, with: b.csv, azimuth: 60}\n"
+    )
+    data = json.loads(run("fragility", study(folder, records), "--jobs", 1, "--json").stdout)
+    assert [each["name"] for each in data["records"]] == [
+        "two.csv channel x", "two.csv channel y", "a.csv azimuth 30", "a.csv azimuth 60"
+    ]  # fmt: skip
+    assert all(each["reason"] is None for each in data["records"])

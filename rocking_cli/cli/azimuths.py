@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from rocking_cli.cli import inputs, motion_files, terminal
 from rocking_cli.cli.groups import GroundMotions, History, Output, Vertical
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.processing.listed import Listed
 
+COMMANDLINE = ParameterSource.COMMANDLINE
+
 
 def check(asked: GroundMotions, history: History, count: int, *, impacts: bool, contact: bool) -> None:
     """Refuse what is of one direction beside all of them."""
@@ -25,8 +28,12 @@ def check(asked: GroundMotions, history: History, count: int, *, impacts: bool, 
         raise click.UsageError("--azimuth all is of one pair of components: give one --record FILE.")
     if asked.polarity != "1":
         raise click.UsageError("--azimuth all has both polarities in it: leave --polarity out.")
-    if history.with_pulse is not None or impacts or contact:
-        raise click.UsageError("--with-pulse, --impacts and --contact are of one direction: give one --azimuth.")
+    context = click.get_current_context()
+    typed = [name for name in ("tail", "neighbours") if context.get_parameter_source(name) is COMMANDLINE]
+    if history.with_pulse is not None or impacts or contact or typed:
+        raise click.UsageError(
+            "--with-pulse, --impacts, --contact, --tail and --neighbours are of one direction: give one --azimuth."
+        )
 
 
 def respond(
@@ -47,12 +54,13 @@ def respond(
     from rocking_cli.views.azimuths import columns, view
     from rocking_cli.views.view import heading
 
-    one, other = record.reading(asked.towards(0.0)).pair(record.path)
+    reading = record.reading(asked.towards(0.0))
+    one, other = reading.pair(record.path)
     for each in (one, other):
         inputs.introduce("component", each)
         inputs.warn(each, structure.growth)
     if vertical.vertical is not None:
-        one = replace(one, vertical=inputs.read_vertical(vertical, asked.towards(0.0)))
+        one = replace(one, vertical=inputs.read_vertical(vertical, reading))
     factor = motion_files.factor(one, measure(one.of_ground), *asked.scaling)
     if factor != 1:
         terminal.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga:.4g} g at 0 degrees")

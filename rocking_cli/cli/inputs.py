@@ -125,13 +125,14 @@ def gather(
     """
     if several:
         return motion_files.gather(records, asked.pulses, asked.reading, asked.scaling, p, "this structure")
-    pulse, file = None, None
+    pulse, file, reading = None, None, asked.reading
     if asked.pulses:
         pulse, motion = make(asked.pulses[0])
-        motion = asked.reading.on_floor(motion)
+        motion = reading.on_floor(motion)
     else:
         file = records[0].path
-        motion = read("record", records[0], asked.reading)
+        motion = read("record", records[0], reading)
+        reading = records[0].reading(reading)
     if vertical is not None and vertical.vertical is not None:
-        motion = replace(motion, vertical=read_vertical(vertical, asked.reading))
+        motion = replace(motion, vertical=read_vertical(vertical, reading))
     return [Scaled(motion, judge(motion, p, *asked.scaling), pulse, file)], 0

@@ -21,8 +21,9 @@ from rocking_cli.errors import CacheWarning, InputError, PluginWarning, RockingE
 from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
-    "draw", "equiv", "error", "record", "select", "respond", "margin", "animate", "pulse", "overturning", "spectrum",
-    "equivalent", "fragility", "results", "verify", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
+    "draw", "equiv", "error", "record", "select", "respond", "margin", "verify", "survey", "design", "animate", "pulse",
+    "overturning", "spectrum", "equivalent", "fragility",
+    "results", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
     "completion",
 )  # fmt: skip
 DO_WITHOUT = ("info",)
@@ -167,6 +168,7 @@ def main(verbose: bool, debug: bool) -> None:
       rocking record accel.csv
       rocking respond block.yaml --record accel.csv --plot response.png
       rocking margin block.yaml --record accel.csv
+      rocking survey parapets.csv --page parapets.html
       rocking pulse --a 4 --omega 6
       rocking overturning block.yaml --plot map.png
       rocking fragility study.yaml

@@ -83,8 +83,7 @@ def read(record: Listed, reading: Reading) -> GroundMotion:
     """Read a record; what of its reading is a default, and was not typed, holds only where the file does not say."""
     from rocking_cli.excitation.records.opening import allow_again
 
-    given = record.reading(reading)
-    typed = _typed(given)
+    given, typed = _given_and_typed(record, reading)
     if typed != given:
         with suppress(InputError):
             return record.as_said(typed.read(record.path))
@@ -94,8 +93,7 @@ def read(record: Listed, reading: Reading) -> GroundMotion:
 
 def settled(record: Listed, reading: Reading) -> Reading:
     """How `read` read a file, not standard input: without the defaults, unless the file needs them."""
-    given = record.reading(reading)
-    typed = _typed(given)
+    given, typed = _given_and_typed(record, reading)
     if typed != given:
         with suppress(InputError):
             typed.read(record.path)
@@ -103,14 +101,23 @@ def settled(record: Listed, reading: Reading) -> Reading:
     return given
 
 
-def _typed(given: Reading) -> Reading:
-    """What of a reading is no default."""
-    return replace(
-        given,
-        dt=None if from_default("dt") else given.dt,
-        units=None if from_default("units") else given.units,
-        channel=None if from_default("channel") else given.channel,
+def _given_and_typed(record: Listed, reading: Reading) -> tuple[Reading, Reading]:
+    """How to read a record with the defaults of options, and without: what a list says of it is no default."""
+    from rocking_cli.excitation.records.sensor import size_of
+
+    given = record.reading(reading)
+    if from_default("units") and reading.units is not None:
+        of = given.quantity or "acceleration"
+        if given.gain is not None or (given.units == reading.units and size_of(reading.units, of) is None):
+            reading = replace(reading, units=None)  # it says nothing of such a record
+            given = record.reading(reading)
+    typed = replace(
+        reading,
+        dt=None if from_default("dt") else reading.dt,
+        units=None if from_default("units") else reading.units,
+        channel=None if from_default("channel") else reading.channel,
     )
+    return given, record.reading(typed)
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
@@ -126,6 +133,15 @@ def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
 
 def find(places: Sequence[str]) -> tuple[list[Listed], int]:
     """The files of several names, patterns and lists, each once, and how many of these stand for none: is reported."""
+    found, bad = find_all(places)
+    once: dict[object, Listed] = {}
+    for one in found:
+        once.setdefault((one.path, one.folder, repr(one.entry)), one)
+    return list(once.values()), bad
+
+
+def find_all(places: Sequence[str]) -> tuple[list[Listed], int]:
+    """The same, as often as they are named."""
     from rocking_cli.excitation.selection import select
     from rocking_cli.processing.listed import Listed, is_list
 
@@ -135,7 +151,7 @@ def find(places: Sequence[str]) -> tuple[list[Listed], int]:
         try:
             for path in select(place):
                 inside = _of_list(path) if is_list(path) else [Listed(path)]
-                found += [each for each in inside if each not in found]
+                found += inside
         except InputError as error:
             terminal.error(str(error))
             bad += 1

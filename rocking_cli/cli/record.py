@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.pulse_fit import PulseFit
     from rocking_cli.processing.intensity import Measure
+    from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.oscillator import ResponseSpectrum
     from rocking_cli.views.record import Examined
 
@@ -130,21 +131,23 @@ def command(
       rocking record accel.csv --measures "Sa(1.0), CAV, PGV/v_imp" --structure frame.yaml
     """
     out, plot = output.out, output.plot
-    if plot is not None and more.spectrum is None and (len(files) > 1 or scaling.polarity == "both"):
+    records, bad = motion_files.find_all(files)
+    alone = len(records) + bad == 1 and scaling.polarity != "both"
+    if plot is not None and more.spectrum is None and not alone:
         raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
     from rocking_cli.io.files import keep_apart
     from rocking_cli.views.record import data, parts
     from rocking_cli.views.view import View
 
-    clean = _clean_paths(out, files, reading.channel, scaling.signs) if out is not None else {}
+    clean = _clean_paths(out, records, reading.channel, scaling.signs, alone=alone) if out is not None else {}
     kept = [("--plot", plot), ("--spectrum", more.spectrum), *(("--out", path) for path in clean.values())]
-    keep_apart(kept, [*files, more.structure])
+    keep_apart(kept, [*(str(each.path) for each in records), more.structure])
     _make_room(out, clean.values())
-    asked = _Asked(reading, scaling, more, more.prepared, clean, plot if more.spectrum is None else None)
+    asked = _Asked(reading, scaling, more, more.prepared, plot if more.spectrum is None else None)
     examined: list[Examined] = []
-    for file in files:
+    for k, record in enumerate(records):
         try:
-            found = asked.of(file)
+            found = asked.of(record, [clean.get((k, sign)) for sign in scaling.signs])
         except InputError as error:
             terminal.error(str(error))
             terminal.debug_traceback(error)
@@ -158,29 +161,30 @@ def command(
         _give_spectra(examined, more.spectrum, plot)
     if examined and not output.as_json:
         terminal.show(View({}, list(parts(examined, terminal.width()))), as_json=False)
-    if len(examined) < len(files) * len(scaling.signs):
+    if len(examined) < (len(records) + bad) * len(scaling.signs):
         ctx.exit(INCOMPLETE if examined else InputError.exit_code)
 
 
 def _clean_paths(
-    out: Path, files: Sequence[str], channel: str | None, signs: Sequence[int]
-) -> dict[tuple[str, int], Path]:
-    """Where the clean file of each record goes: in a folder, it has the name of the record and the channel."""
+    out: Path, records: Sequence[Listed], channel: str | None, signs: Sequence[int], *, alone: bool
+) -> dict[tuple[int, int], Path]:
+    """Where the clean file of each record goes, by its place and polarity: in a folder, by its name and channel."""
     from rocking_cli.excitation.records.opening import name_of
 
     if _is_file(out):
-        if len(files) > 1 or len(signs) > 1:
+        if not alone:
             raise click.UsageError("--out FILE.csv takes one record: give one FILE and one polarity, or a folder.")
-        return {(files[0], signs[0]): out}
-    suffix = "-" + re.sub(r"\W+", "-", channel.strip()) if channel is not None else ""
-    paths: dict[tuple[str, int], Path] = {}
-    for file in files:
+        return {(0, signs[0]): out}
+    paths: dict[tuple[int, int], Path] = {}
+    for k, record in enumerate(records):
+        own = record.entry.channel if record.entry is not None and record.entry.channel is not None else channel
+        suffix = "-" + re.sub(r"\W+", "-", own.strip()) if own is not None else ""
         for sign in signs:
             turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
-            path = out / f"{Path(name_of(file)).stem}{suffix}{turned}.csv"
+            path = out / f"{Path(name_of(record.path)).stem}{suffix}{turned}.csv"
             if path in paths.values():
                 raise InputError(Problem("two records would be written there", str(path), hint="write them one by one"))
-            paths[file, sign] = path
+            paths[k, sign] = path
     return paths
 
 
@@ -237,8 +241,6 @@ class _Asked:
         What is asked besides.
     structure : Prepared or None
         What its interval is held against, and what relative measures refer to.
-    clean : mapping of (str, int) to Path
-        Where its clean file goes, by the record and the polarity; empty for none.
     plot : Path or None
         Where its picture goes.
     """
@@ -247,37 +249,39 @@ class _Asked:
     scaling: Scaling
     more: More
     structure: Prepared | None
-    clean: Mapping[tuple[str, int], Path]
     plot: Path | None
 
-    def of(self, file: str) -> list[Examined]:
-        """Read a record, examine it in every polarity, and write what is to be written."""
+    def of(self, record: Listed, clean: Sequence[Path | None]) -> list[Examined]:
+        """Read a record, examine it in every polarity, and write what is to be written, each into its clean file."""
         from rocking_cli.excitation.records.opening import name_of
-        from rocking_cli.processing.listed import Listed
 
-        motion = motion_files.read(Listed(Path(file)), self.reading.reading)
+        motion = motion_files.read(record, self.reading.reading)
+        if any(each.startswith("from ") for each in motion.processing):
+            terminal.note(f"{motion.name}{motion_files.done(motion)}")
         found = []
-        for sign in self.scaling.signs:
-            one, scaled = self._examine(name_of(file), motion, sign)
+        for sign, path in zip(self.scaling.signs, clean, strict=True):
+            one, scaled = self._examine(name_of(record.path), motion, sign)
             if len(self.scaling.signs) > 1 and sign < 0:
                 one = one._replace(label=f"{one.label}, reversed")
-            if self.clean:
-                _write(self.clean[file, sign], scaled)
+            if path is not None:
+                _write(path, scaled)
             if self.plot is not None:
-                _draw(self.plot, scaled, one, self._before(file) if self.reading.placed else None)
+                _draw(self.plot, scaled, one, self._before(record))
             found.append(one)
         return found
 
-    def _before(self, file: str) -> GroundMotion:
-        """The record without its corrections, to be shown beside it."""
+    def _before(self, record: Listed) -> GroundMotion | None:
+        """The record without its corrections, to be shown beside it; None without any."""
         from rocking_cli.excitation.records.opening import allow_again
         from rocking_cli.processing.listed import Listed
         from rocking_cli.processing.steps import Resample
 
-        allow_again(file)
-        asked = self.reading.reading
+        asked = record.reading(self.reading.reading)
+        if not asked.steps:
+            return None
+        allow_again(record.path)
         grid = tuple(step for step in asked.steps if isinstance(step, Resample))  # uneven times cannot do without
-        return motion_files.read(Listed(Path(file)), replace(asked, steps=grid, floor=None))
+        return motion_files.read(Listed(record.path), replace(asked, steps=grid, floor=None))
 
     def _examine(self, file: str, motion: GroundMotion, polarity: int) -> tuple[Examined, GroundMotion]:
         """The record and its scaled motion; what is doubtful is looked for in the record as read."""

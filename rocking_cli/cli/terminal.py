@@ -77,7 +77,8 @@ def as_typed(text: str, command: click.Command | None = None) -> str:
     context = click.get_current_context(silent=True)
     command = command or (context.command if context is not None else None)
     options = [each for each in command.params if isinstance(each, click.Option)] if command is not None else []
-    typed = {each.name: max(each.opts, key=len) for each in options}
+    spelled = [(each.name, max(each.opts, key=len)) for each in options]
+    typed = {name: option for _, option in spelled if (name := option[2:].replace("-", "_"))} | dict(spelled)
     return re.sub(r"`(\w+)`", lambda match: typed.get(match[1], match[0]), text)
 
 

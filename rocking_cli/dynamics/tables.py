@@ -94,8 +94,23 @@ def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> 
     if not mechanism.smooth:
         corners = np.concatenate([_corners(mechanism, direction, cells) for direction in mechanism.directions])
         cells = _cells_for(corners, cells)
-    tables = [_one_direction(mechanism, direction, cells) for direction in mechanism.directions]
-    return tables[0], tables[-1]
+    first, *other = mechanism.directions
+    one = _one_direction(mechanism, first, cells)
+    if not other or _mirrored(mechanism, one.nodes):
+        return one, one
+    return one, _one_direction(mechanism, other[0], cells)
+
+
+def _mirrored(mechanism: Mechanism, nodes: Reals) -> bool:
+    """Whether both directions have one table: the same to the last bit at every node, the coefficients and slopes."""
+    one, other = mechanism.directions
+    if not mechanism.smooth or mechanism.limit(one) != mechanism.limit(other):
+        return False
+    for phi in (nodes[:: TO_CRITICAL // 4], nodes):  # most that differ do so at a few
+        pair = [vars(mechanism.coefficients(phi, direction)) for direction in (one, other)]
+        if not all(np.array_equal(pair[0][key], pair[1][key]) for key in pair[0]):
+            return False
+    return True
 
 
 def _cells_for(corners: Reals, cells: int) -> int:

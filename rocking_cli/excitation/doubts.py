@@ -50,11 +50,18 @@ def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
     ]
 
 
-def of_samples(motion: GroundMotion) -> list[Doubt]:
-    """What single samples give reason to doubt: nothing once they were corrected, which hides it."""
+def of_samples(motion: GroundMotion, *, accelerations: bool = True) -> list[Doubt]:
+    """What single samples give reason to doubt: nothing once they were corrected, which hides it.
+
+    Of other quantities than `accelerations` a sample that stands alone is doubted, and no other: a displacement of
+    coarse digits that stands still is not clipped.
+    """
     if not all(each.startswith("gain ") for each in motion.processing):
         return []
-    return [*_clipping(motion), *_spikes(motion), *_dropouts(motion)]
+    if accelerations:
+        return [*_clipping(motion), *_spikes(motion), *_dropouts(motion)]
+    alone = "a sample stands alone at {:.6g} s: a damaged number?"
+    return [each._replace(text=alone.format(each.value)) for each in _spikes(motion)]
 
 
 def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> list[Doubt]:

@@ -120,7 +120,7 @@ def _got(given: Any) -> str:
 def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, lister: str) -> tuple[str, str | None]:
     """One error in plain words, and a hint; the arguments are those of `problems`, and its place in the data."""
     kind, given, ctx = error["type"], error["input"], error.get("ctx", {})
-    fields = _fields(model, place[:-1])
+    fields = fields_at(model, place[:-1])
     info = next((fields[part] for part in reversed(place) if isinstance(part, str) and part in fields), None)
     extra = info.json_schema_extra if info is not None and isinstance(info.json_schema_extra, dict) else {}
     unit = f" {extra['unit']}" if extra.get("unit") else ""
@@ -167,8 +167,36 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     return f"{error['msg'][0].lower()}{error['msg'][1:]}", None
 
 
-def _fields(model: type[BaseModel], place: Place) -> dict[str, Any]:
-    """The fields that may stand at a place, of whichever models it may hold."""
+def unit_at(model: type[BaseModel], place: Place) -> str:
+    """The unit of the number at a place of the data of a model; empty for a pure number, or where there is no field."""
+    names = [k for k, part in enumerate(place) if isinstance(part, str)]
+    last = place[: names[-1] + 1] if names else ()
+    info = fields_at(model, last[:-1]).get(str(last[-1])) if last else None
+    extra = info.json_schema_extra if info is not None else None
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
+
+
+def types_at(model: type[BaseModel], place: Place) -> set[Any]:
+    """The types that the value at a place may have, those in lists too; of a fixed word, the word."""
+    names = [k for k, part in enumerate(place) if isinstance(part, str)]
+    last = place[: names[-1] + 1] if names else ()
+    info = fields_at(model, last[:-1]).get(str(last[-1])) if last else None
+    return set(_leaves(info.annotation)) if info is not None else set()
+
+
+def lists_models(model: type[BaseModel], place: Place) -> bool:
+    """Whether a list of mappings stands at a place, such as `loads`."""
+    info = fields_at(model, place[:-1]).get(str(place[-1])) if place else None
+    return info is not None and "list[" in str(info.annotation) and bool(_models(info.annotation))
+
+
+def _leaves(annotation: Any) -> list[Any]:
+    parts = get_args(annotation)
+    return [leaf for part in parts for leaf in _leaves(part)] if parts else [annotation]
+
+
+def fields_at(model: type[BaseModel], place: Place) -> dict[str, Any]:
+    """The fields that may stand at a place, of whichever models it may hold, by the names that users write."""
     models: list[Any] = [model]
     for part in place:
         held = [inner[part].annotation for each in models if part in (inner := _spelt(each))]

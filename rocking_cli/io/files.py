@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import io
 import os
+import secrets
 import shutil
 import stat
 import tempfile
@@ -13,6 +14,8 @@ from pathlib import Path
 from typing import IO, Any, BinaryIO
 
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
+
+NEW = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 
 
 def read_bytes(
@@ -177,17 +180,19 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     if _is_special(path):
         _write_into(path, shown, write)
         return
+    # Within the length of a name, whatever that of the file; known before it is there, so that a signal in between
+    # leaves nothing behind.
+    name = path.with_name(f".{path.name[:40]}.{secrets.token_hex(8)}")
     try:
-        # Within the length of a name, whatever that of the file.
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}.")
-    except OSError as error:
-        raise _cannot(shown, error) from error
-    try:
+        try:
+            handle = os.open(name, NEW, 0o600)
+        except OSError as error:
+            raise _cannot(shown, error) from error
         _fill(handle, shown, write)
         try:
             if path.exists():
                 shutil.copymode(path, name)
-            else:  # mkstemp makes files private; give this one the usual rights
+            else:  # it was made private; give this one the usual rights
                 umask = os.umask(0)
                 os.umask(umask)
                 os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
@@ -195,7 +200,7 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
         except OSError as error:
             raise _cannot(shown, error) from error
     except BaseException:
-        Path(name).unlink(missing_ok=True)
+        name.unlink(missing_ok=True)
         raise
 
 

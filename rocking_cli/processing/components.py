@@ -7,6 +7,7 @@ from math import cos, isclose, radians, sin
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.text import exact
 
 SAME = 1e-6  # relative difference of two intervals that are printed differently
 
@@ -47,7 +48,7 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
         points=None,
         ground=ground,
         remarks=(*one.remarks, *other.remarks),
-        processing=(*one.processing, f"with {other.name}", f"azimuth {azimuth % 360:.9g}"),
+        processing=(*one.processing, f"with {other.name}", f"azimuth {exact(azimuth)}"),
     )
 
 

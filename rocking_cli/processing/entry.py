@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.sensor import Gain, units_of
 from rocking_cli.excitation.records.units import canonical
 from rocking_cli.processing.floor import Floor
@@ -65,7 +65,9 @@ class Entry(BaseModel):
     )
     other: str | None = Field(None, alias="with", description="the file of the component at right angles")
     other_channel: str | None = Field(None, alias="with_channel", description="its channel")
-    azimuth: float = Field(0.0, description="of the structure's plane, from the first component to the second [deg]")
+    azimuth: float | None = Field(
+        None, description="of the structure's plane, from the first component to the second [deg]"
+    )
     processing: Steps | None = Field(None, description="corrections in their order, such as `- highpass: 0.1`")
     floor: FloorText | None = Field(None, description="the floor that the structure stands on, such as {T1: 0.4, ...}")
     factor: float | None = Field(None, description="factor on the record, as one of a set")
@@ -86,8 +88,11 @@ class Entry(BaseModel):
         Raises
         ------
         InputError
-            If an azimuth has no second component.
+            If an azimuth has no second component, or a second component no azimuth.
         """
+        if self.other is not None and self.azimuth is None and common.other is None:
+            hint = "give 0 for the record, 90 for that of `with`, or what is between them"
+            raise InputError(Problem("is missing beside the file of a second component", field="`azimuth`", hint=hint))
         factor = () if self.factor is None else (Factor(self.factor),)
         gain = Gain.parse(self.gain) if self.gain is not None else common.gain
         return Reading(
@@ -98,7 +103,7 @@ class Entry(BaseModel):
             gain=gain,
             other=folder / self.other if self.other is not None else common.other,
             other_channel=_first(self.other_channel, common.other_channel),
-            azimuth=self.azimuth if self.other is not None else common.azimuth,
+            azimuth=_first(self.azimuth, common.azimuth),
             steps=(*parse_steps(self.processing or []), *factor, *common.steps),
             floor=Floor.parse(self.floor) if self.floor is not None else common.floor,
         )
@@ -131,7 +136,7 @@ def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
         "gain": str(reading.gain) if reading.gain is not None else None,
         "with": relative(Path(reading.other), folder) if reading.other is not None else None,
         "with_channel": reading.other_channel,
-        "azimuth": reading.azimuth or None,
+        "azimuth": reading.azimuth if reading.other is not None else None,
         "processing": [str(step) for step in reading.steps] or None,
         "floor": str(reading.floor) if reading.floor is not None else None,
     }

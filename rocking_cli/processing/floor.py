@@ -5,17 +5,20 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import isfinite, pi
+from math import pi
 from typing import Self
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, finer, relative_response
-from rocking_cli.text import did_you_mean
+from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, read
 
 EXAMPLE = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
 KEYS = ("T1", "xi", "z", "gamma", "n")
+PERIODS = 1e-6, 1e6  # s; beyond them no building answers, and numbers overflow
+MOST = 100.0  # of gamma, which is 1.5 for a uniform building: more is a slip of the keyboard
+STOREYS = 1000
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 
@@ -45,11 +48,14 @@ class Floor:
         if not 0 <= self.height <= 1:
             hint = "z is the height of the floor over that of the building"
             raise _refused(f"z must be from 0 to 1, got {self.height:g}", hint)
-        if not (isfinite(self.participation) and self.participation > 0):
-            raise _refused(f"gamma must be a positive number, got {self.participation:g}")
+        if not PERIODS[0] <= self.period <= PERIODS[1]:
+            raise _refused(f"T1 must be from {PERIODS[0]:g} to {PERIODS[1]:g} s, got {self.period:g} s")
+        if not 0 < self.participation <= MOST:
+            raise _refused(f"gamma must be a positive number, {MOST:g} at most, got {self.participation:g}")
 
     def __str__(self) -> str:
-        return f"T1={self.period:.9g},xi={self.damping:.9g},z={self.height:.9g},gamma={self.participation:.9g}"
+        given = {"T1": self.period, "xi": self.damping, "z": self.height, "gamma": self.participation}
+        return ",".join(f"{key}={exact(value)}" for key, value in given.items())
 
     @classmethod
     def parse(cls, given: str | Mapping[str, object]) -> Self:
@@ -72,7 +78,7 @@ class Floor:
         values = {key: _value(key, value) for key, value in pairs.items()}
         if "n" in values:
             n = values["n"]
-            if n < 1 or n != round(n):
+            if not (1 <= n <= STOREYS and n == round(n)):
                 raise _refused(f"n is the number of storeys, got {n:g}")
             values["gamma"] = 3 * n / (2 * n + 1)
         return cls(values["T1"], values.get("xi", DAMPING), values["z"], values["gamma"])
@@ -120,11 +126,13 @@ def _value(key: str, given: object) -> float:
     try:
         if key == "T1" and not _NUMBER.fullmatch(text):
             return read(text, "s")
-        return float(text.removesuffix("%")) / (100 if key == "xi" and text.endswith("%") else 1)
+        percent = key == "xi" and text.endswith("%")
+        plain = text.removesuffix("%").rstrip() if percent else text
+        if not _NUMBER.fullmatch(plain):
+            raise _refused(f"{key} must be a number, got {text!r}")
+        return float(plain) / (100 if percent else 1)
     except UnitError as error:
         raise _refused(f"{key}: {error.message}", error.hint) from None
-    except ValueError:
-        raise _refused(f"{key} must be a number, got {text!r}") from None
 
 
 def _refused(message: str, hint: str | None = None) -> InputError:

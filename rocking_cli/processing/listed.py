@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.origins import name
 from rocking_cli.processing.reading import Reading
@@ -24,8 +25,13 @@ class Listed(NamedTuple):
     folder: Path = Path()
 
     def reading(self, common: Reading) -> Reading:
-        """How to read it, `common` being how all are read."""
-        return common if self.entry is None else self.entry.reading(self.folder, common)
+        """How to read it, `common` being how all are read. Raises `InputError` if it contradicts itself."""
+        if self.entry is None:
+            return common
+        try:
+            return self.entry.reading(self.folder, common)
+        except InputError as error:
+            raise InputError(*(replace(each, file=str(self.path)) for each in error.problems)) from None
 
     def read(self, common: Reading) -> GroundMotion:
         """The motion. Raises `InputError` if it cannot be read."""

@@ -22,6 +22,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 Reals = NDArray[np.float64]
 PER_PERIOD = 24  # samples: between them a cubic is within 1e-5 of the peak
 FINEST = 64  # parts of an interval: an oscillator this much faster than the record follows it
+MOST = 50_000_000  # samples of a motion that is made finer: some gigabytes
 BLOCK = 64  # samples advanced at once
 SMALL = 0.5  # of |m|: below it phi_1 and phi_2 come from their series, without a difference of close numbers
 TERMS = 18
@@ -82,7 +83,12 @@ def relative_response(motion: GroundMotion, period: float, damping: float) -> tu
         n: where the oscillator is fast there are several, so that its motion is seen between the samples.
     """
     check_oscillator(period, damping)
-    parts = min(max(ceil(PER_PERIOD * motion.dt / period - 1e-9), 1), FINEST)
+    parts = max(ceil(min(PER_PERIOD * motion.dt / period, FINEST) - 1e-9), 1)
+    if parts > 1 and parts * motion.npts > MOST:
+        message = (
+            f"a period of {period:g} s asks for {parts * motion.npts:.3g} samples of it, and {MOST:.3g} are the most"
+        )
+        raise InputError(Problem(message, motion.name, hint="a longer period or a shorter record takes fewer"))
     ground = finer(motion.acceleration, parts)
     dt = motion.dt / parts
     w = 2 * pi / period

@@ -8,10 +8,10 @@ from pathlib import Path
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_measured
-from rocking_cli.excitation.records.sensor import Gain, Quantity, as_acceleration
+from rocking_cli.excitation.records.sensor import Gain, Quantity, as_acceleration, smallest_step
 from rocking_cli.processing.components import turned
 from rocking_cli.processing.floor import Floor
-from rocking_cli.processing.steps import Resample, Step, process
+from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_vertical, process
 
 
 @dataclass(frozen=True)
@@ -50,9 +50,14 @@ class Reading:
     floor: Floor | None = None
 
     def __post_init__(self) -> None:
-        if self.other is None and (self.azimuth or self.other_channel is not None):
-            hint = "give the file of the second with `with`"
-            raise InputError(Problem("an azimuth is between two components", field="`azimuth`", hint=hint))
+        alone = (
+            ("azimuth", self.azimuth, "an azimuth is between"),
+            ("with_channel", self.other_channel, "is of one of"),
+        )
+        for name, given, what in alone if self.other is None else ():
+            if given:
+                hint = "give the file of the second with `with`"
+                raise InputError(Problem(f"{what} two components", field=f"`{name}`", hint=hint))
 
     def read(self, file: str | Path) -> GroundMotion:
         """The motion that shakes a structure.
@@ -63,9 +68,19 @@ class Reading:
             If a file cannot be read, a correction cannot be made, or two components do not go together.
         """
         measured, quantity = self._measured(file, self.channel)
+        step = smallest_step(measured)
         if self.other is not None:
-            measured = turned(measured, self._measured(self.other, self._channel_of_other(file))[0], self.azimuth)
-        return self.on_floor(as_acceleration(process(measured, self.steps), quantity))
+            second, _ = self._measured(self.other, self._channel_of_other(file))
+            step = max(step, smallest_step(second))
+            measured = turned(measured, second, self.azimuth)
+        corrected = process(measured, self.steps, accelerations=quantity == "acceleration")
+        return self.on_floor(as_acceleration(corrected, quantity, self._left_of(step)))
+
+    def _left_of(self, step: float) -> float:
+        """What corrections leave of the step of the last digit."""
+        for each in self.steps:
+            step *= 0.0 if isinstance(each, Lowpass) else abs(each.by) if isinstance(each, Factor) else 1.0
+        return step
 
     def pair(self, file: str | Path) -> tuple[GroundMotion, GroundMotion]:
         """Two components, each by itself: what is made of them is linear, and may come before they are turned.
@@ -81,7 +96,7 @@ class Reading:
 
     def _channel_of_other(self, file: str | Path) -> str | None:
         assert self.other is not None
-        if self.other_channel is None and Path(self.other) == Path(file):
+        if self.other_channel is None and _same(self.other, file):
             hint = "give the channel of the second with `with_channel`"
             raise InputError(Problem("is the first component too", str(file), field="`with`", hint=hint))
         return self.channel if self.other_channel is None else self.other_channel
@@ -100,7 +115,7 @@ class Reading:
         """
         own = replace(
             self, dt=dt if dt is not None else self.dt, channel=channel, other=None, other_channel=None, azimuth=0.0,
-            floor=None,
+            steps=of_vertical(self.steps), floor=None,
         )  # fmt: skip
         return own.read(file)
 
@@ -109,3 +124,11 @@ class Reading:
         return read_measured(
             file, dt=self.dt, units=self.units, channel=channel, quantity=self.quantity, gain=self.gain, uneven=uneven
         )
+
+
+def _same(one: str | Path, other: str | Path) -> bool:
+    """Whether two paths are of one file, however they are written."""
+    try:
+        return Path(one) == Path(other) or Path(one).samefile(other)
+    except OSError:  # one is not there, which is said where it is read
+        return False

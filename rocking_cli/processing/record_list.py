@@ -7,12 +7,12 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.selection import select
 from rocking_cli.io.field_problems import problems
 from rocking_cli.io.yaml_file import parse, read_text
 from rocking_cli.processing.entry import Entry
-from rocking_cli.processing.listed import Listed
+from rocking_cli.processing.listed import Listed, is_list
 
 HINT = "`rocking select` writes one"
 
@@ -40,6 +40,9 @@ def read_list(path: Path) -> list[Listed]:
     """
     document = parse(read_text(path, "list of records"), str(path), "list of records", HINT)
     document.check()
+    if "records" not in document.data and "mechanism" in document.data:
+        what = "this is a structure, and no list of records"
+        raise InputError(Problem(what, str(path), hint="a structure is given by its file alone, motions with `record`"))
     try:
         known = RecordList.model_validate(document.data)
     except ValidationError as error:
@@ -51,7 +54,12 @@ def read_list(path: Path) -> list[Listed]:
             document.problems.append(document.at(("records", k), "names no file"))
             continue
         try:
-            listed += [Listed(each, entry, path.parent) for each in select(entry.file, path.parent)]
+            found = select(entry.file, path.parent)
+            if any(is_list(each) for each in found):
+                what = "is a list of records itself: name the records in it"
+                document.problems.append(document.at(("records", k, "file"), what))
+                continue
+            listed += [Listed(each, entry, path.parent) for each in found]
         except InputError as error:
             place = ("records", k, "file")
             document.problems += [document.at(place, f"{one.file}: {one.message}", one.hint) for one in error.problems]

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, floor, inf, isfinite
+from math import floor, inf, isfinite
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.text import did_you_mean
+from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, read
 
 Reals = NDArray[np.float64]
@@ -99,7 +99,7 @@ class Filter(Step):
     @property
     def value(self) -> str:
         """The corner."""
-        return f"{self.frequency:.9g}"
+        return exact(self.frequency)
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -114,6 +114,8 @@ class Filter(Step):
         if self.frequency >= nyquist:
             message = f"{self.frequency:g} Hz is not below {nyquist:.4g} Hz, the highest in samples at {motion.dt:g} s"
             raise self.refused(motion, message, "give a lower one, or leave the filter out")
+        if slowest >= nyquist:
+            raise self.refused(motion, f"{motion.npts} samples are too few for a filter")
         if self.frequency < slowest * (1 - 1e-9):
             message = f"a record of {motion.duration:.4g} s does not hold one period of {self.frequency:g} Hz"
             raise self.refused(motion, message, f"give {1.01 * slowest:.3g} Hz at least")
@@ -152,7 +154,7 @@ class Taper(Step):
     @property
     def value(self) -> str:
         """The share at each end."""
-        return f"{self.share:.9g}"
+        return exact(self.share)
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -183,7 +185,7 @@ class Trim(Step):
     @property
     def value(self) -> str:
         """The two times."""
-        return f"{self.start:.9g}:{self.end:.9g}" if self.end < inf else f"{self.start:.9g}:"
+        return f"{exact(self.start)}:{exact(self.end)}" if self.end < inf else f"{exact(self.start)}:"
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -219,12 +221,15 @@ class Resample(Step):
     dt: float
 
     FINEST: ClassVar[int] = 1000  # parts of an interval
+    COARSEST: ClassVar[int] = 100_000  # intervals in one
+    MOST: ClassVar[int] = 50_000_000  # samples that a finer interval may make
     STEPS: ClassVar[int] = 20_000  # of the ratio of the intervals as a fraction
+    LONGEST: ClassVar[int] = 1_000_000  # numerator of that fraction: scipy's filter is twenty times as long
 
     @property
     def value(self) -> str:
         """The interval."""
-        return f"{self.dt:.9g}"
+        return exact(self.dt)
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -242,9 +247,16 @@ class Resample(Step):
         if self.dt > motion.duration:
             message = f"of {motion.duration:.4g} s fewer than two samples would be left"
             raise self.refused(motion, message)
+        if ratio > self.COARSEST:
+            message = f"{self.dt:g} s is more than {self.COARSEST} of the {motion.dt:g} s between its samples"
+            raise self.refused(motion, message)
         if ratio < 1:
+            if motion.npts / ratio > self.MOST:
+                message = f"{motion.npts / ratio:.3g} samples would be made, and {self.MOST:.3g} are the most"
+                raise self.refused(motion, message)
             return self._finer(motion)
-        return self._coarser(motion, Fraction(ratio).limit_denominator(self.STEPS))
+        steps = max(min(self.STEPS, int(self.LONGEST / ratio)), 1)
+        return self._coarser(motion, Fraction(ratio).limit_denominator(steps))
 
     def _finer(self, motion: GroundMotion) -> GroundMotion:
         time = self.dt * np.arange(floor(motion.duration / self.dt * (1 + 1e-12)) + 1)
@@ -258,8 +270,8 @@ class Resample(Step):
         dt = motion.dt * float(ratio)
         if abs(dt / self.dt - 1) < 1e-9:
             dt = self.dt
-        inside = ceil(motion.duration / dt - 1e-9) + 1  # none is beyond the last sample
-        return _of_samples(motion, samples[: inside if (inside - 1) * dt <= motion.duration * (1 + 1e-9) else -1], dt)
+        inside = floor(motion.duration / dt * (1 + 1e-9)) + 1  # none is beyond the last sample
+        return _of_samples(motion, samples[:inside], dt)
 
 
 @dataclass(frozen=True)
@@ -273,7 +285,7 @@ class Factor(Step):
     @property
     def value(self) -> str:
         """The number."""
-        return f"{self.by:.15g}"
+        return exact(self.by)
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -324,8 +336,8 @@ def parse_steps(entries: Sequence[Mapping[str, Any] | str]) -> tuple[Step, ...]:
     return tuple(found)
 
 
-def process(motion: GroundMotion, steps: Sequence[Step]) -> GroundMotion:
-    """A motion after some steps, in their order; its vertical component goes through the same.
+def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool = True) -> GroundMotion:
+    """A motion after some steps, in their order; its vertical component goes through the same, but not upside down.
 
     Parameters
     ----------
@@ -333,6 +345,8 @@ def process(motion: GroundMotion, steps: Sequence[Step]) -> GroundMotion:
         As read.
     steps : sequence of Step
         In the order of their doing.
+    accelerations : bool
+        Whether its samples are accelerations, and not yet to be differentiated.
 
     Returns
     -------
@@ -349,20 +363,28 @@ def process(motion: GroundMotion, steps: Sequence[Step]) -> GroundMotion:
     from rocking_cli.excitation.doubts import of_samples
 
     raw = motion
-    vertical = process(motion.vertical, steps) if motion.vertical is not None else None
+    vertical = process(motion.vertical, of_vertical(steps)) if motion.vertical is not None else None
+    ground = process(motion.ground, steps) if motion.ground is not None else None
     for step in steps:
         motion = step.of(motion)
     if not np.isfinite(motion.acceleration).all():
         raise InputError(Problem("is beyond the range of numbers after its corrections", raw.name))
-    remarks = (*raw.remarks, *of_samples(raw))
+    remarks = (*raw.remarks, *of_samples(raw, accelerations=accelerations))
     if any(isinstance(step, Lowpass) for step in steps):
         remarks = tuple(each for each in remarks if each.kind != "resolution")
     done = (*raw.processing, *map(str, steps))
-    return replace(motion, vertical=vertical, remarks=remarks, processing=done)
+    return replace(motion, vertical=vertical, ground=ground, remarks=remarks, processing=done)
+
+
+def of_vertical(steps: Sequence[Step]) -> tuple[Step, ...]:
+    """The steps of a motion for its vertical component: a negative factor reverses the horizontal one alone."""
+    return tuple(replace(step, by=abs(step.by)) if isinstance(step, Factor) else step for step in steps)
 
 
 def _of_samples(motion: GroundMotion, samples: Reals, dt: float | None = None) -> GroundMotion:
-    return replace(motion, acceleration=samples, dt=motion.dt if dt is None else dt, points=None)
+    dt = motion.dt if dt is None else dt
+    every = max(round(motion.every * motion.dt / dt), 1)  # what a history shows stays as far apart
+    return replace(motion, acceleration=samples, dt=dt, every=every, points=None)
 
 
 def _number(step: type[Step], text: str, what: str) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.records.sensor import Wanted, quantity_of
+from rocking_cli.excitation.records.sensor import Wanted, plural, quantity_of
 from rocking_cli.excitation.records.units import header_units, is_unit, other_quantity
 
 MOST = 1000  # columns of a table
@@ -132,10 +132,9 @@ def choose(
     times = _times(table, names, increases)
     values = [k for k in range(len(table)) if k not in times and _may_be(str(names[k]), wanted)]
     if not values:
-        message = f"none of the columns holds {'values' if wanted.raw else wanted.quantity + 's'}"
-        message = message.replace("velocitys", "velocities")
-        raise InputError(Problem(message, file, hint=f"there are:{_listed(table, names, times, values)}"))
-    place = 0 if asked is None and len(values) == 1 else _place(file, table, names, times, values, asked)
+        message = f"none of the columns holds {_values(wanted)}"
+        raise InputError(Problem(message, file, hint=f"there are:{_listed(table, names, times, values, wanted)}"))
+    place = 0 if asked is None and len(values) == 1 else _place(file, table, names, times, values, asked, wanted)
     column = values[place]
     time = max((k for k in times if k < column), default=min(times, default=None))
     channel = "" if len(values) == 1 else names[column].name or str(place + 1)
@@ -198,11 +197,14 @@ def _place(
     times: Sequence[int],
     values: Sequence[int],
     asked: str | None,
+    wanted: Wanted,
 ) -> int:
     """Index in `values` of the column that is asked for."""
-    listed = _listed(table, names, times, values)
+    listed = _listed(table, names, times, values, wanted)
     if asked is None:
-        message = f"the table has {len(values)} columns that may be accelerations, and only one can shake a structure"
+        message = (
+            f"the table has {len(values)} columns that may be {_values(wanted)}, and only one can shake a structure"
+        )
         if not any(label.name for label in names) and not times:
             listed += "\n  values that run on from line to line are no table: give the file as the data centre made it"
         raise InputError(Problem(message, file, hint=f"choose one with `channel`, by place or name:{listed}"))
@@ -232,16 +234,30 @@ def _without_unit(name: str) -> str:
     return _plain(re.sub(r"\s*(?:\[[^\]]*\]|\([^)]*\))\s*$", "", name))
 
 
-def _listed(table: NDArray[np.float64], names: Sequence[Label], times: Sequence[int], values: Sequence[int]) -> str:
-    """A line for each column of accelerations, with place, name, unit and largest number, and what the others are."""
+def _values(wanted: Wanted) -> str:
+    """What is asked for, several of them."""
+    return "values" if wanted.raw else plural(wanted.quantity)
+
+
+def _units(label: str, wanted: Wanted) -> set[str]:
+    """The units that a label states for what is asked for."""
+    if wanted.raw or wanted.quantity == "acceleration":
+        return header_units(label)
+    return {unit for unit in _BRACKETED.findall(label) if quantity_of(unit) == wanted.quantity}
+
+
+def _listed(
+    table: NDArray[np.float64], names: Sequence[Label], times: Sequence[int], values: Sequence[int], wanted: Wanted
+) -> str:
+    """A line for each column that may be meant, with place, name, unit and largest number, and what the others are."""
     out = []
     for place, k in enumerate(values, start=1):
-        units = header_units(str(names[k]))
+        units = _units(str(names[k]), wanted)
         unit = f"in {units.pop()}" if len(units) == 1 else "unit not said"
         name = f"{names[k]}, " if names[k].name else ""
         out.append(f"\n    {place}: {name}column {k + 1}, {unit}, peak {float(np.abs(table[k]).max()):.4g}")
     for k, label in enumerate(names):
         if k not in values:
-            what = "time" if k in times else "no acceleration"
+            what = "time" if k in times else f"no {wanted.quantity}"
             out.append(f"\n    column {k + 1}{f', {label},' if label.name else ''} is {what}")
     return "".join(out[:LISTED]) + (f"\n    and {len(out) - LISTED} more" if len(out) > LISTED else "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import isclose, isfinite
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -15,7 +15,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
 from rocking_cli.excitation.records.units import UNITS, canonical, header_units, resolve_unit
-from rocking_cli.text import did_you_mean
+from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import KINDS
 
 Quantity = Literal["acceleration", "velocity", "displacement"]
@@ -26,11 +26,24 @@ OTHER_UNITS: dict[Quantity, tuple[str, ...]] = {
 }
 """The units of what is differentiated; those of accelerations are in `units.UNITS`."""
 EXAMPLE = "0.05 m/V"
+LEAST, MOST = 1e-30, 1e30  # of the number in a gain: beyond them products overflow
+TIMES = frozenset(
+    ["s", "sec", "second", "seconds", "ms", "min", "minute", "minutes", "h", "hr", "hour", "hours", "d", "day", "days"]
+)
 COARSE = 0.05  # of the peak: what one step of the smallest digit may make of it
 
 _IN_HEADER = re.compile(r"[\[(]\s*([^\])\s]+)\s*[\])]|\bin\s+([^\s,;]+)")
+_BRACKETED = re.compile(r"[\[(]\s*([^\])\s]+)\s*[\])]")
 _FORM = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.ASCII)
 _PER = re.compile(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
+
+
+class _Stated(NamedTuple):
+    """A unit that a header states, its size, and the line."""
+
+    unit: str
+    size: float
+    line: int
 
 
 class Wanted(NamedTuple):
@@ -67,21 +80,47 @@ class Wanted(NamedTuple):
                 message = f"the header says that the values are in {', '.join(sorted(stated))} already"
                 raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint="leave `gain` out"))
 
-    def _other_unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
-        known = ", ".join(units_of(self.quantity))
-        if units is not None:
-            size = size_of(units, self.quantity)
-            if size is None:
-                message = f"'{units}' is no unit of a {self.quantity}"
-                raise InputError(Problem(message, field="`units`", hint=f"choose one of: {known}"))
-            return units, size
-        for _, line in reversed(header):
+    def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
+        """Refuse labels whose units in brackets are of other quantities alone."""
+        for number, line in header[-1:]:
+            said = {each: unit for unit in _BRACKETED.findall(line) if (each := quantity_of(unit)) is not None}
+            if said and self.quantity not in said:
+                other, unit = next(iter(said.items()))
+                message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
+                hint = f"is it `from` {other}?"
+                raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
+
+    def _stated(self, header: Sequence[tuple[int, str]]) -> _Stated | None:
+        """What the header says the unit is."""
+        for number, line in reversed(header):
             for one in (a or b for a, b in _IN_HEADER.findall(line)):
                 if (size := size_of(one, self.quantity)) is not None:
-                    return one, size
-        message = f"the file does not say what unit its {self.quantity}s are in"
+                    return _Stated(one, size, number)
+        return None
+
+    def _other_unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
+        known = ", ".join(units_of(self.quantity))
+        size = None if units is None else size_of(units, self.quantity)
+        if units is not None and size is None:
+            message = f"'{units}' is no unit of a {self.quantity}"
+            raise InputError(Problem(message, field="`units`", hint=f"choose one of: {known}"))
+        self._refuse_another(file, header)
+        stated = self._stated(header)
+        if size is not None and stated is not None and not isclose(size, stated.size):
+            message = f"the header says the unit is {stated.unit}, but `units` says {units}"
+            raise InputError(Problem(message, file, stated.line, hint="leave `units` out, or correct the header"))
+        if units is not None and size is not None:
+            return units, size
+        if stated is not None:
+            return stated.unit, stated.size
+        message = f"the file does not say what unit its {plural(self.quantity)} are in"
         hint = f"say which it is with `units`: {known}; or with `gain`, such as {EXAMPLE}"
-        raise InputError(Problem(message.replace("ys are", "ies are"), file, hint=hint))
+        raise InputError(Problem(message, file, hint=hint))
+
+
+def plural(quantity: Quantity) -> str:
+    """What several are called."""
+    return "velocities" if quantity == "velocity" else f"{quantity}s"
 
 
 def units_of(quantity: Quantity) -> tuple[str, ...]:
@@ -134,19 +173,22 @@ class Gain:
             If it is no number, or has no unit of an acceleration, a velocity or a length.
         """
         match = _FORM.fullmatch(text)
-        if match is None or not (isfinite(float(match[1])) and float(match[1])):
+        if match is None or not LEAST <= abs(float(match[1])) <= MOST:
             raise _refused(f"{text!r} is not a number with a unit")
         number, unit = match[1], match[2]
         if not unit:
             raise _refused(f"{text!r} is a gain without a unit")
-        of = unit if quantity_of(unit) else (per[1] if (per := _PER.fullmatch(unit)) else unit)
+        per = None if quantity_of(unit) else _PER.fullmatch(unit)
+        if per is not None and per[2].lower() in TIMES:
+            raise _refused(f"{unit!r} is no unit known here, and {per[2]!r} no output of an instrument")
+        of = unit if per is None else per[1]
         quantity = quantity_of(of)
         if quantity is None:
             known = [name for each in QUANTITIES for name in units_of(each)]
             raise _refused(f"{of!r} is no unit of an acceleration, a velocity or a length", did_you_mean(of, known))
         size = size_of(of, quantity)
         assert size is not None
-        return cls(float(number) * size, quantity, f"{float(number):g} {unit}")
+        return cls(float(number) * size, quantity, f"{exact(float(number))} {unit}")
 
 
 def _refused(message: str, guess: str | None = None) -> InputError:
@@ -154,7 +196,14 @@ def _refused(message: str, guess: str | None = None) -> InputError:
     return InputError(Problem(message, field="`gain`", hint=f"{hint}say what one unit stands for, such as {EXAMPLE}"))
 
 
-def as_acceleration(measured: GroundMotion, quantity: Quantity) -> GroundMotion:
+def smallest_step(measured: GroundMotion) -> float:
+    """The smallest difference of neighbours that is not zero, as a rule one of the last digit; 0 if there is none."""
+    steps = np.abs(np.diff(measured.acceleration))
+    smallest = float(steps[steps > 0].min(initial=np.inf))
+    return smallest if isfinite(smallest) else 0.0
+
+
+def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | None = None) -> GroundMotion:
     """The ground acceleration, of what was measured and stands in the place of it.
 
     Parameters
@@ -163,6 +212,8 @@ def as_acceleration(measured: GroundMotion, quantity: Quantity) -> GroundMotion:
         Its "accelerations" are displacements [m] or velocities [m/s]; of accelerations it is given back.
     quantity : str
         What they are.
+    step : float, optional
+        What `smallest_step` was before corrections, which hide it; 0 to raise no doubt about it.
 
     Returns
     -------
@@ -173,11 +224,12 @@ def as_acceleration(measured: GroundMotion, quantity: Quantity) -> GroundMotion:
     if quantity == "acceleration":
         return measured
     dt, values = measured.dt, measured.acceleration
+    step = smallest_step(measured) if step is None else step
     inner = np.diff(values, 2) / dt**2 if quantity == "displacement" else (values[2:] - values[:-2]) / (2 * dt)
     found = np.pad(inner, 1)
     if not np.isfinite(found).all():
         raise InputError(Problem("its differences are beyond the range of numbers", measured.name))
-    remarks = (*measured.remarks, *of_samples(measured), *_resolution(values, found, dt, quantity))
+    remarks = (*measured.remarks, *of_samples(measured, accelerations=False), *_resolution(step, found, dt, quantity))
     return replace(measured, acceleration=found, remarks=remarks, processing=(*measured.processing, said(quantity)))
 
 
@@ -192,14 +244,8 @@ def in_words(quantity: Quantity, dt: float) -> str:
     return f"differentiated {twice}by central differences, which leave half of what is at {half:.3g} Hz"
 
 
-def _resolution(
-    values: NDArray[np.float64], found: NDArray[np.float64], dt: float, quantity: Quantity
-) -> tuple[Doubt, ...]:
+def _resolution(smallest: float, found: NDArray[np.float64], dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
     """What one step of the smallest digit becomes, where it is much of the whole."""
-    steps = np.abs(np.diff(values))
-    seen = steps[steps > 0]
-    # Rounding of the numbers themselves is no step, and corrected values have none: most steps are the smallest, then.
-    smallest = float(seen.min(initial=np.inf))
     power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
     noise = smallest / dt**power
     peak = float(np.abs(found).max())

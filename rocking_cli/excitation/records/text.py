@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import Doubt, GroundMotion
+from rocking_cli.excitation.record_csv import DONE
 from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, labels
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.sensor import Wanted
+from rocking_cli.excitation.records.sensor import Wanted, plural
 from rocking_cli.excitation.records.times import UnevenTimeError, even_interval, on_grid
 from rocking_cli.excitation.records.widths import Rows, unlike_the_others
 
@@ -76,7 +77,7 @@ def read(
     if columns > 2 or (columns == 2 and channel is not None and label_lines):
         table = _table(file, lines, start, delimiter, names, commas=commas)
         _refuse_a_single_sample(file, start, table)
-        choice = choose(file, table, names, channel, _increases_evenly, wanted)
+        choice = choose(file, table, names, channel, _increases if wanted.uneven else _increases_evenly, wanted)
         header = [each for each in header if each[0] not in label_lines]
         header += [(number, str(names[choice.column])) for number in label_lines[:1]]
     elif channel is not None and channel.strip().lower() != names[-1].name.lower():
@@ -89,8 +90,9 @@ def read(
     except InputError as error:
         problems.extend(error.problems)
     if choice.time is None and dt is None:
-        what = "one column of accelerations" if columns == 1 else "no column is called time or is one"
-        hint = "give it with `dt`, in seconds, or add a time column before the accelerations"
+        kind = "values" if wanted.raw else plural(wanted.quantity)
+        what = f"one column of {kind}" if columns == 1 else "no column is called time or is one"
+        hint = f"give it with `dt`, in seconds, or add a time column before the {kind}"
         problems.append(Problem(f"{what}, and no sample interval", file=file, hint=hint))
     if problems:
         raise InputError(*problems)
@@ -104,7 +106,7 @@ def read(
         try:
             own = _interval(file, lines, start, table[choice.time], column)
         except InputError:
-            if not wanted.uneven or (found := on_grid(table[choice.time], values)) is None:
+            if not wanted.uneven or (found := _on_grid(file, lines, start, table[choice.time], values)) is None:
                 raise
             own, values, uneven = found
         check_interval(file, None, own, dt)
@@ -230,6 +232,8 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
     comments, header = [], []
     for number, line in enumerate(lines, start=1):
         line = line.strip()
+        if line.startswith(DONE):  # names of files and gains in it are of what was read before
+            continue
         if line.startswith(("#", "%")):
             comments.append((number, line.lstrip("#% \t")))
         elif line:
@@ -332,6 +336,11 @@ def _increases_evenly(column: NDArray[np.float64]) -> bool:
     return True
 
 
+def _increases(column: NDArray[np.float64]) -> bool:
+    """Whether a column may be one of uneven times."""
+    return bool((np.diff(column) > 0).all())
+
+
 def _interval(file: str, lines: Lines, start: int, time: NDArray[np.float64], column: str) -> float:
     """Interval of the times in a column [s], which has a name if there are several."""
     try:
@@ -341,6 +350,17 @@ def _interval(file: str, lines: Lines, start: int, time: NDArray[np.float64], co
             raise InputError(Problem(error.message, file=file, field=column or None, hint=error.hint)) from None
         found = _at_row(file, lines, start, error.row, error.message, error.hint)
         raise InputError(replace(found, field=column or None)) from None
+
+
+def _on_grid(
+    file: str, lines: Lines, start: int, time: NDArray[np.float64], values: NDArray[np.float64]
+) -> tuple[float, NDArray[np.float64], Doubt] | None:
+    """Values at even times; see `times.on_grid`."""
+    try:
+        return on_grid(time, values)
+    except UnevenTimeError as error:
+        assert error.row is not None
+        raise InputError(_at_row(file, lines, start, error.row, error.message, error.hint)) from None
 
 
 def _at_row(file: str, lines: Lines, start: int, row: int, message: str, hint: str) -> Problem:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import Doubt
 
+SPARSE = 10  # times as many samples as were recorded, that an even grid may have
 _LEAST = 1e-9  # s
 _FEWEST, _MOST = 5, 12  # significant digits that programs print numbers with
 _FINE = 0.01  # share of times that must be finer than the coarsest one, or they have decimals and no digits in common
@@ -102,13 +103,24 @@ def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[flo
     -------
     (float, ndarray, Doubt) or None
         The usual interval [s], the values at it, and how uneven the times are; None where they do not increase.
+
+    Raises
+    ------
+    UnevenTimeError
+        Where most of the grid would lie in gaps between the samples.
     """
     steps = np.diff(time)
     if not (steps > 0).all():
         return None
     dt = float(f"{np.median(steps):.6g}")  # a clock ticks in a number that people write
-    even = time[0] + dt * np.arange(int((time[-1] - time[0]) / dt * (1 + 1e-9)) + 1)
     longest = int(steps.argmax())
+    count = (time[-1] - time[0]) / dt * (1 + 1e-9)
+    if not count < SPARSE * len(time):
+        message = (
+            f"nothing was recorded from {time[longest]:g} to {time[longest + 1]:g} s, at steps of {dt:g} s elsewhere"
+        )
+        raise UnevenTimeError(message, "cut the file there: straight lines over such gaps are no record", longest + 1)
+    even = time[0] + dt * np.arange(int(count) + 1)
     odd = int((np.abs(steps - dt) > 0.01 * dt).sum())
     text = (
         f"its times are uneven: {odd} of {steps.size} steps are not within 1 % of {dt:g} s, they go from "

@@ -90,7 +90,7 @@ def prepare(
     facts = {"description": study.description(), "versions": versions(study), "hash": digest(study.description())}
     asked = {
         "name": study.name,
-        "definition": given.model_dump(mode="json", exclude_unset=True),
+        "definition": given.model_dump(mode="json", exclude_unset=True, by_alias=True),
         "hazard": _hazard(study),
         "weights": [source.entry.weight for source in study.sources],
     }

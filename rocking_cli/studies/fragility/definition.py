@@ -138,8 +138,13 @@ class RecordEntry(Entry, Part):
             yield (), "give a file or a pulse"
         elif "pulse" in there and there - {"pulse", "floor", "weight", "level"}:
             yield (), "units, dt, channel, vertical and the like describe a file"
-        if "azimuth" in there and not there & {"with", "other"}:
+        pair = bool(there & {"with", "other"})
+        if "azimuth" in there and not pair:
             yield ("azimuth",), "is between two components: give the file of the second with `with`"
+        if there & {"with_channel", "other_channel"} and not pair:
+            yield ("with_channel",), "is of a second component: give its file with `with`"
+        if pair and "azimuth" not in there:
+            yield (), "azimuth is missing: 0 for the record, 90 for that of `with`, or what is between them"
 
 
 class Levels(Part):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from rocking_cli.excitation.selection import select
 from rocking_cli.io.field_problems import say
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import Document, Place
-from rocking_cli.processing.entry import as_written
+from rocking_cli.processing.entry import Entry, as_written
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import is_list
 from rocking_cli.processing.record_list import read_list
@@ -184,6 +184,7 @@ def load_study(path: str | Path) -> Study:
         for k, entry in usable_entries(document, "records", RecordEntry)
         for source in _sources(document, ("records", k), path.parent, entry, common or Common())
     ]
+    sources = _apart(sources)
     _refuse_repeated(document, "records", [_unlike_others(source) for source in sources])
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
     if checks_sliding(document.data):
@@ -266,6 +267,8 @@ def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry,
         what = "a second component belongs to one record: give each record an entry of its own"
         document.problems.append(document.at((*place, "with"), what))
         return []
+    if other:  # a pattern stands for the one file
+        entry = entry.model_copy(update={"other": _shown(other[0], folder)})
     return [one for each in files for one in _of_file_or_list(document, place, folder, entry, common, each, vertical)]
 
 
@@ -283,6 +286,10 @@ def _of_file_or_list(
     if not is_list(file):
         shown = _shown(file, folder)
         return [Source(_at_level(shown, entry), entry, reading, shown, file, vertical)]
+    if vertical is not None:
+        what = "a vertical component belongs to one record, and this is a list of them: give each an entry of its own"
+        document.problems.append(document.at((*place, "vertical"), what))
+        return []
     try:
         listed = read_list(file)
     except InputError as error:
@@ -291,11 +298,20 @@ def _of_file_or_list(
     found = []
     for each in listed:
         assert each.entry is not None
-        said = {**as_written(entry), **as_written(each.entry), "file": str(entry.file)}
-        own = RecordEntry.model_validate(said)
+        own = RecordEntry.model_validate(_together(entry, each.entry))
         shown = _shown(each.path, folder)
         found.append(Source(_at_level(shown, own), own, each.reading(reading), shown, each.path))
     return found
+
+
+def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
+    """What the entry of a study and that of a list in it say of a record; their corrections come one after another."""
+    said = {**as_written(entry), **as_written(listed), "file": str(entry.file)}
+    steps = [*(listed.processing or []), *(entry.processing or [])]
+    if listed.factor is not None and (entry.processing or entry.factor is not None):
+        steps.insert(len(listed.processing or []), {"factor": listed.factor})
+        said["factor"] = entry.factor
+    return {**said, "processing": steps or None}
 
 
 def _at_level(name: str, entry: RecordEntry) -> str:
@@ -303,10 +319,25 @@ def _at_level(name: str, entry: RecordEntry) -> str:
     return name if entry.level is None else f"{name} at {entry.level:g}"
 
 
+def _in_words(name: str, entry: RecordEntry) -> str:
+    """A record by its file, and by which channel and direction of it is taken."""
+    channel = "" if entry.channel is None else f" channel {entry.channel}"
+    towards = "" if entry.azimuth is None or entry.other is None else f" azimuth {entry.azimuth:g}"
+    return _at_level(f"{name}{channel}{towards}", entry)
+
+
+def _apart(sources: Sequence[Source]) -> list[Source]:
+    """The records, those of one file called by their channel and direction too."""
+    names = [source.name for source in sources]
+    return [
+        replace(each, name=_in_words(each.file, each.entry)) if names.count(each.name) > 1 else each for each in sources
+    ]
+
+
 def _unlike_others(source: Source) -> str:
-    """What may stand in a study once only: a file, or a pulse; of a set, in it."""
+    """What may stand in a study once only: a channel and direction of a file, or a pulse; of a set, in it."""
     place = source.path.resolve().as_posix() if source.path else source.file
-    return _at_level(place, source.entry)
+    return _in_words(place, source.entry)
 
 
 def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:

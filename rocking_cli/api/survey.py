@@ -1,0 +1,161 @@
+"""Many structures, and one structure over one of its numbers, in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking_cli.api.answer import Answer
+from rocking_cli.api.verbs import Motion, Structure, _each, _motion, _structure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.studies.design import Design
+    from rocking_cli.studies.survey import Entry, Survey
+
+Table = str | Path | Mapping[str, Sequence[Any]]
+"""A CSV file, or columns by their headings."""
+
+
+def survey(
+    structures: Table | Sequence[Structure],
+    motions: Motion | Sequence[Motion] = (),
+    *,
+    scale: float = 1.0,
+    polarities: Sequence[int] = (1,),
+    threads: int | None = None,
+) -> Answer[Survey]:
+    """Rank many structures by how vulnerable they are.
+
+    Parameters
+    ----------
+    structures : str or Path, or mapping, or sequence of Mechanism, str or Path
+        A table of structures as a CSV file, or its columns by their headings (a frame of pandas is one); or structures,
+        or their YAML files.
+    motions : GroundMotion, Pulse, str or Path, or a sequence of these
+        What shakes them; without any they are ranked by their uplift acceleration.
+    scale : float
+        Factor on the motions.
+    polarities : sequence of int
+        Of 1 and -1; with both, the worse counts.
+    threads : int, optional
+        How many structures at a time; without it, one for each processor.
+
+    Returns
+    -------
+    Answer of Survey
+        `rows` are ranked, `bad` are those that could not be used, each with the reason.
+
+    Raises
+    ------
+    InputError
+        If the table or a motion cannot be used.
+
+    Notes
+    -----
+    The blocks are those of DeJong and Dimitrakopoulos (2014), Section 3; see `equiv`.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> table = {"mechanism": ["block", "block"], "name": ["a", "b"], "width [mm]": [500, 300], "height": [2, 2]}
+    >>> [row.name for row in rk.survey(table).rows]
+    ['b', 'a']
+    """
+    from rocking_cli.studies.survey import survey as study
+    from rocking_cli.views.survey import columns, title, view
+
+    shaken = [_motion(each).scaled(scale) for each in _each(motions)]
+    found = study(_entries(structures), shaken, polarities, threads=threads)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.survey import draw_survey
+
+        return draw_survey(found, title(found))
+
+    return Answer("survey", found, view(found), lambda: columns(found), figure)
+
+
+def _entries(given: Any) -> Sequence[Entry]:
+    from rocking_cli.studies.structure_table import StructureTable, of_mapping
+    from rocking_cli.studies.survey import Made
+
+    if isinstance(given, str | Path):
+        return StructureTable.read(Path(given))
+    if isinstance(given, Mapping) or hasattr(given, "columns"):
+        return of_mapping(given)
+    return [Made(_structure(each).mechanism) for each in given]
+
+
+def design(
+    structure: Structure,
+    vary: str | tuple[str, float, float],
+    until: str,
+    motions: Motion | Sequence[Motion] = (),
+    *,
+    scale: float = 1.0,
+    polarities: Sequence[int] = (1,),
+    neighbours: int = 200,
+    points: int = 41,
+) -> Answer[Design]:
+    """Find for which values of one of its numbers a structure meets a requirement.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    vary : str, or (str, float, float)
+        A number of it and its range, such as `"width=0.2m:0.8m"`, or `("ties.bar.prestress", 0.0, 5e4)` in the unit of
+        the field. A place in a list is its number, from 0, or the name of the entry.
+    until : str
+        The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number. The metrics are
+        `lambda`, `phi_cr`, `p`, and with motions `peak_ratio` and `overturned`, of their neighbours.
+    motions : GroundMotion, Pulse, str or Path, or a sequence of these
+        What shakes it; the worst counts.
+    scale : float
+        Factor on the motions.
+    polarities : sequence of int
+        Of 1 and -1; with both, the worse counts.
+    neighbours : int
+        How many motions next to each are followed.
+    points : int
+        How many values are tried first.
+
+    Returns
+    -------
+    Answer of Design
+        `value` is the least value from which on it holds, or the largest up to which it does; `holds` the ranges.
+
+    Raises
+    ------
+    InputError
+        If there is no such field or metric, or it needs ground motions.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> round(rk.design(rk.Block(width=0.5, height=2.0), "width=0.2m:0.8m", "lambda >= 0.2").value, 9)
+    0.4
+    """
+    from rocking_cli.structure import Varied
+    from rocking_cli.studies.design import Aim, Span
+    from rocking_cli.studies.design import design as study
+    from rocking_cli.studies.metrics import Shaking
+    from rocking_cli.studies.neighbours import Around
+    from rocking_cli.views.design import columns, view
+
+    ready = _structure(structure)
+    span = Span.parse(vary) if isinstance(vary, str) else Span(vary[0], repr(float(vary[1])), repr(float(vary[2])))
+    varied = Varied(ready.mechanism, span.field, Path(ready.file).parent if ready.file is not None else None)
+    shaken = [_motion(each).scaled(scale) for each in _each(motions)]
+    shaking = Shaking(shaken, polarities, Around(neighbours)) if shaken else None
+    found = study(varied, span.in_unit(varied.unit), Aim.parse(until), shaking, points=points)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.design import draw_design
+
+        return draw_design(found)
+
+    return Answer("design", found, view(found, shaking), lambda: columns(found), figure)

@@ -1,0 +1,135 @@
+"""`rocking design`: for which values of one of its numbers a structure meets a requirement."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli.groups import GroundMotions, Near, Output
+from rocking_cli.cli.quantities import Parsed
+from rocking_cli.errors import INCOMPLETE, InputError
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.design import Aim, Design, Span
+    from rocking_cli.studies.metrics import Shaking
+
+
+def _span() -> Callable[[str], Any]:
+    from rocking_cli.studies.design import Span
+
+    return Span.parse
+
+
+def _aim() -> Callable[[str], Any]:
+    from rocking_cli.studies.design import Aim
+
+    return Aim.parse
+
+
+@click.command(short_help="The least thickness, the largest load: where a requirement holds.")
+@click.argument("file", required=False, type=click.Path())
+@click.option(
+    "--vary", required=True, type=Parsed("field", _span), metavar="FIELD=LOW:HIGH",
+    help="A number of the structure, and its range: width=0.2m:0.8m, ties.bar.prestress=0:50kN, loads.0.mass=1t:9t.",
+)  # fmt: skip
+@click.option(
+    "--until", required=True, type=Parsed("requirement", _aim), metavar="'METRIC OP NUMBER'",
+    help="What is to hold: lambda, phi_cr, p, peak_ratio or overturned, <, <=, > or >=, and a number.",
+)  # fmt: skip
+@click.option(
+    "--points", type=click.IntRange(2, 10_000), default=41, show_default=True, metavar="N",
+    help="Values tried first, at equal steps.",
+)  # fmt: skip
+@options.ground_motions
+@options.reading
+@options.scaling("1", "-1", "both", both="the worse of the two")
+@options.around
+@options.out(".csv", ".parquet", what="Write the values tried and the metric there (.csv or .parquet).")
+@options.plot("Draw the metric over the field")
+@options.as_json
+@click.pass_context
+@options.grouped(asked=GroundMotions, near=Near, output=Output)
+def command(
+    ctx: click.Context,
+    file: str | None,
+    vary: Span,
+    until: Aim,
+    points: int,
+    asked: GroundMotions,
+    near: Near,
+    output: Output,
+) -> None:
+    """Find the least thickness, width or tie force, or the largest load, for which a requirement holds.
+
+    The metrics are lambda, phi_cr and p of `rocking equiv`, the smaller phi_cr and lambda and the larger p of both
+    directions; and, with a ground motion, of the motions next to it the share that overturn (overturned) and the peak
+    over the critical rotation that half of them do not exceed (peak_ratio). Of several motions the worst counts.
+
+    The range is scanned first. Where the metric never turns over it, there is one answer, found closely; where it does,
+    every range in which the requirement holds is given. That it holds nowhere, or everywhere, is a result.
+
+    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+
+    \b
+    Example:
+      rocking design wall.yaml --vary width=200mm:800mm --until "lambda >= 0.15"
+      rocking design facade.yaml --vary ties.bar.prestress=0:100kN --until "lambda > 0.2" --plot tie.png
+      rocking design block.yaml --vary width=0.3m:1m --until "overturned < 5%" --record accel.csv
+    """
+    asked.check()
+    if until.metric.shaken and not asked:
+        raise click.UsageError(f"{until.metric.name} needs a ground motion: give --record PLACE or --pulse PULSE.")
+    if not until.metric.shaken and asked:
+        raise click.UsageError(f"{until.metric.name} is of the structure alone: leave out --record and --pulse.")
+    if until.metric.shaken and not near.neighbours:
+        raise click.UsageError(f"{until.metric.name} is of neighbours: --neighbours must be at least 1 here.")
+    from rocking_cli.cli import structures
+    from rocking_cli.io.files import keep_apart
+    from rocking_cli.io.tables import check_table
+    from rocking_cli.structure import Varied
+    from rocking_cli.views.design import columns, view
+
+    check_table(output.out)
+    paths, bad = motion_files.find(asked.records)
+    keep_apart([("--out", output.out), ("--plot", output.plot)], [file, *(str(each.path) for each in paths)])
+    structure = structures.prepared([file] if file else [])
+    folder = Path(file).parent if file is not None and file != options.STANDARD_OUTPUT else None
+    varied = Varied(structure.mechanism, vary.field, folder)
+    span = vary.in_unit(varied.unit)
+    shaking = None
+    if asked:
+        chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, structure.growth)
+        bad += refused
+        if not chosen:
+            ctx.exit(InputError.exit_code)
+        shaking = _shaking(chosen, asked, near)
+    found = _design(varied, span, until, shaking, points)
+    output.write(lambda: [columns(found)], lambda: _draw(found))
+    terminal.show(view(found, shaking), as_json=output.as_json)
+    if bad:
+        ctx.exit(INCOMPLETE)
+
+
+def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Shaking:
+    from rocking_cli.cli.waiting import compile_first
+    from rocking_cli.studies.metrics import Shaking
+
+    compile_first()
+    return Shaking([each.motion.scaled(each.factor) for each in chosen], asked.signs, near.around)
+
+
+def _design(varied: Any, span: tuple[float, float], until: Aim, shaking: Shaking | None, points: int) -> Design:
+    from rocking_cli.studies.design import design
+
+    with terminal.progress(points, "values") as advance:
+        return design(varied, span, until, shaking, points=points, progress=advance)
+
+
+def _draw(found: Design) -> Any:
+    from rocking_cli.plotting.design import draw_design
+
+    return draw_design(found)

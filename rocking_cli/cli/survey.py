@@ -1,0 +1,180 @@
+"""`rocking survey`: many structures of a table, ranked by how vulnerable they are."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rocking_cli.cli import complete, motion_files, options, terminal
+from rocking_cli.cli.groups import GroundMotions
+from rocking_cli.errors import INCOMPLETE, InputError, MechanismError
+
+if TYPE_CHECKING:
+    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.studies.structure_table import StructureTable
+    from rocking_cli.studies.survey import Survey
+
+NAMED = 20  # rows that cannot be used, named one by one
+LONG, LONG_SHAKEN = 10_000, 1_000  # rows from which on processes are worth their beginning
+FEW = 3  # doubts about sizes, likewise
+
+
+@dataclass(frozen=True)
+class Results:
+    """What is made of a survey."""
+
+    top: int
+    out: Path | None
+    page: Path | None
+    plot: Path | None
+    as_json: bool
+
+    def write(self, found: Survey, file: str) -> None:
+        """Write the files that are asked for, and say so."""
+        from rocking_cli.views.survey import blocks, title
+
+        if self.out is not None:
+            from rocking_cli.cli import table_files
+            from rocking_cli.io.tables import PARQUET
+
+            table_files.write(self.out, blocks(found, for_spreadsheets=self.out.suffix.lower() != PARQUET))
+        if self.plot is not None:
+            from rocking_cli.cli.pictures import write_picture
+            from rocking_cli.plotting.survey import draw_survey
+
+            write_picture(self.plot, draw_survey(found, title(found)))
+        if self.page is not None:
+            self._write_page(self.page, found, file)
+
+    def _write_page(self, place: Path, found: Survey, file: str) -> None:
+        from rocking_cli import __version__
+        from rocking_cli.io.files import write_whole
+        from rocking_cli.report.survey import render
+
+        today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
+        page = render(found, Path(file).name, [f"Written on {today} with rocking-cli {__version__}."]).encode()
+        write_whole(place, lambda stream: stream.write(page))
+        terminal.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")
+
+
+@click.command(short_help="Many structures of a table, the most vulnerable first.")
+@click.argument("file", metavar="TABLE.csv", type=click.Path())
+@options.ground_motions
+@options.reading
+@options.scaling("1", "-1", "both", both="the worse of the two")
+@click.option(
+    "--top", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="How many are shown."
+)  # fmt: skip
+@options.out(".csv", ".parquet", what="Write all rows, ranked (.csv or .parquet).")
+@click.option(
+    "--page", callback=options.output_path(".html"), metavar="FILE.html", shell_complete=complete.files,
+    help="Write a page: all rows in a table that sorts, and a picture.",
+)  # fmt: skip
+@options.plot("Draw the acceleration at uplift over the frequency parameter")
+@options.as_json
+@click.pass_context
+@options.grouped(asked=GroundMotions, results=Results)
+def command(ctx: click.Context, file: str, asked: GroundMotions, results: Results) -> None:
+    """Rank many structures, a row of a table each, by how vulnerable they are.
+
+    Columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for what is inside (loads.0.mass,
+    ties.bar.stiffness); any mechanism may stand in any row. A column `file` names YAML files, which the other columns
+    change. An empty cell is a field that is not given; units stand in cells (800 mm) or headings (width [mm]).
+
+    Without a ground motion they are ranked by the acceleration at uplift; with some by the share of the motions that
+    overturn them, then by the largest peak, by the nonlinear model. TABLE.csv may be - for standard input.
+
+    A row that cannot be used is reported with its line, the others are done, and the exit code is 5.
+
+    \b
+    Example:
+      rocking survey parapets.csv --page parapets.html
+      rocking survey parapets.csv --record "records/*.AT2" --polarity both --out ranked.csv
+    """
+    asked.check()
+    from rocking_cli.io.files import keep_apart
+    from rocking_cli.io.tables import check_table
+
+    check_table(results.out)
+    paths, missing = motion_files.find(asked.records)
+    written = [("--out", results.out), ("--page", results.page), ("--plot", results.plot)]
+    keep_apart(written, [file, *(str(each.path) for each in paths)])
+    table = _table(file)
+    chosen: list[Scaled] = []
+    refused = 0
+    if asked:
+        chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, 0.0)
+        if not chosen:
+            ctx.exit(InputError.exit_code)
+    found = _survey(table, chosen, asked)
+    _report(found, table.sheet.file)
+    if not found.rows:
+        first = found.bad[0].error
+        ctx.exit(MechanismError.exit_code if isinstance(first, MechanismError) else InputError.exit_code)
+    results.write(found, table.sheet.file)
+    from rocking_cli.views.survey import view
+
+    terminal.show(view(found, results.top), as_json=results.as_json)
+    if found.bad or missing or refused:
+        ctx.exit(INCOMPLETE)
+
+
+def _table(file: str) -> StructureTable:
+    """The table of a file or of standard input."""
+    from rocking_cli.errors import Problem
+    from rocking_cli.excitation.records.opening import name_of, original
+    from rocking_cli.io.spreadsheet import parse_sheet, read_sheet
+    from rocking_cli.studies.structure_table import StructureTable
+
+    if file == options.STANDARD_OUTPUT:
+        table = StructureTable(parse_sheet(original(file), name_of(file)), Path())
+    else:
+        table = StructureTable(read_sheet(Path(file)), Path(file).parent)
+    if not len(table):
+        raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
+    if short := table.short:
+        lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
+        terminal.warning(f"{table.sheet.file}: fewer cells than headings in {lines}: what is missing counts as empty")
+    return table
+
+
+def _survey(table: StructureTable, chosen: list[Scaled], asked: GroundMotions) -> Survey:
+    from rocking_cli.cli.waiting import compile_first
+    from rocking_cli.studies.survey import survey
+
+    motions: list[Any] = [each.motion.scaled(each.factor) for each in chosen]
+    if motions:
+        compile_first()
+    count = _processes(len(table), bool(motions))
+    with terminal.progress(len(table), "structures") as advance:
+        return survey(table, motions, asked.signs, processes=count, progress=advance)
+
+
+def _processes(rows: int, shaken: bool) -> int | None:
+    """How many processes share the work; None where threads are as good."""
+    from rocking_cli.dynamics.compiled import unwritable
+    from rocking_cli.dynamics.processes import MOST
+
+    count = min(os.cpu_count() or 1, MOST)
+    if count < 2 or rows < (LONG_SHAKEN if shaken else LONG) or (shaken and unwritable() is not None):
+        return None
+    return count
+
+
+def _report(found: Survey, file: str) -> None:
+    """Say which rows cannot be used, and which sizes are doubtful."""
+    from rocking_cli.text import one_line
+    from rocking_cli.views.survey import bad_lines
+
+    for line in bad_lines(found.bad, file, NAMED):
+        terminal.error(line)
+    doubtful = [each for each in found.rows if each.doubt is not None]
+    for each in doubtful[:FEW]:
+        terminal.warning(f"{one_line(each.name)}: {each.doubt}")
+    if len(doubtful) > FEW:
+        terminal.warning(f"{len(doubtful) - FEW:,} more structures are of doubtful size: --json says which")

@@ -1,0 +1,127 @@
+"""Places in the data of a structure as users write them, with dots: `width`, `loads.0.mass`, `ties.bar.prestress`.
+
+A number is the place of an entry in a list, counted from 0; a word there is the `name` of an entry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.yaml_file import Place
+from rocking_cli.text import cut, did_you_mean
+
+MOST = 10_000  # entries of a list
+HOLE = object()
+"""An entry of a list that nothing has been put in yet."""
+
+
+def words(text: str) -> tuple[str, ...]:
+    """The words of a place. Raises `InputError` if there are none."""
+    found = tuple(part.strip() for part in text.strip().split("."))
+    if not all(found):
+        hint = "write words with a dot between them, such as loads.0.mass"
+        raise InputError(Problem(f"{cut(repr(text))} is no field", hint=hint))
+    return found
+
+
+def put(
+    data: dict[str, Any],
+    path: tuple[str, ...],
+    value: Any,
+    *,
+    is_list: Callable[[Place], bool] = lambda place: False,
+    grow: bool = True,
+) -> Place:
+    """Put a value at a place of plain data, in place.
+
+    Parameters
+    ----------
+    data : dict
+        Mappings and lists; changed.
+    path : tuple of str
+        See `words`.
+    value : any
+        What is to stand there.
+    is_list : callable
+        Whether what is missing at a place is a list, also where a name follows and no number.
+    grow : bool
+        Whether lists may get new entries; a named one gets its name. Those that a number leaves out are holes until
+        `closed` takes them away.
+
+    Returns
+    -------
+    tuple
+        The place: keys, and places in lists.
+
+    Raises
+    ------
+    InputError
+        If a list has no such entry, or something on the way is a number or a text.
+    """
+    here: Any = data
+    place: Place = ()
+    for k, word in enumerate(path):
+        key: Any = _entry(here, word, path[:k], grow=grow) if isinstance(here, list) else word
+        place = (*place, key)
+        if k == len(path) - 1:
+            here[key] = value
+            break
+        inner = here[key] if isinstance(here, list) else here.get(key)
+        if inner is None or inner is HOLE:
+            inner = here[key] = [] if path[k + 1].isdecimal() or is_list(place) else {}
+        if not isinstance(inner, dict | list):
+            raise InputError(Problem(f"{'.'.join(path[: k + 1])} is {cut(repr(inner))}, and holds no {path[k + 1]}"))
+        here = inner
+    return place
+
+
+def replace_at(data: Any, place: Place, value: Any) -> None:
+    """Put another value at a place that is there, as `put` gives it."""
+    for part in place[:-1]:
+        data = data[part]
+    data[place[-1]] = value
+
+
+def _entry(entries: list[Any], word: str, before: tuple[str, ...], *, grow: bool) -> int:
+    """The place of an entry by its number or its name; a new one is made if the list may grow."""
+    names = [each.get("name") if isinstance(each, dict) else None for each in entries]
+    if word in names:
+        return names.index(word)
+    of = ".".join(before)
+    if word.isdecimal():
+        number = int(word) if len(word) < 10 else MOST
+        if number < len(entries):
+            return number
+        if not grow:
+            raise InputError(Problem(f"{of} has no entry {cut(word)}", hint=_known(word, names)))
+        if number >= MOST:
+            raise InputError(Problem(f"{cut(word)} is no place in a list: at most {MOST - 1}"))
+        entries += [HOLE] * (number + 1 - len(entries))
+        return number
+    if not grow:
+        raise InputError(Problem(f"{of} has no entry {cut(word)}", hint=_known(word, names)))
+    entries.append({"name": word})
+    return len(entries) - 1
+
+
+def _known(word: str, names: list[Any]) -> str:
+    named = [str(each) for each in names if isinstance(each, str)]
+    numbers = f"numbers count from 0, here to {len(names) - 1}" if names else "it has none"
+    guess = did_you_mean(word, named) if named else None
+    return f"{guess} {numbers}" if guess and guess.endswith("?") else f"{guess}; {numbers}" if guess else numbers
+
+
+def copied(data: Any) -> Any:
+    """A copy of plain data, of which nothing is shared with the original."""
+    if isinstance(data, dict):
+        return {key: copied(value) for key, value in data.items()}
+    return [copied(each) for each in data] if isinstance(data, list) else data
+
+
+def closed(data: Any) -> Any:
+    """The same data without the entries of lists that nothing was put in."""
+    if isinstance(data, dict):
+        return {key: closed(value) for key, value in data.items()}
+    return [closed(each) for each in data if each is not HOLE] if isinstance(data, list) else data

@@ -1,0 +1,144 @@
+"""Tables of texts as spreadsheets write them: CSV with commas, semicolons or tabs, in UTF-8 or UTF-16."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.files import read_bytes
+from rocking_cli.text import cut, one_line
+
+LARGEST = 100_000_000  # bytes; a million rows of ten columns take half of it
+SEPARATORS = ",;\t"
+DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*(?:[^\d\s,.;][^,;]*)?", re.ASCII)
+_LINE_END = re.compile("\r\n|\r|\n")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row that has something in it.
+
+    Parameters
+    ----------
+    line : int
+        Where it begins in the file, counted from 1.
+    cells : tuple of str
+        As many as there are headings, without blanks at their ends; those that the file leaves out are empty.
+    short : bool
+        Whether the file leaves some out.
+    too_many : str or None
+        What stands beyond the last heading.
+    """
+
+    line: int
+    cells: tuple[str, ...]
+    short: bool = False
+    too_many: str | None = None
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table.
+
+    Parameters
+    ----------
+    file : str
+        What to call it.
+    line : int
+        That of its headings.
+    headings : tuple of str
+        Each once; one that is empty stands over nothing.
+    rows : tuple of Row
+        Those that are not blank.
+    decimal_comma : bool
+        Whether its numbers have commas for points: not where commas part the cells.
+    """
+
+    file: str
+    line: int
+    headings: tuple[str, ...]
+    rows: tuple[Row, ...]
+    decimal_comma: bool
+
+
+def read_sheet(path: Path) -> Sheet:
+    """The table of a file. Raises `InputError` if there is none, or it has no headings, or one of them twice."""
+    return parse_sheet(read_bytes(path, "table", LARGEST), str(path))
+
+
+def parse_sheet(raw: bytes, file: str) -> Sheet:
+    """The table in the content of a file, or of what is called so. Raises as `read_sheet`."""
+    text, skipped = _decoded(raw, file), 0
+    if found := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # what some spreadsheets begin with
+        text, skipped = text[found.end() :], found[0].count("\n")
+    first = next((line for line in _LINE_END.split(text[:100_000]) if line.strip(" \t,;")), "")
+    separator = found[1] if found else _separator(first)
+    lines = _cells(text, separator, file, skipped)
+    try:
+        line, headings = next(lines)
+    except StopIteration:
+        raise InputError(Problem("the table is empty", file, hint="its first row has the headings")) from None
+    while headings and not headings[-1]:
+        headings = headings[:-1]
+    _check_headings(headings, file, line)
+    rows = tuple(_row(number, cells, len(headings)) for number, cells in lines)
+    comma = separator != "," and any(DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row.cells if "," in cell)
+    return Sheet(file, line, tuple(headings), rows, comma)
+
+
+def _decoded(raw: bytes, file: str) -> str:
+    encoding = "utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    try:
+        text = raw.decode(encoding)
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        hint = "save the table as `CSV UTF-8`"
+        raise InputError(Problem("not UTF-8 text", file, line, hint=hint)) from None
+    if "\0" in text:
+        raise InputError(Problem("this is no table: it is binary", file, hint="save the sheet as CSV"))
+    return text
+
+
+def _separator(line: str) -> str:
+    """What parts the cells of a line: what there is most of outside of quotes."""
+    bare = re.sub(r'"[^"]*"|\[[^\]]*\]', "", line)
+    return max(SEPARATORS, key=bare.count)
+
+
+def _cells(text: str, separator: str, file: str, skipped: int) -> Iterator[tuple[int, list[str]]]:
+    """The line in which each row begins, and its cells; blank rows are left out."""
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    while True:
+        line = reader.line_num + 1 + skipped
+        try:
+            cells = [cell.strip() for cell in next(reader)]
+        except StopIteration:
+            return
+        except csv.Error as error:
+            hint = "a quote that opens a cell must close it, and a quote within is written twice"
+            raise InputError(Problem(f"the row that begins here is no CSV: {error}", file, line, hint=hint)) from None
+        if any(cells):
+            yield line, cells
+
+
+def _check_headings(headings: Sequence[str], file: str, line: int) -> None:
+    seen: dict[str, int] = {}
+    problems = []
+    for k, heading in enumerate(headings):
+        if heading and heading in seen:
+            message = f"stands over two columns, number {seen[heading] + 1} and {k + 1}"
+            problems.append(Problem(message, file, line, field=cut(one_line(heading)), hint="take one of them away"))
+        seen.setdefault(heading, k)
+    if problems:
+        raise InputError(*problems)
+
+
+def _row(line: int, cells: list[str], count: int) -> Row:
+    beyond = [cell for cell in cells[count:] if cell]
+    kept = tuple(cells[:count]) + ("",) * (count - len(cells))
+    return Row(line, kept, len(cells) < count, beyond[0] if beyond else None)

@@ -1,0 +1,83 @@
+"""Where a requirement holds: the metric over the field that varies, and the level that it is held against."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.design import Design
+
+HOLDS = "#d6e6f2"
+ROOM = 0.12  # of the height, above what is drawn
+SCAN = 60  # values of the scan that are marked, at most
+
+
+def draw_design(found: Design) -> Figure:
+    """Draw the scan, the level, the ranges in which the requirement holds and the answer.
+
+    Parameters
+    ----------
+    found : Design
+        What to draw.
+    """
+    figure = style.new_figure(3.8)
+    axes = figure.subplots()
+    style.heading(axes, f"{found.structure}: {found.field} for {found.aim}")
+    finite = np.isfinite(found.metric)
+    shown = np.where(finite, found.metric, np.nan)
+    for k, (low, high) in enumerate(found.holds):
+        axes.axvspan(low, high, color=HOLDS, linewidth=0, label=f"{found.aim} holds" if k == 0 else None)
+    axes.axhline(found.aim.level, color=style.EXCEEDED, linewidth=style.BOLD, linestyle="--", label="level asked for")
+    few = finite.sum() <= SCAN
+    axes.plot(
+        found.values, shown, color=style.INK, linewidth=style.BOLD, marker="o" if few else "", markersize=3,
+        label=f"{found.aim.metric.name}, {len(found.values)} values tried",
+    )  # fmt: skip
+    _mark_missing(axes, found)
+    if found.value is not None:
+        at = _height(found)
+        axes.plot(
+            found.value, at, color=style.CURSOR, label=f"answer: {found.value:.5g} {found.unit}".rstrip(), **style.STAR
+        )
+    axes.set_xlim(float(found.values[0]), float(found.values[-1]))
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + ROOM * (high - low))
+    unit = f" [{found.unit}]" if found.unit else ""
+    of_metric = f" [{found.aim.metric.unit}]" if found.aim.metric.unit else ""
+    axes.set_xlabel(style.fitted(f"{found.field}{unit}", 5, style.LABEL), fontsize=style.LABEL, parse_math=False)
+    axes.set_ylabel(f"{found.aim.metric.name}{of_metric}", fontsize=style.LABEL)
+    style.tidy(axes)
+    figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
+    return figure
+
+
+def _height(found: Design) -> float:
+    """Where the answer is drawn: at the level, or where the metric is if it jumps over it."""
+    assert found.value is not None
+    finite = np.isfinite(found.metric)
+    if not finite.any():
+        return found.aim.level
+    if found.aim.metric.shaken:
+        return float(np.interp(found.value, found.values[finite], found.metric[finite]))
+    return found.aim.level
+
+
+def _mark_missing(axes: Axes, found: Design) -> None:
+    """Crosses at the foot where there is no value, and triangles at the top where most neighbours overturn."""
+    across = axes.get_xaxis_transform()
+    for values, height, marker, label in (
+        (found.values[np.isnan(found.metric)], 0.03, "x", "no value"),
+        (found.values[np.isinf(found.metric)], 0.97, "^", "half of the neighbours or more overturn"),
+    ):
+        if values.size:
+            axes.plot(
+                values,
+                np.full(values.size, height),
+                marker,
+                transform=across,
+                color=style.FAINT,
+                markersize=5,
+                label=label,
+            )

@@ -1,0 +1,85 @@
+"""Many structures: the acceleration that lifts each over its frequency parameter, and what becomes of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from rocking_cli.plotting import style
+from rocking_cli.studies.survey import Survey
+
+NAMED = 10  # structures whose rank stands beside their mark
+FEW = 60  # structures among which ranks can be read
+MANY = 2000  # marks of a picture of lines; more are one image within it
+MARKS: dict[str, dict[str, Any]] = {
+    "does not uplift": {"marker": "o", "color": "white", "markeredgecolor": style.SPARED},
+    "rocks": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
+    "overturns under some or all": {"marker": "^", "color": style.EXCEEDED, "markeredgecolor": "white"},
+    "structure": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
+}
+
+
+def draw_survey(found: Survey, title: str) -> Figure:
+    """Draw the structures that a block is equivalent to, with the ranks of the most vulnerable.
+
+    Parameters
+    ----------
+    found : Survey
+        What to draw.
+    title : str
+        Heading.
+    """
+    figure = style.new_figure(4.2)
+    axes = figure.subplots()
+    style.heading(axes, title)
+    p = np.array([each.p for each in found.rows])
+    uplift = np.array([each.uplift for each in found.rows])
+    there = np.isfinite(p)
+    for look, here in _groups(found).items():
+        here = here & there
+        if here.any():
+            label = f"{look} ({here.sum():,})" if found.motions else None
+            axes.plot(
+                p[here], uplift[here], linestyle="none", markersize=5 if len(p) <= MANY else 3, label=label,
+                markeredgewidth=0.8 if look == "does not uplift" else 0.3, rasterized=len(p) > MANY, **MARKS[look],
+            )  # fmt: skip
+    first = np.flatnonzero(there)[:NAMED]
+    if len(p) <= FEW:
+        for k in first.tolist():
+            axes.annotate(
+                str(k + 1), (p[k], uplift[k]), xytext=(4, 3), textcoords="offset points", fontsize=style.SMALL,
+                color=style.INK,
+            )  # fmt: skip
+    else:
+        axes.plot(
+            p[first], uplift[first], linestyle="none", marker="o", markersize=9, color="none",
+            markeredgecolor=style.INK, label=f"the {len(first)} most vulnerable",
+        )  # fmt: skip
+    _axes(axes)
+    if missing := int((~there).sum()):
+        label = f"not drawn: {missing:,} without an equivalent block, and so without p"
+        axes.plot([], [], linestyle="none", label=label)
+    if axes.get_legend_handles_labels()[1]:
+        figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
+    return figure
+
+
+def _groups(found: Survey) -> dict[str, NDArray[np.bool_]]:
+    """The structures by what becomes of them, the worst drawn last."""
+    if not found.motions:
+        return {"structure": np.ones(len(found.rows), dtype=bool)}
+    falls = np.array([each.under is not None and each.under.overturned > 0 for each in found.rows])
+    lifts = np.array([each.under is not None and each.under.peak_ratio > 0 for each in found.rows])
+    return {"does not uplift": ~falls & ~lifts, "rocks": ~falls & lifts, "overturns under some or all": falls}
+
+
+def _axes(axes: Axes) -> None:
+    axes.margins(0.08)
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("frequency parameter p [rad/s]: large structures left, small ones right", fontsize=style.LABEL)
+    axes.set_ylabel("ground acceleration at uplift [g]", fontsize=style.LABEL)
+    style.tidy(axes)

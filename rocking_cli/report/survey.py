@@ -1,0 +1,61 @@
+"""A survey as one page: a table that sorts itself, HTML that needs nothing else, and no network."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from rocking_cli.plotting.moving import asset
+from rocking_cli.plotting.survey import draw_survey
+from rocking_cli.report.figures import inline_svg
+from rocking_cli.report.page import symbols
+from rocking_cli.studies.survey import Survey
+from rocking_cli.text import printable
+from rocking_cli.views.survey import cells, headings, sentences, title
+
+MOST = 10_000  # rows of a page: browsers lay out more of them for many seconds
+SYMBOLS = {"lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
+
+
+def render(found: Survey, source: str, about: Sequence[str]) -> str:
+    """The page.
+
+    Parameters
+    ----------
+    found : Survey
+        What it says; every text in it is escaped.
+    source : str
+        What the structures were read from.
+    about : sequence of str
+        What else stands at its head: when it was written, by which command.
+    """
+    environment = Environment(
+        loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    environment.filters["symbols"] = symbols
+    heads = [_symbolic(each) for each in headings(found)]
+    left_out = max(0, len(found.rows) - MOST)
+    page = environment.get_template("survey.html").render(
+        source=source,
+        about=about,
+        title=title(found),
+        said=[each.replace("`", "") for each in sentences(found)],
+        picture=Markup(inline_svg(draw_survey(found, ""), "survey")) if found.rows else None,
+        columns=heads,
+        words=[1, 2],
+        rows=[cells(rank, each, None) for rank, each in enumerate(found.rows[:MOST], 1)],
+        left_out=f"The table has the first {MOST:,} of {len(found.rows):,} structures." if left_out else "",
+        bad=[(each.line if each.line is not None else "", each.name, each.reason) for each in found.bad[:MOST]],
+        bad_count=len(found.bad),
+        style=Markup(asset("motion.css")),
+    )
+    return printable(page)  # a table may contain what no page can hold
+
+
+def _symbolic(heading: str) -> str:
+    for word, symbol in SYMBOLS.items():
+        heading = heading.replace(word, symbol)
+    return heading.replace("\n", " ")

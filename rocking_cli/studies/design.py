@@ -1,0 +1,345 @@
+"""For which values of one of its numbers a structure meets a requirement: the least thickness, the largest load."""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite, isnan, nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
+from rocking_cli.structure import Varied
+from rocking_cli.studies.metrics import Metric, Shaking, metric
+from rocking_cli.text import cut
+from rocking_cli.units import UnitError, read, split
+
+Reals = NDArray[np.float64]
+OPERATORS: dict[str, Callable[[float, float], bool]] = {
+    "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
+}  # fmt: skip
+POINTS = 41  # of the scan
+FINEST = 1e-12  # of the range: how closely an edge is found
+COARSE = 1e-3  # the same for shares of histories, which move by steps
+ROUNDING = 1e-9  # relative: steps against the trend that rounding may make
+_AIM = re.compile(r"\s*([A-Za-z]\w*)\s*(<=|>=|<|>)\s*(\S.*?)\s*")
+
+
+@dataclass(frozen=True)
+class Aim:
+    """A requirement.
+
+    Parameters
+    ----------
+    metric : Metric
+        What is held.
+    op : str
+        One of `<`, `<=`, `>`, `>=`.
+    level : float
+        Against what, in the unit of the metric.
+    """
+
+    metric: Metric
+    op: str
+    level: float
+
+    @classmethod
+    def parse(cls, text: str) -> Aim:
+        """A requirement as it is written, such as `lambda >= 0.2`. Raises `InputError` if it is none."""
+        found = _AIM.fullmatch(text)
+        if found is None:
+            hint = "write METRIC OP NUMBER, such as `lambda >= 0.2`, with <, <=, > or >="
+            raise InputError(Problem(f"{cut(repr(text))} is no requirement", hint=hint))
+        asked, number = metric(found[1]), found[3]
+        return cls(asked, found[2], _number(number, asked.unit))
+
+    def __str__(self) -> str:
+        return f"{self.metric.name} {self.op} {self.level:.6g}{f' {self.metric.unit}' if self.metric.unit else ''}"
+
+    def holds(self, value: float) -> bool:
+        """Whether a value of the metric meets it; NaN does not."""
+        return OPERATORS[self.op](value, self.level)
+
+
+def _number(text: str, unit: str) -> float:
+    """A number, per cent of a pure one, or a quantity, in a unit."""
+    plain = text.removesuffix("%").strip()
+    try:
+        if (parts := split(plain)) is not None and not parts[1] and (plain == text.strip() or not unit):
+            value = float(plain) / (1 if plain == text.strip() else 100)
+        else:
+            value = read(text, unit)
+    except UnitError as error:
+        raise InputError(Problem(error.message, hint=error.hint)) from None
+    if not isfinite(value):
+        raise InputError(Problem(f"{cut(repr(text))} is no finite number"))
+    return value
+
+
+@dataclass(frozen=True)
+class Span:
+    """A field and the range over which it varies, as written.
+
+    Parameters
+    ----------
+    field : str
+        With dots for what is inside.
+    low, high : str
+        Numbers or quantities.
+    """
+
+    field: str
+    low: str
+    high: str
+
+    @classmethod
+    def parse(cls, text: str) -> Span:
+        """As it is written, `width=0.2m:0.8m`. Raises `InputError` if it is no range of a field."""
+        name, equals, values = text.partition("=")
+        ends = values.split(":")
+        if not equals or not name.strip() or len(ends) != 2 or not all(each.strip() for each in ends):
+            hint = "write FIELD=LOW:HIGH, such as width=0.2m:0.8m"
+            raise InputError(Problem(f"{cut(repr(text))} is no range of a field", hint=hint))
+        return cls(name.strip(), ends[0].strip(), ends[1].strip())
+
+    def in_unit(self, unit: str) -> tuple[float, float]:
+        """Both ends as numbers. Raises `InputError` if they are none, or do not grow."""
+        low, high = _number(self.low, unit), _number(self.high, unit)
+        if not low < high:
+            hint = "give the smaller first"
+            raise InputError(Problem(f"{self.low}:{self.high} does not grow", field=self.field, hint=hint))
+        return low, high
+
+
+@dataclass(frozen=True)
+class NotBuilt:
+    """A part of the range in which the structure has no value of the metric.
+
+    Parameters
+    ----------
+    low, high : float
+        The first and the last of the values tried in it.
+    reason : str
+        Why, at the first.
+    """
+
+    low: float
+    high: float
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Where a requirement is met.
+
+    Parameters
+    ----------
+    structure : str
+        What it is called.
+    field, unit : str
+        What varies, and its unit.
+    aim : Aim
+        The requirement.
+    given : float or None
+        What the structure itself has.
+    values, metric : ndarray, shape (n,)
+        The scan: values at equal steps, and the metric there; NaN where there is none.
+    holds : sequence of (float, float)
+        The ranges in which it is met, as far as the scan sees.
+    monotone : bool
+        Whether the metric never turns over the scan, so that there is one range at most.
+    value : float or None
+        The edge of the range that reaches an end of the scan: the least value from which on it is met, or the largest
+        up to which it is. None if it is met nowhere, or everywhere, or at neither end.
+    not_built : sequence of NotBuilt
+        Where there is no such structure.
+    """
+
+    structure: str
+    field: str
+    unit: str
+    aim: Aim
+    given: float | None
+    values: Reals
+    metric: Reals
+    holds: Sequence[tuple[float, float]]
+    monotone: bool
+    value: float | None
+    not_built: Sequence[NotBuilt] = ()
+
+    @property
+    def everywhere(self) -> bool:
+        """Whether it is met at every value of the scan."""
+        return bool(self.met.all())
+
+    @property
+    def met(self) -> NDArray[np.bool_]:
+        """Whether it is met at each value of the scan."""
+        return np.array([self.aim.holds(each) for each in self.metric.tolist()])
+
+    @property
+    def is_least(self) -> bool:
+        """Whether `value` is the least from which on it is met; else it is the largest up to which it is."""
+        return bool(self.met[-1])
+
+
+def design(
+    varied: Varied,
+    span: tuple[float, float],
+    aim: Aim,
+    shaking: Shaking | None = None,
+    *,
+    points: int = POINTS,
+    progress: Callable[[int], None] | None = None,
+) -> Design:
+    """Find where a requirement is met.
+
+    Parameters
+    ----------
+    varied : Varied
+        The structure, and which of its numbers varies.
+    span : (float, float)
+        From where to where, in the unit of the field.
+    aim : Aim
+        The requirement.
+    shaking : Shaking, optional
+        For a metric that needs ground motions.
+    points : int
+        How many values are tried first, at equal steps.
+    progress : callable, optional
+        Called with the number of these that are done since the last call.
+
+    Raises
+    ------
+    InputError
+        If the metric needs ground motions and there are none, or there are too few points.
+
+    Notes
+    -----
+    Each edge is found by the method of Brent, or by halving where the metric moves by steps, between two values of the
+    scan, of which one meets the requirement and the other does not. Between two that agree nothing is looked at: a
+    metric that turns there may hide a range. Where a metric of histories turns over the scan, edges are its values and
+    no closer: a root would be one of many.
+    """
+    if aim.metric.shaken and (shaking is None or not shaking.motions or not shaking.around.count):
+        message = f"{aim.metric.name} needs a ground motion, and neighbours of it"
+        raise InputError(Problem(message, hint="give `records` or `pulses`"))
+    if points < 2:
+        raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
+
+    def metric(value: float) -> float:
+        return _at(varied, value, aim, shaking)[0]
+
+    values = np.linspace(*span, points)
+    found, reasons = np.full(points, nan), dict[int, str]()
+    for k, value in enumerate(values.tolist()):
+        found[k], reason = _at(varied, value, aim, shaking)
+        if reason is not None:
+            reasons[k] = reason
+        if progress is not None:
+            progress(1)
+    monotone = _is_monotone(found)
+
+    def edge(inside: int, outside: int) -> float:
+        ends = float(values[inside]), float(values[outside])
+        if aim.metric.shaken and (not monotone or isnan(found[outside])):
+            return ends[0]
+        if aim.metric.shaken or isnan(found[outside]):
+            closest = (COARSE if aim.metric.shaken else FINEST) * abs(ends[1] - ends[0])
+            return _last_that_holds(metric, aim, *ends, closest)
+        return _edge(metric, aim, *ends)
+
+    met = [aim.holds(each) for each in found.tolist()]
+    holds = _ranges(values, met, edge)
+    whole = all(met)
+    value = None if whole or not holds else holds[-1][0] if met[-1] else holds[0][1] if met[0] else None
+    name = varied.mechanism.name or varied.mechanism.mechanism
+    return Design(
+        name, varied.field, varied.unit, aim, varied.value, values, found, holds, monotone, value,
+        _not_built(values, reasons),
+    )  # fmt: skip
+
+
+def _at(varied: Varied, value: float, aim: Aim, shaking: Shaking | None) -> tuple[float, str | None]:
+    """The metric at a value; or NaN, and why there is none."""
+    try:
+        structure = Prepared(varied.at(value))
+        found = aim.metric.value(structure, shaking)
+    except InputError as error:
+        return nan, "; ".join(": ".join(part for part in (each.field, each.message) if part) for each in error.problems)
+    except (MechanismError, SolverError) as error:
+        return nan, str(error)
+    if isnan(found):
+        return nan, structure.why_no_block or f"there is no {aim.metric.name}"
+    return found, None
+
+
+def _is_monotone(metric: Reals) -> bool:
+    """Whether a metric never turns; with a gap in which it has no value nobody knows."""
+    there = np.flatnonzero(~np.isnan(metric))
+    if there.size and there[-1] - there[0] + 1 > there.size:
+        return False
+    metric = metric[there]
+    with np.errstate(invalid="ignore"):
+        steps = np.where(metric[1:] == metric[:-1], 0.0, metric[1:] - metric[:-1])  # two infinities are the same
+    finite = np.abs(metric[np.isfinite(metric)])
+    small = ROUNDING * float(finite.max(initial=0.0))
+    return bool((steps >= -small).all() or (steps <= small).all())
+
+
+def _ranges(values: Reals, met: Sequence[bool], edge: Callable[[int, int], float]) -> list[tuple[float, float]]:
+    """The runs of values at which it is met, each up to its edges."""
+    ranges = []
+    for k, here in enumerate(met):
+        if not here or (k and met[k - 1]):
+            continue
+        last = next((j for j in range(k, len(met)) if not met[j]), len(met)) - 1
+        low = edge(k, k - 1) if k else float(values[0])
+        high = edge(last, last + 1) if last + 1 < len(met) else float(values[-1])
+        ranges.append((low, high))
+    return ranges
+
+
+def _edge(at: Callable[[float], float], aim: Aim, inside: float, outside: float) -> float:
+    """The value between one that meets an aim and one that does not, from which on it is met.
+
+    The metric there may be infinite, but is a number.
+    """
+    from scipy.optimize import brentq
+
+    bound = 1 + abs(aim.level)
+
+    def beyond(x: float) -> float:
+        away = at(x) - aim.level
+        return inf if isnan(away) else min(max(away, -bound), bound)
+
+    for end in (inside, outside):  # reached exactly, where the level itself may count or not
+        if beyond(end) == 0.0:
+            return end
+    closest = FINEST * abs(outside - inside)
+    return float(brentq(beyond, inside, outside, xtol=closest, rtol=4 * np.finfo(float).eps, maxiter=200))
+
+
+def _last_that_holds(at: Callable[[float], float], aim: Aim, inside: float, outside: float, closest: float) -> float:
+    """The same of what moves by steps, or is not there outside: the last value, by halving, at which it is met."""
+    while abs(outside - inside) > closest:
+        middle = (inside + outside) / 2
+        if middle in (inside, outside):
+            break
+        inside, outside = (middle, outside) if aim.holds(at(middle)) else (inside, middle)
+    return inside
+
+
+def _not_built(values: Reals, reasons: dict[int, str]) -> list[NotBuilt]:
+    """Runs of values that have no metric, each with the reason of its first."""
+    found: list[NotBuilt] = []
+    for k in sorted(reasons):
+        if k - 1 in reasons and found:
+            found[-1] = NotBuilt(found[-1].low, float(values[k]), found[-1].reason)
+        else:
+            found.append(NotBuilt(float(values[k]), float(values[k]), reasons[k]))
+    return found

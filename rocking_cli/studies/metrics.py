@@ -1,0 +1,109 @@
+"""What a structure can be designed for: numbers by name, in one table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import inf, nan
+
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
+from rocking_cli.text import cut, did_you_mean
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """What shakes a structure.
+
+    Parameters
+    ----------
+    motions : sequence of GroundMotion
+        As scaled; the worst counts.
+    polarities : sequence of int
+        Of 1 and -1; the worse counts.
+    around : Around
+        How the neighbours of each motion are drawn.
+    """
+
+    motions: Sequence[GroundMotion]
+    polarities: Sequence[int] = (1,)
+    around: Around = field(default_factory=Around)
+
+    def each(self, structure: Prepared) -> list[Neighbours]:
+        """The neighbours of every motion, both ways where a structure and the polarities differ."""
+        model = structure.model("nonlinear")
+        signs = self.polarities[:1] if model.symmetric else self.polarities
+        return [neighbours(model, motion.scaled(sign), self.around) for motion in self.motions for sign in signs]
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A number of a structure.
+
+    Parameters
+    ----------
+    name : str
+        As users write it.
+    unit : str
+        Its unit; empty for a pure number.
+    meaning : str
+        What it is, in a few words.
+    value : callable
+        Gives it for a structure and what shakes it; NaN where there is none, and infinity beyond all numbers. Raises
+        `InputError` or `MechanismError` where the structure has none.
+    shaken : bool
+        Whether it needs ground motions: then it is a share of histories, or a fractile, and moves by steps.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    value: Callable[[Prepared, Shaking | None], float]
+    shaken: bool = False
+
+
+def _lambda(structure: Prepared, shaking: Shaking | None) -> float:
+    return min(side.lambda_ for side in structure.statics)
+
+
+def _phi_cr(structure: Prepared, shaking: Shaking | None) -> float:
+    found = [side.phi_cr for side in structure.statics]
+    return min((each for each in found if each is not None), default=nan) if None not in found else nan
+
+
+def _p(structure: Prepared, shaking: Shaking | None) -> float:
+    return structure.p if structure.why_no_block is None else nan
+
+
+def _peak_ratio(structure: Prepared, shaking: Shaking | None) -> float:
+    assert shaking is not None
+    return max((near.peak_ratio[1] for near in shaking.each(structure)), default=inf)
+
+
+def _overturned(structure: Prepared, shaking: Shaking | None) -> float:
+    assert shaking is not None
+    return max(near.overturned for near in shaking.each(structure))
+
+
+METRICS: Mapping[str, Metric] = {
+    each.name: each
+    for each in (
+        Metric("lambda", "", "ground acceleration at uplift over g, in the weaker direction", _lambda),
+        Metric("phi_cr", "rad", "critical rotation, the smaller of both directions", _phi_cr),
+        Metric("p", "rad/s", "frequency parameter of the equivalent block, the larger of both directions", _p),
+        Metric("peak_ratio", "", "peak rotation over the critical one that half of the neighbours do not exceed",
+               _peak_ratio, shaken=True),
+        Metric("overturned", "", "share of the neighbours that overturn", _overturned, shaken=True),
+    )
+}  # fmt: skip
+"""Every metric; one more is one more line here."""
+
+
+def metric(name: str) -> Metric:
+    """A metric by its name. Raises `InputError` if there is none."""
+    if name not in METRICS:
+        hint = did_you_mean(name, list(METRICS))
+        raise InputError(Problem(f"{cut(repr(name))} is no metric", hint=hint))
+    return METRICS[name]

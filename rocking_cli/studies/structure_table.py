@@ -1,0 +1,375 @@
+"""A table of structures, one a row: its columns are fields, and each row becomes a structure of its own."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.registry import Registry
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.io.dotted import closed, copied, put, replace_at, words
+from rocking_cli.io.field_problems import lists_models, types_at
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Sheet, read_sheet
+from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
+from rocking_cli.structure import HINT, of_document
+from rocking_cli.text import cut, did_you_mean, one_line
+
+BASE, MECHANISM = "file", "mechanism"
+YAML = (".yaml", ".yml")
+NOTE = "#"
+"""What a heading begins with whose column is for people only."""
+THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+", re.ASCII)
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_UNIT = re.compile(r"(.*?)\s*\[([^\]]*)\]\s*", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that holds a field.
+
+    Parameters
+    ----------
+    place : int
+        Which of the cells of a row.
+    heading : str
+        As the table has it.
+    path : tuple of str
+        The field, see `rocking_cli.io.dotted`.
+    unit : str
+        That of its numbers which have none of their own; empty for that of the field.
+    """
+
+    place: int
+    heading: str
+    path: tuple[str, ...]
+    unit: str = ""
+
+
+@dataclass
+class _RowDocument(Document):
+    """The data of a row, whose problems name the table, the line and the heading of the column."""
+
+    line: int = 0
+    columns: dict[Place, str] = field(default_factory=dict)
+
+    def problem(
+        self, message: str, mark: yaml.Mark | None, name: str | None = None, hint: str | None = None
+    ) -> Problem:
+        """A problem of this row."""
+        return Problem(message, self.file, self.line, field=name, hint=hint)
+
+    def at(self, place: Place, message: str, hint: str | None = None, *, key: bool = False) -> Problem:
+        """A problem with what a column holds, or with a field that none has."""
+        own = (self.columns[place[:k]] for k in range(len(place), 0, -1) if place[:k] in self.columns)
+        return self.problem(message, None, next(own, None) or spell(place), hint)
+
+
+class _Kept(Registry):
+    """All mechanisms that are installed, each looked up once: a table asks for the same ones thousands of times."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._kept: dict[str, type[Mechanism]] = {}
+
+    def __getitem__(self, name: str) -> type[Mechanism]:
+        if name not in self._kept:
+            self._kept[name] = super().__getitem__(name)
+        return self._kept[name]
+
+
+class StructureTable(Sequence["TableRow"]):
+    """The structures of a table, each made when it is asked for.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The table.
+    folder : Path
+        Where files that it names are.
+    registry : Registry, optional
+        Where to look up mechanisms; by default all that are installed.
+
+    Raises
+    ------
+    InputError
+        If a heading is no field of any mechanism that its rows have.
+    """
+
+    def __init__(self, sheet: Sheet, folder: Path, registry: Registry | None = None) -> None:
+        self.sheet, self.folder = sheet, folder
+        self.registry = registry if registry is not None else _Kept()
+        self._bases: dict[str, dict[str, Any] | InputError] = {}
+        self.columns = self._columns()
+        self._special = {column.path[0]: column.place for column in self.columns if len(column.path) == 1}
+        self._check_fields()
+
+    @classmethod
+    def read(cls, path: Path) -> StructureTable:
+        """That of a CSV file. Raises `InputError` if it cannot be used."""
+        return cls(read_sheet(path), path.parent)
+
+    def __len__(self) -> int:
+        return len(self.sheet.rows)
+
+    def __getitem__(self, k: Any) -> Any:
+        return TableRow(self, k) if isinstance(k, int) else [TableRow(self, each) for each in range(len(self))[k]]
+
+    def __iter__(self) -> Iterator[TableRow]:
+        return (TableRow(self, k) for k in range(len(self)))
+
+    @property
+    def short(self) -> list[int]:
+        """The lines of rows that have fewer cells than there are headings."""
+        return [row.line for row in self.sheet.rows if row.short]
+
+    def text(self, row: Row, name: str) -> str:
+        """A cell by the heading of its column; empty without one."""
+        return row.cells[self._special[name]] if name in self._special else ""
+
+    def base_of(self, row: Row) -> str:
+        """The YAML file that a row changes; empty for none. Other files are fields of mechanisms."""
+        named = self.text(row, BASE)
+        return named if named.lower().endswith(YAML) else ""
+
+    def base(self, named: str) -> dict[str, Any]:
+        """The data of a YAML file, read once. Raises `InputError` if there are none."""
+        if named not in self._bases:
+            path = self.folder / named
+            try:
+                document = parse(read_text(path, "structure"), str(path), "structure", HINT)
+                document.check()
+                self._bases[named] = document.data
+            except InputError as error:
+                self._bases[named] = error
+        found = self._bases[named]
+        if isinstance(found, InputError):
+            raise found
+        return found
+
+    def _columns(self) -> list[Column]:
+        found, problems, taken = [], [], dict[tuple[str, ...], str]()
+        sheet = self.sheet
+        for place, heading in enumerate(sheet.headings):
+            if not heading or heading.startswith(NOTE):
+                continue
+            name, unit = (each[1], each[2].strip()) if (each := _UNIT.fullmatch(heading)) else (heading, "")
+            shown = cut(one_line(heading))
+            try:
+                path = words(name)
+            except InputError as error:
+                problems += [Problem(one.message, sheet.file, sheet.line, hint=one.hint) for one in error.problems]
+                continue
+            if path in taken:
+                message = f"is the same field as {cut(one_line(taken[path]))}"
+                problems.append(Problem(message, sheet.file, sheet.line, field=shown, hint="take one of them away"))
+            taken[path] = heading
+            found.append(Column(place, shown, path, unit))
+        if problems:
+            raise InputError(*problems)
+        if not found:
+            raise InputError(Problem("the table has no headings", sheet.file, sheet.line, hint="mechanism,name,..."))
+        return found
+
+    def _check_fields(self) -> None:
+        """Hold the headings against the fields of all mechanisms that rows have."""
+        classes = []
+        for name in sorted(self._mechanisms()):
+            try:
+                classes.append(self.registry[name])
+            except (InputError, MechanismError):  # each of its rows says so
+                continue
+        if not {MECHANISM, BASE} & {column.path[0] for column in self.columns}:
+            near = get_close_matches(MECHANISM, [column.path[0].lower() for column in self.columns], n=1)
+            hint = f"is {near[0]} meant to be {MECHANISM}?" if near else "say in it which mechanism each row has"
+            raise InputError(
+                Problem(
+                    f"the table has no column {MECHANISM}, and no {BASE}", self.sheet.file, self.sheet.line, hint=hint
+                )
+            )
+        known = {MECHANISM, BASE}.union(*(_fields(cls) for cls in classes))
+        problems = []
+        for column in self.columns:
+            if classes and column.path[0] not in known:
+                guess = did_you_mean(column.path[0], sorted(known))
+                guess = guess if guess and guess.endswith("?") else ""
+                what = "any mechanism in this table" if len(classes) > 1 else classes[0].mechanism
+                hint = f"{guess} A heading that begins with {NOTE} is left out".strip()
+                message = f"is not a field of {what}"
+                problems.append(Problem(message, self.sheet.file, self.sheet.line, field=column.heading, hint=hint))
+        if problems:
+            raise InputError(*problems)
+
+    def _mechanisms(self) -> set[str]:
+        """The names of mechanisms that rows have, known or not."""
+        found = {self.text(row, MECHANISM) for row in self.sheet.rows}
+        for named in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM)} - {""}:
+            try:
+                found.add(str(self.base(named).get(MECHANISM)))
+            except InputError:  # each of its rows says so
+                continue
+        return found - {""}
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """A row of a table of structures.
+
+    Parameters
+    ----------
+    table : StructureTable
+        The table.
+    place : int
+        Which of its rows, counted from 0.
+    """
+
+    table: StructureTable
+    place: int
+
+    @property
+    def row(self) -> Row:
+        """Its cells."""
+        return self.table.sheet.rows[self.place]
+
+    @property
+    def line(self) -> int:
+        """Where it begins in the file."""
+        return self.row.line
+
+    @property
+    def name(self) -> str:
+        """What it is called, whether or not it can be used."""
+        return one_line(self.table.text(self.row, "name")) or f"row {self.place + 1}"
+
+    def make(self) -> Mechanism:
+        """The structure.
+
+        Raises
+        ------
+        InputError
+            With every problem of the row: the file, its line, and the heading of the column.
+        MechanismError
+            If the mechanism's plugin cannot be used.
+        """
+        table, row = self.table, self.row
+        document = _RowDocument("structure", table.sheet.file, [], line=row.line)
+        document.values[()] = document.values[(MECHANISM,)] = yaml.Mark(document.file, 0, row.line - 1, 0, None, 0)
+        if row.too_many is not None:
+            what = f"has more cells than there are headings: {cut(one_line(row.too_many))!r} is the first beyond them"
+            raise InputError(document.problem(what, None, hint="is a separator in a cell without quotes?"))
+        based = table.base_of(row)
+        folder, default = table.folder, self.name
+        if based:
+            document.data = copied(self._base(based, document))
+            folder = (table.folder / based).parent
+            default = one_line(Path(based).stem) or default
+        self._fill(document, based)
+        document.check()
+        document.data = closed(document.data)
+        return of_document(document, default, folder, table.registry)
+
+    def _base(self, named: str, document: _RowDocument) -> dict[str, Any]:
+        try:
+            return self.table.base(named)
+        except InputError as error:
+            first = error.problems[0]
+            line = f"{first.line}: " if first.line is not None else ""
+            message = f"{cut(one_line(named))}: {line}{first.message}"
+            raise InputError(document.problem(message, None, BASE, first.hint)) from None
+
+    def _fill(self, document: _RowDocument, based: str) -> None:
+        """Put the cells that are not empty where they belong; what cannot be is noted."""
+        table, data = self.table, document.data
+        if given := table.text(self.row, MECHANISM):
+            data[MECHANISM] = given
+        name = str(data.get(MECHANISM))
+        cls = table.registry.get(name)  # None where there is no such mechanism, which is said when it is made
+        for column in table.columns:
+            text = self.row.cells[column.place]
+            if not text or column.path == (MECHANISM,) or (based and column.path == (BASE,)):
+                continue
+            try:
+                place = put(data, column.path, None, is_list=partial(_is_list, cls) if cls is not None else _none)
+                value = _value(text, column, _types(cls, place), decimal_comma=table.sheet.decimal_comma)
+                replace_at(data, place, value)
+                document.columns[place] = column.heading
+            except InputError as error:
+                document.problems += [
+                    document.problem(one.message, None, column.heading, one.hint) for one in error.problems
+                ]
+
+
+def _none(place: Place) -> bool:
+    return False
+
+
+@cache
+def _fields(cls: type[Mechanism]) -> frozenset[str]:
+    return frozenset(info.alias or name for name, info in cls.model_fields.items())
+
+
+@cache
+def _is_list(cls: type[Mechanism], place: Place) -> bool:
+    return lists_models(cls, place)
+
+
+@cache
+def _types(cls: type[Mechanism] | None, place: Place) -> frozenset[Any]:
+    return frozenset(types_at(cls, place)) if cls is not None else frozenset()
+
+
+def _value(text: str, column: Column, types: frozenset[Any], *, decimal_comma: bool) -> Any:
+    """What a cell says: a number, a list of them, or a text; texts with units become numbers where the fields are."""
+    if str in types and not types & {float, int}:
+        return text
+    if text[0] in "[{" and not (decimal_comma and ";" in text):
+        value: Any = parse(f"cell: {text}", "cell", "cell", "").data["cell"]
+        return _with_unit(value, column.unit)
+    if ";" in text:
+        return [_one(part.strip(), column, decimal_comma=decimal_comma) for part in text.strip("[]").split(";")]
+    return _one(text, column, decimal_comma=decimal_comma)
+
+
+def _one(text: str, column: Column, *, decimal_comma: bool) -> Any:
+    if decimal_comma and THOUSANDS.fullmatch(text):
+        hint = "write no points between thousands"
+        raise InputError(
+            Problem(f"{text} may be one number or a thousand times it: other cells have decimal commas", hint=hint)
+        )
+    if decimal_comma and DECIMAL_COMMA.fullmatch(text):
+        text = text.replace(",", ".")
+    if _NUMBER.fullmatch(text):
+        return _with_unit(float(text) if re.search(r"[.eE]", text) else int(text), column.unit)
+    return {"true": True, "false": False}.get(text.lower(), text)
+
+
+def _with_unit(value: Any, unit: str) -> Any:
+    """Numbers as texts with the unit of their heading, if it has one."""
+    if isinstance(value, list):
+        return [_with_unit(each, unit) for each in value]
+    return f"{value} {unit}" if unit and isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+def of_mapping(columns: Mapping[str, Sequence[Any]], name: str = "table") -> StructureTable:
+    """A table given in Python as columns, such as a frame of pandas; empty texts, None and NaN are fields not given."""
+    headings = tuple(str(each).strip() for each in columns)
+    cells = [[_text(value) for value in columns[key]] for key in columns]
+    if len({len(each) for each in cells}) > 1:
+        raise InputError("the columns of a table must have the same length")
+    rows = tuple(Row(k + 1, tuple(row)) for k, row in enumerate(zip(*cells, strict=True)))
+    return StructureTable(Sheet(name, 0, headings, rows, decimal_comma=False), Path())
+
+
+def _text(value: Any) -> str:
+    if value is None or value != value:
+        return ""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_text, value))}]"
+    return str(value).strip()

@@ -1,0 +1,370 @@
+"""Many structures at once: the equivalent block of each, what ground motions do to it, and which is most vulnerable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from math import inf, isnan, nan
+from typing import Protocol
+
+import numpy as np
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.size import doubtful_size
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.outcome import Outcomes
+from rocking_cli.dynamics.parallel import in_parts
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.dynamics.processes import in_processes
+from rocking_cli.errors import InputError, RockingError, SolverError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+
+PART = 8  # structures that a thread has in memory at a time: the tables of each are one megabyte, at most ten
+
+
+class Entry(Protocol):
+    """A structure that is still to be made."""
+
+    @property
+    def name(self) -> str:
+        """What it is called, whether or not it can be used."""
+
+    @property
+    def line(self) -> int | None:
+        """Where it stands in a file."""
+
+    def make(self) -> Mechanism:
+        """The structure. Raises `InputError` or `MechanismError` if it cannot be used."""
+
+
+@dataclass(frozen=True)
+class Under:
+    """What ground motions do to a structure, by the nonlinear model.
+
+    Parameters
+    ----------
+    overturned : float
+        The share of the motions that overturn it; of two polarities of a motion the worse.
+    peak_ratio : float
+        The largest peak rotation over the critical one, of the motions under which it stays up; NaN if it stays up
+        under none.
+    worst : str
+        The motion of that peak, or one that overturns it.
+    over : str
+        What the peak is over: "phi_cr", or "limit" where a direction has no critical rotation.
+    """
+
+    overturned: float
+    peak_ratio: float
+    worst: str
+    over: str = "phi_cr"
+
+
+@dataclass(frozen=True)
+class Surveyed:
+    """A structure of a survey, in the direction in which it uplifts first.
+
+    Parameters
+    ----------
+    row : int
+        Its place among those asked for, counted from 1.
+    line : int or None
+        Where it stands in a file.
+    name, mechanism : str
+        What it is called, and which mechanism it is.
+    direction : str
+        "positive", or "negative" where it uplifts earlier that way.
+    lambda_ : float
+        Uplift acceleration over its own g.
+    uplift : float
+        The same [standard gravity].
+    p, phi_cr, kappa1, kappa2, eta : float
+        Of its equivalent block, see `rocking_cli.core.EquivalentBlock`; NaN for what there is none of.
+    no_block : str or None
+        Why no single block is equivalent to it.
+    doubt : str or None
+        What is doubtful about its size.
+    under : Under, optional
+        What ground motions do to it, if there are any.
+    """
+
+    row: int
+    line: int | None
+    name: str
+    mechanism: str
+    direction: str
+    lambda_: float
+    uplift: float
+    p: float
+    phi_cr: float
+    kappa1: float
+    kappa2: float
+    eta: float
+    no_block: str | None = None
+    doubt: str | None = None
+    under: Under | None = None
+
+
+@dataclass(frozen=True)
+class Bad:
+    """A structure that could not be used.
+
+    Parameters
+    ----------
+    row : int
+        Its place among those asked for, counted from 1.
+    line : int or None
+        Where it stands in a file.
+    name : str
+        What it is called.
+    error : RockingError
+        Why, with the place in the file.
+    """
+
+    row: int
+    line: int | None
+    name: str
+    error: RockingError
+
+    @property
+    def reason(self) -> str:
+        """Why, in one line, without the place in the file."""
+        if not isinstance(self.error, InputError):
+            return str(self.error)
+        said = (": ".join(part for part in (each.field, each.message) if part) for each in self.error.problems)
+        return "; ".join(said)
+
+
+Order = Callable[[Surveyed], tuple[float, ...]]
+
+
+def _by_lambda(found: Surveyed) -> tuple[float, ...]:
+    return (found.uplift,)
+
+
+def _by_response(found: Surveyed) -> tuple[float, ...]:
+    assert found.under is not None
+    peak = found.under.peak_ratio
+    return (-found.under.overturned, -(inf if isnan(peak) else peak), found.uplift)
+
+
+ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response}
+"""By what structures are ranked: of two the one with the smaller key is the more vulnerable."""
+
+
+@dataclass(frozen=True)
+class Survey:
+    """The structures of a survey, the most vulnerable first.
+
+    Parameters
+    ----------
+    rows : sequence of Surveyed
+        Ranked; the first has rank 1.
+    bad : sequence of Bad
+        Those that could not be used, in their order.
+    motions : sequence of str
+        The names of the ground motions.
+    by : str
+        What they are ranked by, a key of `ORDERS`.
+    """
+
+    rows: Sequence[Surveyed]
+    bad: Sequence[Bad] = ()
+    motions: Sequence[str] = ()
+    by: str = "lambda"
+
+
+def survey(
+    entries: Sequence[Entry],
+    motions: Sequence[GroundMotion] = (),
+    polarities: Sequence[int] = (1,),
+    *,
+    threads: int | None = None,
+    processes: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Survey:
+    """Derive the blocks of structures, follow them under ground motions, and rank them.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+        The structures. They are made and dropped a few at a time, so that any number fits in memory.
+    motions : sequence of GroundMotion
+        What shakes them, as scaled.
+    polarities : sequence of int
+        Of 1 and -1; with both, the worse counts.
+    threads : int, optional
+        How many at a time; without it, one for each processor.
+    processes : int, optional
+        So many processes in the place of threads, where there are thousands: each takes a second or two to begin.
+        Entries and motions are sent to each.
+    progress : callable, optional
+        Called with the number of structures done since the last call.
+
+    Returns
+    -------
+    Survey
+        Ranked by uplift acceleration; with motions by the share that overturns, then by the largest peak, then by
+        uplift acceleration. Equal ones keep their order.
+    """
+    found: list[Surveyed | Bad | None] = [None] * len(entries)
+
+    def work(first: int, stop: int) -> None:
+        found[first:stop] = _part(entries, range(first, stop), motions, polarities)
+
+    if processes is None:
+        in_parts(work, len(entries), PART, threads, progress)
+    else:
+        whole = partial(_places, entries, motions, polarities)
+        for first, part in in_processes(whole, len(entries), PART, processes):
+            found[first : first + len(part)] = part
+            if progress is not None:
+                progress(len(part))
+    by = "response" if motions else "lambda"
+    good = sorted((each for each in found if isinstance(each, Surveyed)), key=ORDERS[by])
+    return Survey(good, [each for each in found if isinstance(each, Bad)], [each.name for each in motions], by)
+
+
+def _places(
+    entries: Sequence[Entry], motions: Sequence[GroundMotion], polarities: Sequence[int], first: int, stop: int
+) -> list[Surveyed | Bad | None]:
+    """What is found of the structures from a number to before another, in any process."""
+    return _part(entries, range(first, stop), motions, polarities)
+
+
+def _part(
+    entries: Sequence[Entry], places: range, motions: Sequence[GroundMotion], polarities: Sequence[int]
+) -> list[Surveyed | Bad | None]:
+    """What is found of some structures."""
+    ready: dict[int, Prepared] = {}
+    models: dict[int, Model] = {}
+    found: list[Surveyed | Bad | None] = [None] * len(places)
+    for k, place in enumerate(places):
+        entry = entries[place]
+        try:
+            ready[k] = Prepared(entry.make())
+            found[k] = _alone(place, entry, ready[k])
+            if _may_lift(ready[k], motions):
+                models[k] = ready[k].model("nonlinear")
+        except RockingError as error:
+            ready.pop(k, None)
+            found[k] = Bad(place + 1, entry.line, entry.name, _placed(error, entry))
+    if motions:
+        under = _under(list(models.values()), motions, polarities)
+        answers = dict(zip(models, under, strict=True))
+        for k, structure in ready.items():
+            one = found[k]
+            assert isinstance(one, Surveyed)
+            found[k] = _with(
+                one, answers.get(k, Under(0.0, 0.0, motions[0].name, _over(structure))), entries[places[k]]
+            )
+    return found
+
+
+def _placed(error: RockingError, entry: Entry) -> RockingError:
+    """An error of the mechanics of a structure with its line, which only those of its fields have."""
+    if not isinstance(error, InputError):
+        return error
+    return InputError(
+        *(replace(each, line=each.line if each.line is not None else entry.line) for each in error.problems)
+    )
+
+
+def _alone(place: int, entry: Entry, structure: Prepared) -> Surveyed:
+    """A structure without ground motions."""
+    mechanism, sides = structure.mechanism, structure.statics
+    k = int(sides[1].lambda_ < sides[0].lambda_ * (1 - 1e-9))
+    direction, side = mechanism.sides[k], sides[k]
+    why = structure.why_no_block
+    block = structure.equivalence[direction] if why is None else None
+    return Surveyed(
+        place + 1,
+        entry.line,
+        structure.name,
+        mechanism.mechanism,
+        direction.label,
+        side.lambda_,
+        side.lambda_ * mechanism.gravity / STANDARD_GRAVITY,
+        block.p if block is not None else nan,
+        side.phi_cr if side.phi_cr is not None else nan,
+        block.kappa1 if block is not None else nan,
+        block.kappa2 if block is not None else nan,
+        structure.etas[k],
+        why.removeprefix(f"{structure.name}: ") if why is not None else None,
+        doubtful_size(mechanism),
+    )
+
+
+def _may_lift(structure: Prepared, motions: Sequence[GroundMotion]) -> bool:
+    """Whether any of the motions could lift a structure: where none can, its equation of motion is not needed."""
+    least = min(structure.uplift)
+    return any(each.vertical is not None or each.pga >= least * (1 - 1e-9) for each in motions)
+
+
+def _over(structure: Prepared) -> str:
+    return "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
+
+
+def _under(
+    models: Sequence[Model], motions: Sequence[GroundMotion], polarities: Sequence[int]
+) -> list[Under | SolverError]:
+    """What motions do to each of some structures; an error where one cannot be followed."""
+    if not models:
+        return []
+    places = [
+        (i, j, sign)
+        for i, model in enumerate(models)
+        for j in range(len(motions))
+        for sign in (polarities[:1] if len(polarities) > 1 and model.symmetric else polarities)
+    ]
+    which = np.array(places)
+    runs = Runs.of(which[:, 0], which[:, 1], polarity=which[:, 2])
+    outcomes = respond_many(models, motions, runs, threads=1, only_peaks=True)
+    return [_of_one(model, which[:, 0] == i, which[:, 1], outcomes, motions) for i, model in enumerate(models)]
+
+
+def _of_one(
+    model: Model, own: np.ndarray, record: np.ndarray, outcomes: Outcomes, motions: Sequence[GroundMotion]
+) -> Under | SolverError:
+    """What motions do to one structure, whose runs are `own`."""
+    if (outcomes.failed & own).any():
+        name = motions[int(record[int((outcomes.failed & own).argmax())])].name
+        return SolverError(f"{model.structure}: its motion under {name} cannot be followed")
+    fell = np.unique(record[own & outcomes.overturned])
+    stays = own & ~np.isin(record, fell)
+    peaks = np.where(stays, outcomes.peak_ratio, -1.0)
+    most = int(peaks.argmax())
+    worst = motions[int(fell[0]) if fell.size else int(record[most])].name
+    over = "limit" if any(model.ends_at_limit) else "phi_cr"
+    return Under(fell.size / len(motions), float(peaks[most]) if stays.any() else nan, worst, over)
+
+
+def _with(one: Surveyed, under: Under | SolverError, entry: Entry) -> Surveyed | Bad:
+    if isinstance(under, SolverError):
+        return Bad(one.row, entry.line, one.name, under)
+    return replace(one, under=under)
+
+
+@dataclass(frozen=True)
+class Made:
+    """A structure that is made already.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    """
+
+    mechanism: Mechanism
+    line: int | None = None
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        return self.mechanism.name or self.mechanism.mechanism
+
+    def make(self) -> Mechanism:
+        """The structure."""
+        return self.mechanism

@@ -1,0 +1,136 @@
+"""Where a structure meets a requirement, as people and programs read it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.io.tables import Columns
+from rocking_cli.names import percent
+from rocking_cli.studies.design import Design
+from rocking_cli.studies.metrics import Shaking
+from rocking_cli.text import one_line
+from rocking_cli.views.view import ABSENT, Table, View
+
+ROWS = 11  # of the scan in the table, at most
+
+
+def view(found: Design, shaking: Shaking | None = None) -> View:
+    """The answer in a sentence, the scan, and what to know of both."""
+    said = [answer(found), *doubts(found, shaking)]
+    return View(lambda: data(found), [f"{found.structure}: {found.field} for {found.aim}", scan(found), *said])
+
+
+def data(found: Design) -> dict[str, Any]:
+    """A design as plain data."""
+    return {
+        "structure": found.structure,
+        "field": found.field,
+        "unit": found.unit,
+        "given": found.given,
+        "value": found.value,
+        "metric": found.aim.metric.name,
+        "until": str(found.aim),
+        "holds": [list(each) for each in found.holds],
+        "everywhere": found.everywhere,
+        "monotone": found.monotone,
+        "scan": {"values": found.values.tolist(), "metric": found.metric.tolist()},
+        "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
+        "verdict": answer(found),
+    }
+
+
+def columns(found: Design) -> Columns:
+    """The scan as a table."""
+    unit = f" [{found.unit}]" if found.unit else ""
+    of_metric = f" [{found.aim.metric.unit}]" if found.aim.metric.unit else ""
+    met = ["yes" if each else "no" for each in found.met.tolist()]
+    return {f"{found.field}{unit}": found.values, f"{found.aim.metric.name}{of_metric}": found.metric, "holds": met}
+
+
+def scan(found: Design) -> Table:
+    """The scan, of many values some."""
+    unit, asked = f"\n[{found.unit}]" if found.unit else "", found.aim.metric
+    of_metric = f"\n[{asked.unit}]" if asked.unit else ""
+    shown = np.unique(np.linspace(0, len(found.values) - 1, min(ROWS, len(found.values))).round().astype(int))
+    rows = [
+        [_value(float(found.values[k])), _metric(found, float(found.metric[k])), "yes" if found.met[k] else "no"]
+        for k in shown.tolist()
+    ]
+    return Table("", [found.field + unit, asked.name + of_metric, "holds"], rows, numbers=(0, 1))
+
+
+def answer(found: Design) -> str:
+    """What was found, in a sentence or two."""
+    aim, low, high = found.aim, _with_unit(found, found.values[0]), _with_unit(found, found.values[-1])
+    if found.everywhere:
+        return f"{aim} holds at every value of {found.field} tried, from {low} to {high}."
+    if not found.holds:
+        return f"{aim} holds at no value of {found.field} tried, from {low} to {high}: {_nearest(found)}"
+    if found.value is not None and len(found.holds) == 1 and (found.monotone or not aim.metric.shaken):
+        which, where = ("least", f"up to {high}") if found.is_least else ("largest", f"from {low}")
+        return f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; it holds {where}."
+    ranges = [f"from {_with_unit(found, a)} to {_with_unit(found, b)}" for a, b in found.holds]
+    said = f"As far as {len(found.values)} values show, {aim} holds for {found.field} {_listed(ranges)}"
+    if found.value is None:
+        return f"{said}, and at neither end of what was tried, {low} to {high}."
+    way = "upwards" if found.is_least else "downwards"
+    return f"{said}." if len(ranges) == 1 else f"{said}: from {_with_unit(found, found.value)} {way} without a gap."
+
+
+def doubts(found: Design, shaking: Shaking | None) -> list[str]:
+    """What to know of the answer."""
+    said = []
+    count = len(found.values)
+    if not found.monotone and np.isfinite(found.metric).any():
+        closer = "edges are values that were tried" if found.aim.metric.shaken else "edges are found between them"
+        said.append(
+            f"{found.aim.metric.name} does not go one way over the range: {count} values were tried at equal steps, "
+            f"{closer}, and between two that agree nothing was looked at."
+        )
+    for each in found.not_built:
+        span = _with_unit(found, each.low)
+        span = f"At {span}" if each.low == each.high else f"From {span} to {_with_unit(found, each.high)}"
+        said.append(f"{span} there is no value: {one_line(each.reason)}.")
+    if found.aim.metric.shaken and shaking is not None:
+        said.append(
+            f"One history is one sample: at each value {shaking.around.count} motions next to the one asked for are "
+            f"followed, {shaking.around.words}. What holds is a share of them, and moves by steps of "
+            f"{percent(1 / shaking.around.count)}."
+        )
+        if len(shaking.motions) > 1:
+            said.append(f"Of {len(shaking.motions)} motions the worst counts at each value.")
+    return said
+
+
+def _nearest(found: Design) -> str:
+    """How near the scan comes."""
+    there = np.flatnonzero(~np.isnan(found.metric))
+    if not there.size:
+        return f"{found.aim.metric.name} has no value at any of them."
+    best = there[(found.metric[there].argmin() if found.aim.op[0] == "<" else found.metric[there].argmax())]
+    value, place = _metric(found, float(found.metric[best])), _with_unit(found, found.values[best])
+    return f"the {'least' if found.aim.op[0] == '<' else 'most'} it comes to is {value}, at {place}."
+
+
+def _listed(parts: Sequence[str]) -> str:
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+
+
+def _value(value: float) -> str:
+    return f"{value + 0.0:.6g}"
+
+
+def _with_unit(found: Design, value: float) -> str:
+    return f"{_value(float(value))}{f' {found.unit}' if found.unit else ''}"
+
+
+def _metric(found: Design, value: float) -> str:
+    """The metric as people read it: a share in per cent; where most of the neighbours overturn there is no peak."""
+    if np.isnan(value):
+        return ABSENT
+    if found.aim.metric.name == "overturned":
+        return percent(value)
+    return "overturns" if np.isinf(value) else f"{value:.5g}"

@@ -1,0 +1,184 @@
+"""Many structures, ranked, as people and programs read them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import isnan
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.io.tables import Columns
+from rocking_cli.names import percent
+from rocking_cli.studies.survey import Bad, Survey, Surveyed
+from rocking_cli.text import cut, one_line
+from rocking_cli.views.view import ABSENT, Table, View, number
+
+TOP = 20
+NAME = 30  # characters of a name in the table
+BLOCK = 10_000  # rows of a file written at a time
+FORMULA = ("=", "+", "-", "@")
+"""What a text begins with that a spreadsheet would take for a formula."""
+RANKED = {
+    "lambda": "by the ground acceleration that lifts them",
+    "response": "by the share of motions that overturn them, then by the largest peak of the others, then by uplift",
+}
+
+
+def view(found: Survey, top: int = TOP) -> View:
+    """The most vulnerable structures, and how many of all overturn."""
+    parts: list[Table | str] = []
+    if found.rows:
+        parts = [table(found, top), *sentences(found, top)]
+    return View(lambda: data(found), parts)
+
+
+def data(found: Survey) -> dict[str, Any]:
+    """A survey as plain data."""
+    return {
+        "ranked_by": found.by,
+        "motions": list(found.motions),
+        "rows": [_row(rank, each) for rank, each in enumerate(found.rows, 1)],
+        "bad": [
+            {"row": each.row, "line": each.line, "name": one_line(each.name), "reason": each.reason}
+            for each in found.bad
+        ],
+    }
+
+
+def _row(rank: int, each: Surveyed) -> dict[str, Any]:
+    shaken: dict[str, Any] = {}
+    if each.under is not None:
+        shaken = {
+            "overturned": each.under.overturned,
+            "peak_ratio": each.under.peak_ratio,
+            "peak_over": each.under.over,
+            "worst": each.under.worst,
+        }
+    return {
+        "rank": rank,
+        "name": each.name,
+        "mechanism": each.mechanism,
+        "row": each.row,
+        "line": each.line,
+        **shaken,
+        "lambda": each.lambda_,
+        "uplift": each.uplift,
+        "direction": each.direction,
+        "p": each.p,
+        "phi_cr": each.phi_cr,
+        "kappa1": each.kappa1,
+        "kappa2": each.kappa2,
+        "eta": each.eta,
+        "no_block": each.no_block,
+        "doubt": each.doubt,
+    }
+
+
+UNITS = {"uplift": "g", "p": "rad/s", "phi_cr": "rad"}
+
+
+def blocks(found: Survey, *, for_spreadsheets: bool) -> Iterator[Columns]:
+    """All rows, so many at a time; texts that a spreadsheet would compute get an apostrophe before them."""
+    for start in range(0, max(len(found.rows), 1), BLOCK):
+        yield columns(found, start, start + BLOCK, for_spreadsheets=for_spreadsheets)
+
+
+def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_spreadsheets: bool = False) -> Columns:
+    """Some of the rows as a table."""
+    rows = [_row(rank, each) for rank, each in enumerate(found.rows, 1)][start:stop]
+    if not rows:
+        return {"rank": [], "name": [], "lambda": []}
+    made: dict[str, Any] = {}
+    for key, value in rows[0].items():
+        head = f"{key} [{UNITS[key]}]" if key in UNITS else key
+        cells = [row[key] for row in rows]
+        if isinstance(value, float):
+            made[head] = np.array(cells, dtype=np.float64)
+        elif isinstance(value, int):
+            made[head] = cells
+        else:
+            texts = [one_line(each) if each is not None else "" for each in cells]
+            made[head] = [f"'{each}" if for_spreadsheets and each.startswith(FORMULA) else each for each in texts]
+    return made
+
+
+def headings(found: Survey) -> list[str]:
+    """Those of `cells`."""
+    shaken = ["overturn\nit", "largest\npeak"] if found.motions else []
+    return ["rank", "name", "mechanism", *shaken, "lambda", "p\n[rad/s]", "phi_cr\n[rad]", "kappa2", "eta"]
+
+
+def cells(rank: int, each: Surveyed, longest: int | None = NAME) -> list[str]:
+    """A structure as people read it."""
+    name = one_line(each.name)
+    shaken = []
+    if each.under is not None:
+        shaken = [percent(each.under.overturned), _peak(each)]
+    numbers = (each.lambda_, each.p, each.phi_cr, each.kappa2, each.eta)
+    return [
+        str(rank),
+        cut(name, longest) if longest is not None else name,
+        each.mechanism,
+        *shaken,
+        *(number(value, 4) for value in numbers),
+    ]
+
+
+def _peak(each: Surveyed) -> str:
+    assert each.under is not None
+    peak = each.under.peak_ratio
+    return ABSENT if isnan(peak) else "no uplift" if peak == 0 else f"{peak:.3g}"
+
+
+def table(found: Survey, top: int) -> Table:
+    """The first rows."""
+    heads = headings(found)
+    rows = [cells(rank, each) for rank, each in enumerate(found.rows[:top], 1)]
+    return Table(title(found), heads, rows, numbers=[0, *range(3, len(heads))])
+
+
+def title(found: Survey) -> str:
+    """What it is, for a heading."""
+    count = len(found.rows)
+    return f"{count:,} structure{'s' * (count != 1)}, the most vulnerable first"
+
+
+def sentences(found: Survey, top: int | None = None) -> list[str]:
+    """What to know of the rows."""
+    rows, many = found.rows, len(found.rows)
+    said = [f"Ranked {RANKED[found.by]}."]
+    if top is not None and many > top:
+        said[0] = f"Shown are {top} of {many:,}, ranked {RANKED[found.by]}."
+    if found.motions:
+        under = [each.under for each in rows if each.under is not None]
+        falls = sum(each.overturned > 0 for each in under)
+        lifts = sum(each.overturned > 0 or each.peak_ratio > 0 for each in under)
+        motions = f"the {len(found.motions)} motions" if len(found.motions) > 1 else found.motions[0]
+        said.append(
+            f"Under {motions}, by the nonlinear model, {lifts:,} of {many:,} uplift and {falls:,} overturn. A peak is "
+            "the largest over the critical rotation, of the motions under which it stays up. One history is one "
+            "sample: `rocking respond` and `rocking margin` say how close it is."
+        )
+    without = [each for each in rows if each.no_block is not None]
+    if without:
+        said.append(
+            f"No single block is equivalent to {_named(without)}: there is a lambda, and no p; `rocking equiv` says "
+            "why."
+        )
+    return said
+
+
+def _named(rows: Sequence[Surveyed], most: int = 3) -> str:
+    names = ", ".join(cut(one_line(each.name), NAME) for each in rows[:most])
+    return names if len(rows) <= most else f"{len(rows):,} of them ({names}, ...)"
+
+
+def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:
+    """What to say of structures that could not be used: the first of them one by one, then how many more."""
+    for each in found[:most]:
+        said = str(each.error)
+        place = "" if said.startswith(f"{one_line(file)}:") else f"{one_line(file)}:{each.line}: "
+        yield f"{place}{said}"
+    if len(found) > most:
+        yield f"{len(found) - most:,} more structures cannot be used: `as_json` lists them all"
