@@ -89,7 +89,7 @@ def _subtitle(say: Language, found: Verification) -> str:
 def _reading(say: Language, found: Verification) -> Part:
     has_mass = found.mechanism.has_mass
     said = [say.say("reading_digits", digits=DIGITS, force="kN" if has_mass else "N/kg")]
-    said += [say.say("reading_marks"), *([] if has_mass else [say.say("per_kilogram")]), say.say("swipe")]
+    said += [say.say("reading_marks"), *([] if has_mass else [say.say("per_kilogram")])]
     return Part("reading", say.say("reading"), [*map(Sentence, said)])
 
 
