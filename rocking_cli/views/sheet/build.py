@@ -43,7 +43,7 @@ def check_has_sheet(site: SiteFile) -> None:
     if site.site.code not in PARTS:
         problem = Problem(
             f"there is no calculation sheet by {site.site.code}", site.document.file, field="code",
-            hint="`rocking verify` without --sheet says what it finds",
+            hint="without a sheet `rocking verify` says what it finds",
         )  # fmt: skip
         raise InputError(problem)
 
