@@ -679,5 +679,15 @@ def test_records_are_on_the_sheet_and_a_report_has_it_all(tmp_path):
     own = [each for each in of_html(tmp_path / "o.html") if isinstance(each, Step)]
     assert [each for each in page if isinstance(each, Step)][: len(own) // 2] == own[: len(own) // 2]
     text = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "direction governs" not in text  # the two are alike but for their histories
     addresses = re.findall(r' id="([^"]+)"', re.sub(r"<svg.*?</svg>", "", text, flags=re.DOTALL))
     assert len(addresses) == len({*addresses})
+
+
+@pytest.mark.parametrize("name", ["facade", "two bodies on a floor", "arch"])
+def test_a_control_point_of_a_body_has_its_steps(name, sheets):
+    point = {"facade": "0.3,8", "two bodies on a floor": "0,1.5,upper block", "arch": None}[name]
+    items = of_html(sheets(name, ".html", *(["--control", point] if point else []))[1])
+    assert check_arithmetic(items) > 40
+    formulas = {each.formula for each in items if isinstance(each, Step) and each.symbol == "x_[C]′"}
+    assert formulas == ({"θ′ (y_[C] − y_[O])"} if point else {"Σ (P+Q) x′/Σ (P+Q)"})

@@ -13,7 +13,7 @@ TEXTS = {
     # head
     "lang": "en",
     "title": "Calculation sheet: {name}",
-    "subtitle": "Verification of a local mechanism of masonry, {structure}, by NTC 2018 and Circolare 7/2019.",
+    "subtitle": "Verification of a local mechanism of collapse, {structure}, by NTC 2018 and Circolare 7/2019.",
     "project": "Project",
     "place": "Place",
     "author": "Author",

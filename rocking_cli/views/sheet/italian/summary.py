@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import isclose
 
 from rocking_cli.studies.verification.results import Method, Verification, Verified
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
 from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.verification import AGREE
 
 
 def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> Part:
@@ -45,7 +47,7 @@ def _which(say: Language, found: Verification) -> Iterator[Item]:
     """Which direction governs."""
     least = found.governs
     ratio, rest = (found.directions[each].states[found.first].ratio for each in (least, least.opposite))
-    if ratio is not None and rest is not None:
+    if ratio is not None and rest is not None and not isclose(ratio, rest, rel_tol=AGREE):
         yield Sentence(say.say("which", least=say.say(f"short_{least.label}"), ratio=ratio, rest=rest))
 
 
