@@ -153,7 +153,7 @@ def grouped(**groups: type) -> Decorator:
     return decorate
 
 
-def _in_order(*decorators: Decorator) -> Decorator:
+def in_order(*decorators: Decorator) -> Decorator:
     """Several options as one decorator; the help lists them in this order."""
 
     def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -164,7 +164,7 @@ def _in_order(*decorators: Decorator) -> Decorator:
     return decorate
 
 
-ground_motions: Decorator = _in_order(
+ground_motions: Decorator = in_order(
     click.option(
         "--record", "records", multiple=True, metavar="PLACE", shell_complete=complete.files,
         help="A ground motion, - for standard input, or a pattern in quotes: 'records/*.AT2'. May be repeated.",
@@ -226,7 +226,7 @@ def _floor() -> Callable[[str], Any]:
 
 
 CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
-corrections: Decorator = _in_order(
+corrections: Decorator = in_order(
     _correction("baseline", "linear|quadratic", "Subtract the line, parabola or constant that fits the samples best."),
     _correction("highpass", "HZ", "Take out what is slower (Butterworth, both ways)."),
     _correction("lowpass", "HZ", "Take out what is faster."),
@@ -236,7 +236,7 @@ corrections: Decorator = _in_order(
 )
 """Corrections of a record, made in the order in which they are given."""
 
-reading: Decorator = _in_order(
+reading: Decorator = in_order(
     click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),
     click.option("--dt", type=Quantity(INTERVAL), metavar="TIME", help="Interval of a record without times, in s."),
     click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name."),
@@ -272,7 +272,7 @@ def scaling(*polarities: str, both: str = "one after the other", default: str = 
     `both` says what becomes of both polarities, where they are one of them; `default` is what holds unless asked.
     `motions.factor` turns the first three, of which a user may give one, into a number.
     """
-    return _in_order(
+    return in_order(
         click.option("--scale", type=Finite(), metavar="FACTOR", help="Factor on the record.  [default: 1]"),
         click.option(
             "--target-pga",
@@ -312,7 +312,7 @@ shape: Decorator = click.option(
 
 def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
     """One pulse: `shape`, `ag`, `period` and `polarity`, which is one of these."""
-    return _in_order(
+    return in_order(
         click.option(
             "--ag",
             required=required,
@@ -334,7 +334,7 @@ def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
     )
 
 
-around: Decorator = _in_order(
+around: Decorator = in_order(
     click.option(
         "--neighbours",
         type=click.IntRange(0, 1_000_000),

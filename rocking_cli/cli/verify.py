@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import complete, motion_files, options, terminal
+from rocking_cli.cli import complete, heads, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions
+from rocking_cli.cli.heads import SheetAsked
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.prepared import Prepared
+    from rocking_cli.excitation.scaled import Scaled
     from rocking_cli.processing.listed import Listed
+    from rocking_cli.studies.assessment import TitleBlock
     from rocking_cli.studies.verification.results import Verification
     from rocking_cli.studies.verification.site_file import SiteFile
 
@@ -49,15 +52,17 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
 @options.reading
 @options.scaling("1", "-1", "both", both="the worse of the two")
 @options.plot("Draw the capacity curves")
+@heads.sheet
 @options.as_json
 @click.pass_context
-@options.grouped(asked=GroundMotions)
+@options.grouped(asked=GroundMotions, sheet=SheetAsked)
 def command(
     ctx: click.Context,
     file: str | None,
     site_file: str,
     control: Point | None,
     asked: GroundMotions,
+    sheet: SheetAsked,
     plot: Path | None,
     as_json: bool,
 ) -> None:
@@ -67,7 +72,8 @@ def command(
     straight line: what each allows, which governs, and why they differ. With --record, as often as you like, also the
     dynamic method: histories on the capacity curve, with the confidence factor and without. Records must fit the
     spectrum of the site; that is not checked. Every number has its clause. That a structure fails is a result: the
-    exit code is 0.
+    exit code is 0. With --sheet the calculation sheet to hand in: every formula with its numbers, in English or
+    Italian.
 
     Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
 
@@ -76,6 +82,7 @@ def command(
       rocking new block > block.yaml
       rocking new site > site.yaml
       rocking verify block.yaml --site site.yaml
+      rocking verify block.yaml --site site.yaml --sheet block.html --language it
       rocking verify block.yaml --site site.yaml --control 0.35,2.8
       rocking verify block.yaml --site site.yaml --record "records/*.AT2" --target-pga 0.24
     """
@@ -88,27 +95,44 @@ def command(
     from rocking_cli.views.verification import view
 
     paths, missing = motion_files.find(asked.records)
-    keep_apart([("--plot", plot)], [file, site_file, *(str(each.path) for each in paths)])
+    given = [file, site_file, *sheet.inputs, *(str(each.path) for each in paths)]
+    keep_apart([("--plot", plot), ("--sheet", sheet.sheet)], given)
     site = read_site(Path(site_file))
+    title = _title(ctx, sheet, site)
     structure = structures.prepared([file] if file else [])
     found = verify(structure, site, control_at(structure.mechanism, *control) if control is not None else None)
     refused = 0
+    chosen: list[Scaled] = []
     if asked:
-        found, refused = _histories(found, structure, site, asked, paths)
+        found, chosen, refused = _histories(found, structure, site, asked, paths)
     if plot is not None:
         from rocking_cli.cli.pictures import write_picture
         from rocking_cli.plotting.verification import draw_verification
 
         write_picture(plot, draw_verification(found))
+    if title is not None:
+        from rocking_cli.cli import sheets
+
+        sheets.write(sheet, found, site, title, sheets.made(structure, file, Path(site_file), chosen))
     terminal.show(view(found, site.site.name), as_json=as_json)
     if missing or refused:
         ctx.exit(INCOMPLETE)
 
 
+def _title(ctx: click.Context, asked: SheetAsked, site: SiteFile) -> TitleBlock | None:
+    """The head of the sheet, where one is asked for. Raises, before any work, if it cannot be written."""
+    if asked.sheet is None:
+        return None
+    from rocking_cli.cli import sheets
+
+    sheets.check(asked, site)
+    return asked.title(heads.command_line(ctx))
+
+
 def _histories(
     found: Verification, structure: Prepared, site: SiteFile, asked: GroundMotions, paths: list[Listed]
-) -> tuple[Verification, int]:
-    """The same with histories under the motions that can be used, and how many cannot. Raises if none can."""
+) -> tuple[Verification, list[Scaled], int]:
+    """The same with histories under the motions that can be used, these, and how many cannot. Raises if none can."""
     from rocking_cli.cli.waiting import compile_first
     from rocking_cli.studies.verification.check import with_histories
 
@@ -120,4 +144,4 @@ def _histories(
     compile_first()
     motions = [each.motion.scaled(each.factor) for each in chosen]
     with terminal.progress(len(motions), "records") as advance:
-        return with_histories(found, structure, site, motions, asked.signs, advance), refused
+        return with_histories(found, structure, site, motions, asked.signs, advance), chosen, refused

@@ -26,6 +26,8 @@ from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.report.figures import inline_svg
 from rocking_cli.report.hung import hung_on
+from rocking_cli.report.sheet_page import parts
+from rocking_cli.report.verified import VerifiedReport
 from rocking_cli.studies.assessment import Assessment, MotionResult, PulseMap, amplitude_in_g, share
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
@@ -47,13 +49,15 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 Rows = list[list[str]]
 
 
-def render(content: Assessment) -> str:
+def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
     """The page.
 
     Parameters
     ----------
     content : Assessment
         What it says; every text in it is escaped.
+    verified : VerifiedReport, optional
+        A verification that is part of it.
     """
     environment = Environment(
         loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,
@@ -64,6 +68,8 @@ def render(content: Assessment) -> str:
     bins = int(np.clip(BINS // max(1, len(content.results)), FEWEST, MOST))
     page = environment.get_template("report.html").render(
         content=content,
+        verified=verified,
+        verification=parts(verified.within, content.mechanism, level=3) if verified is not None else "",
         answer=words.in_a_sentence(content),
         falls=any(each.histories["nonlinear"].overturned for each in content.results),
         verdicts=words.verdicts(content),

@@ -293,12 +293,7 @@ def gather(
         results=tuple(results),
         maps=tuple(maps),
         title=title,
-        versions={
-            "rocking-cli": version("rocking-cli"),
-            f"mechanism {mechanism.mechanism}": _plugin(mechanism),
-            "Python": platform.python_version(),
-            **{name: version(name) for name in PACKAGES},
-        },
+        versions=versions(mechanism),
     )
 
 
@@ -312,6 +307,16 @@ def _error_of_block(structure: Prepared) -> tuple[Sequence[Linearisation], Seque
         return curves, asked, trust(curves, asked)
     except SolverError as error:  # the rest of the report stands without it
         return [], [], f"The error of the equivalent block is left out: {error}."
+
+
+def versions(mechanism: Mechanism) -> dict[str, str]:
+    """Of this package, of what a mechanism comes from, and of what it is computed with."""
+    return {
+        "rocking-cli": version("rocking-cli"),
+        f"mechanism {mechanism.mechanism}": _plugin(mechanism),
+        "Python": platform.python_version(),
+        **{name: version(name) for name in PACKAGES},
+    }
 
 
 def steps(given: Sequence[Scaled]) -> int:
@@ -337,7 +342,7 @@ def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], aroun
     fits = _fits(given, scaled)
     return MotionResult(
         given=given,
-        file=_file(str(given.file)) if given.file is not None else None,
+        file=file_of_motion(given),
         measured=measure(scaled),
         doubts=tuple(doubtful),
         runs=runs,
@@ -351,8 +356,9 @@ def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], aroun
     )
 
 
-def _file(place: str) -> File:
-    return File(name_of(place), original(place))
+def file_of_motion(given: Scaled) -> File | None:
+    """Where a ground motion was read; None of a pulse."""
+    return None if given.file is None else File(name_of(str(given.file)), original(str(given.file)))
 
 
 def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from rocking_cli.studies.assessment import Assessment
 from rocking_cli.studies.movements import Watched
+from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views import assessment_words as words
-from rocking_cli.views import processing
+from rocking_cli.views import processing, verification
 from rocking_cli.views.equiv import sides_of, without
 from rocking_cli.views.margin import margin_data
 from rocking_cli.views.parameters import values
@@ -13,7 +14,7 @@ from rocking_cli.views.response import Shown, fit_data, runs_data
 from rocking_cli.views.view import View
 
 
-def view(content: Assessment) -> View:
+def view(content: Assessment, verified: Verification | None = None) -> View:
     """The answer in a sentence, and all that the report says as plain data."""
     verdicts, watched = words.verdicts(content), Watched(content.mechanism)
     data = {
@@ -51,6 +52,7 @@ def view(content: Assessment) -> View:
             for each, said in zip(content.results, verdicts, strict=True)
         ],
         "linearisation": content.trust,
+        **({"verification": verification.data(verified)} if verified is not None else {}),
         **content.title.known,
         "command": content.title.command,
         "date": content.title.date,

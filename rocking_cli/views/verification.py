@@ -38,12 +38,13 @@ def shown(found: Verification) -> dict[str, Verified]:
     each = list(found.directions.values())
     if len(each) == 1:
         return {f"{each[0].direction.label.capitalize()} direction": each[0]}
-    if _alike(*each):
+    if alike(*each):
         return {"Both directions": each[0]}
     return {f"{one.direction.label.capitalize()} direction": one for one in each}
 
 
-def _alike(one: Verified, other: Verified) -> bool:
+def alike(one: Verified, other: Verified) -> bool:
+    """Whether two directions need be shown once only."""
     pairs = [(one.a0, other.a0), (one.d0, other.d0), (one.chain.e_star, other.chain.e_star)]
     pairs += [(one.states[key].a, other.states[key].a) for key in one.states]
     same = all(isclose(a, b, rel_tol=AGREE) for a, b in pairs)

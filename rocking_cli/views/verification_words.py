@@ -20,7 +20,7 @@ def verdict(found: Verified, first: str, where: str) -> str:
         f"the displacement allowed, {at.d:.4g} m, is {at.ratio:.3g} times the {at.demand:.4g} m asked for at "
         f"{at.T:.3g} s"
     )
-    passes = counts.zeta >= 1 or bool(at.passes)
+    passes = found.passes(first)
     if found.governs == "damage":
         by_displacement = found.methods["nonlinear"].a_g or 0.0
         return (

@@ -176,6 +176,11 @@ class Verified:
         """The method that governs."""
         return self.methods[self.governs]
 
+    def passes(self, state: str) -> bool | None:
+        """Whether it passes at a limit state by what governs; None where the site does not give it."""
+        at, zeta = self.states[state], self.counts.zeta
+        return None if zeta is None else zeta >= 1 - CLOSE or bool(at.passes)
+
 
 @dataclass(frozen=True, eq=False)
 class Verification:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Standing = Literal["code", "ours"]
-"""Of a formula: of the code, and not yet held against its printed text; or ours, where the code leaves it open."""
+Standing = Literal["code", "ours", "plain"]
+"""Of a formula: of the code, and not yet held against its printed text; ours, where the code leaves it open; or plain
+mechanics and arithmetic, which need no code."""
 MEANING: dict[Standing, str] = {
     "code": "a formula of the code that was not yet held against its printed text",
     "ours": "our reading, or our choice where the code leaves it open",
+    "plain": "mechanics or arithmetic, which need no code",
 }
 
 
@@ -33,7 +35,7 @@ class Working:
         Its unit; empty for a pure number.
     clause : str
         Where in the code.
-    standing : {"code", "ours"}
+    standing : {"code", "ours", "plain"}
         How far the formula was checked, see `MEANING`.
     """
 

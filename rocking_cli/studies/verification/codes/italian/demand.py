@@ -164,7 +164,7 @@ class TableSpectrum:
         return T, self.factor * STANDARD_GRAVITY * a
 
     @cached_property
-    def _ramp(self) -> float:
+    def ramp(self) -> float:
         """The period up to which the correction for damping grows in [s]."""
         return max(self.points, key=lambda each: each[1])[0]
 
@@ -179,16 +179,21 @@ class TableSpectrum:
 
     def displacement(self, period: float, damping: float) -> float:
         """The largest S_e (t/2 pi)^2 from T0 to a period [m; C8.7.1.2.1.8]. Raises `InputError` beyond the table."""
+        t = self.governing(period, damping)
+        return self.acceleration(t, damping) * (t / (2 * pi)) ** 2
+
+    def governing(self, period: float, damping: float) -> float:
+        """The period of that largest displacement [s]. Raises `InputError` beyond the table."""
         self._check(period)
         start = min(self.start, period)
-        knots = np.union1d(self._known[0], self._ramp)
+        knots = np.union1d(self._known[0], self.ramp)
         t = np.concatenate([[start, period], knots, self._turns(knots, damping)])
         t = t[(t >= start) & (t <= period)]
-        return float((self._at(t, damping) * (t / (2 * pi)) ** 2).max())
+        return float(t[(self._at(t, damping) * t**2).argmax()])
 
     def _at(self, T: Reals, damping: float) -> Reals:
         eta = correction(damping)
-        share = np.minimum(T / self._ramp, 1.0) if self._ramp > 0 else np.ones_like(T)
+        share = np.minimum(T / self.ramp, 1.0) if self.ramp > 0 else np.ones_like(T)
         return np.asarray(np.interp(T, *self._known) * (1 - (1 - eta) * share))
 
     def _turns(self, knots: Reals, damping: float) -> Reals:
@@ -196,8 +201,8 @@ class TableSpectrum:
         low, high = knots[:-1], knots[1:]
         a, b = np.interp(low, *self._known), np.interp(high, *self._known)
         q = (b - a) / (high - low)
-        p, s = a - q * low, np.where(high <= self._ramp, (correction(damping) - 1) / (self._ramp or 1.0), 0.0)
-        r = np.where(high <= self._ramp, 1.0, correction(damping))
+        p, s = a - q * low, np.where(high <= self.ramp, (correction(damping) - 1) / (self.ramp or 1.0), 0.0)
+        r = np.where(high <= self.ramp, 1.0, correction(damping))
         square, linear, constant = 4 * q * s, 3 * (p * s + q * r), 2 * p * r
         with np.errstate(divide="ignore", invalid="ignore"):
             root = np.sqrt(linear**2 - 4 * square * constant)

@@ -63,6 +63,11 @@ class Ground:
         ground = self.on_ground(state)
         return None if ground is None else self._where_it_stands(ground)
 
+    def at_return_period(self, TR: float) -> Spectrum:
+        """The spectrum where the structure stands at a return period [years], where the hazard is known."""
+        assert self.hazard is not None
+        return self._where_it_stands(self.hazard.spectrum(TR))
+
     def _where_it_stands(self, ground: GroundSpectrum | TableSpectrum) -> Spectrum:
         floor = self.site.floor
         return ground if floor is None else FloorSpectrum(ground, floor.z, floor.H, floor.T1, floor.xi1, floor.n)
@@ -91,7 +96,7 @@ class Ground:
             return None, False
 
         def over(TR: float) -> float:
-            return demand(self._where_it_stands(hazard.spectrum(TR))) - capacity
+            return demand(self.at_return_period(TR)) - capacity
 
         if over(hazard.first) >= 0:
             return hazard.first, True

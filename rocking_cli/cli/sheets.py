@@ -1,0 +1,75 @@
+"""Calculation sheets of verifications, made and written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rocking_cli.cli import heads, terminal
+from rocking_cli.excitation.records.opening import original
+from rocking_cli.io.files import write_whole
+from rocking_cli.report.verified import VerifiedReport
+from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
+from rocking_cli.studies.verification.check import read_site, verify, with_histories
+from rocking_cli.views.sheet.build import Made, check_has_sheet, sheet
+from rocking_cli.views.sheet.language import Language
+
+if TYPE_CHECKING:
+    from rocking_cli.cli.heads import SheetAsked
+    from rocking_cli.dynamics.prepared import Prepared
+    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.studies.verification.results import Verification
+    from rocking_cli.studies.verification.site_file import SiteFile
+
+
+def check(asked: SheetAsked, site: SiteFile) -> None:
+    """Refuse, before any work, a sheet that cannot be written. Raises `InputError`."""
+    check_has_sheet(site)
+    if _is_docx(asked.sheet):
+        from rocking_cli.report.sheet_docx import check_package
+
+        check_package()
+
+
+def _is_docx(path: Path | None) -> bool:
+    return path is not None and path.suffix.lower() == ".docx"
+
+
+def made(structure: Prepared, given: str | None, site: Path, motions: Sequence[Scaled]) -> Made:
+    """What a sheet is made from: the structure, its file as it was given, the site, and ground motions."""
+    return Made(
+        heads.file_of(structure, given),
+        File(str(site), original(site)),
+        {each.motion.name: file_of_motion(each) for each in motions},
+        versions(structure.mechanism),
+    )
+
+
+def write(asked: SheetAsked, found: Verification, site: SiteFile, title: TitleBlock, of: Made) -> None:
+    """Write the sheet, and say so."""
+    assert asked.sheet is not None  # else none is asked for
+    content = sheet(found, site, asked.spoken, title, of)
+    if _is_docx(asked.sheet):
+        from rocking_cli.report.sheet_docx import render as render_docx
+
+        data = render_docx(content, found.mechanism)
+    else:
+        from rocking_cli.report.sheet_page import render
+
+        data = render(content, found.mechanism).encode()
+    write_whole(asked.sheet, lambda stream: stream.write(data))
+    terminal.note(f"wrote {asked.sheet} ({len(data) / 1e6:.2g} MB)")
+
+
+def of_report(
+    structure: Prepared, site_path: Path, given: str | None, motions: Sequence[Scaled], signs: Sequence[int],
+    title: TitleBlock,
+) -> VerifiedReport:  # fmt: skip
+    """The verification that is part of a report, with histories under its ground motions."""
+    site = read_site(site_path)
+    found = verify(structure, site)
+    if motions:
+        found = with_histories(found, structure, site, [each.motion.scaled(each.factor) for each in motions], signs)
+    of = made(structure, given, site_path, motions)
+    return VerifiedReport(found, sheet(found, site, Language("en"), title, of))

@@ -1,0 +1,81 @@
+"""A calculation sheet as one page: HTML that needs nothing else, and no network."""
+
+from __future__ import annotations
+
+from itertools import count
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+from matplotlib.figure import Figure
+
+from rocking_cli.core import Mechanism
+from rocking_cli.plotting.moving import asset
+from rocking_cli.plotting.structure import draw_structure
+from rocking_cli.report.figures import inline_svg
+from rocking_cli.report.translated import translate
+from rocking_cli.studies.picture import picture
+from rocking_cli.text import printable
+from rocking_cli.views.sheet.document import Drawing, Sheet
+from rocking_cli.views.sheet.markup import runs
+
+MARKS = {"code": "†", "ours": "‡", "plain": ""}
+"""What stands beside a formula, by how far it was checked."""
+
+
+def render(sheet: Sheet, mechanism: Mechanism) -> str:
+    """The page.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        What it says; every text in it is escaped.
+    mechanism : Mechanism
+        What to draw.
+    """
+    page = (
+        _environment()
+        .get_template("sheet.html")
+        .render(
+            sheet=sheet, say=sheet.language.say, parts=parts(sheet, mechanism), motion_style=Markup(asset("motion.css"))
+        )
+    )
+    return printable(page)
+
+
+def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2) -> Markup:
+    """The sections alone, from a level of headings on, such as for a report."""
+    template = _environment().get_template("sheet_parts.html")
+    has_drawing = any(isinstance(item, Drawing) for each in sheet.parts for item in each.items)
+    steps = count(1)
+    text = template.render(
+        sheet=sheet, level=level, drawing=_drawing(sheet, mechanism) if has_drawing else "", step=lambda: next(steps),
+        number=sheet.language.number, marks=MARKS,
+    )  # fmt: skip
+    return Markup(text)
+
+
+def figure_of(sheet: Sheet, mechanism: Mechanism) -> Figure:
+    """The picture of the structure, in the language of a sheet."""
+    title = f"{mechanism.name}: {sheet.language.mechanism(mechanism.mechanism, mechanism.title)}"
+    return translate(draw_structure(picture(mechanism), title), sheet.language)
+
+
+def _drawing(sheet: Sheet, mechanism: Mechanism) -> Markup:
+    return Markup(inline_svg(figure_of(sheet, mechanism), "sheet-drawing"))
+
+
+def formula(text: str) -> Markup:
+    """A text with its sub- and superscripts as HTML."""
+    return Markup("").join(
+        Markup(f"<{run.place}>{escape(run.text)}</{run.place}>") if run.place else escape(run.text)
+        for run in runs(text)
+    )
+
+
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    environment.filters["formula"] = formula
+    return environment

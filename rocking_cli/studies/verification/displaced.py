@@ -1,0 +1,175 @@
+"""The chain in a displaced position: where its blocks are, how they go on, and what holds them back there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rocking_cli.core.attached import ConstantForce, Follow, Spot, Spring, springs_of
+from rocking_cli.core.coefficients import Coefficients
+from rocking_cli.studies.verification.capacity import ExactCurve
+from rocking_cli.studies.verification.chain import Block, Chain
+
+TURNS = 1e-9  # rad per rad: what turns less goes straight on
+ROUNDING = 1e-9  # of the work of the weights, or of the masses: what is left over is none
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A block in a position of the chain, per unit rotation.
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    gone : float
+        How far its barycentre has gone sideways, in the direction of rocking [m].
+    at : complex
+        Where that is now [m].
+    turns : float
+        Its rotation in the direction of rocking [rad].
+    centre : complex or None
+        About which point [m]; None if it goes straight on.
+    dx, dy : float
+        x' of the barycentre of P + Q, in the direction of rocking, and y' of that of P, upwards [m].
+    """
+
+    block: Block
+    gone: float
+    at: complex
+    turns: float
+    centre: complex | None
+    dx: float
+    dy: float
+
+
+@dataclass(frozen=True)
+class Held:
+    """What a force or a tie does there: the force [N], how fast its point goes [m], and what that takes [N m]."""
+
+    name: str
+    force: float
+    rate: float
+    work: float
+
+
+@dataclass(frozen=True, eq=False)
+class Displaced:
+    """The chain at a rotation.
+
+    Parameters
+    ----------
+    curve : ExactCurve
+        Its capacity curve.
+    phi : float
+        The rotation [rad].
+    """
+
+    curve: ExactCurve
+    phi: float
+
+    @property
+    def chain(self) -> Chain:
+        """What moves."""
+        return self.curve.chain
+
+    @cached_property
+    def _follow(self) -> Follow:
+        return self.chain.mechanism.followed(np.array([self.phi]), self.chain.direction)
+
+    @cached_property
+    def blocks(self) -> Sequence[Moved]:
+        """Its blocks."""
+        return [self._moved(block) for block in self.chain.blocks]
+
+    def _moved(self, block: Block) -> Moved:
+        s, body = self.chain.direction, block.bodies[0]
+        here, beside = (self._follow(Spot(body, at)) for at in (block.at, block.at + 1))
+        velocity = complex(here.dz[0])
+        now, spin = complex(here.z[0]), (complex(beside.dz[0]) - velocity) / (complex(beside.z[0]) - complex(here.z[0]))
+        lifted = self._lift(block)
+        turns = -s * spin.imag
+        centre = None if abs(turns) < TURNS else now - velocity / (1j * spin.imag)
+        return Moved(block, s * (now - block.at).real, now, turns, centre, s * velocity.real, lifted)
+
+    def _lift(self, block: Block) -> float:
+        """y' of the barycentre of what a block carries [m]."""
+        own = [each for each in self.chain.weights if each.spot.body in block.bodies]
+        lifts = [each.carried * float(self._follow(each.spot).dz[0].imag) for each in own]
+        return sum(lifts) / (block.P or 1.0)
+
+    @property
+    def lifted(self) -> float:
+        """The sum of P y' [N m]."""
+        return sum(each.block.P * each.dy for each in self.blocks)
+
+    @property
+    def driven(self) -> float:
+        """The sum of (P + Q) x' [N m]."""
+        return sum(each.block.PQ * each.dx for each in self.blocks)
+
+    @cached_property
+    def held(self) -> Sequence[Held]:
+        """What forces and ties do."""
+        torn = self.curve.torn is not None and self.phi > self.curve.torn
+        mechanism = self.chain.mechanism
+        things = mechanism.model_copy(update={"interlock": None}).attached if torn else mechanism.attached
+        found: list[Held] = []
+        for thing in things:
+            if isinstance(thing, ConstantForce):
+                found += self._of_force(thing)
+            else:
+                found += [self._of_tie(spring) for spring in springs_of(thing)]
+        return found
+
+    def _of_force(self, thing: ConstantForce) -> list[Held]:
+        s, force = self.chain.direction, thing.in_direction(self.chain.direction)
+        rate = complex(self._follow(thing.spot).dz[0])
+        parts = [("x", s * force.real, s * rate.real), ("y", force.imag, rate.imag)]
+        return [Held(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
+
+    def _of_tie(self, spring: Spring) -> Held:
+        e, first, _ = spring.elongation(self._follow)
+        rest = np.zeros(1)
+        total = Coefficients(rest, *(np.zeros(1) for _ in range(7)))
+        spring.act(total, self.chain.direction, self._follow)
+        return Held(spring.name, spring.count * float(spring.force(e)[0]), float(first[0]), float(total.Q[0]))
+
+    @cached_property
+    def _own(self) -> _Sums:
+        mechanism = self.chain.mechanism
+        torn = self.curve.torn is not None and self.phi > self.curve.torn
+        here = (mechanism.model_copy(update={"interlock": None}) if torn else mechanism).coefficients(
+            np.array([self.phi]), self.chain.direction
+        )
+        return _Sums(float(here.restoring(mechanism.gravity)[0]) * mechanism.gravity, float(here.B[0]))
+
+    @property
+    def alpha(self) -> float:
+        """The multiplier there, V'/(g B)."""
+        return self._own.V / (self.chain.mechanism.gravity * self._own.B)
+
+    @property
+    def rest(self) -> float:
+        """What of V' neither weights nor forces nor ties give: what the mechanism says itself [N m]."""
+        known = self.lifted + sum(each.work for each in self.held)
+        rest = self._own.V - known
+        scale = sum(abs(each.block.P * each.dy) for each in self.blocks) + sum(abs(each.work) for each in self.held)
+        return rest if abs(rest) > ROUNDING * max(scale, abs(self._own.V), self.driven * 1e-6) else 0.0
+
+    @property
+    def more(self) -> float:
+        """What of g B the weights do not give: inertia that the mechanism says itself [N m]."""
+        more = self._own.B * self.chain.mechanism.gravity - self.driven
+        return more if abs(more) > ROUNDING * abs(self.driven) else 0.0
+
+
+@dataclass(frozen=True)
+class _Sums:
+    """V' [N m] and B [kg m]."""
+
+    V: float
+    B: float

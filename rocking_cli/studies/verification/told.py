@@ -1,0 +1,51 @@
+"""Sentences that are known in several languages: English as they stand, and others when asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Self
+
+Texts = Mapping[str, Mapping[str, str]]
+"""Of each language the texts by their keys, with the same slots in each."""
+WITH_COMMA = frozenset({"it"})
+"""The languages that write 1.5 with a comma."""
+
+
+class _Comma(float):
+    """A number that is written with a decimal comma, whatever its format."""
+
+    def __format__(self, spec: str) -> str:
+        return super().__format__(spec).replace(".", ",")
+
+
+def filled(text: str, language: str, values: Mapping[str, Any]) -> str:
+    """A text with its slots filled, numbers as the language writes them."""
+    if language in WITH_COMMA:
+        values = {name: _Comma(value) if isinstance(value, float) else value for name, value in values.items()}
+    return text.format(**values)
+
+
+class Told(str):
+    """A sentence in English, which it is as a string, that can be had in other languages."""
+
+    __slots__ = ("_key", "_texts", "_values")
+    _key: str
+    _texts: Texts
+    _values: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, texts: Texts, key: str, **values: Any) -> Self:
+        """The sentence of a key; values that are sentences too are said in the same language."""
+        told = cls(filled(texts["en"][key], "en", values))
+        told._key, told._texts, told._values = key, texts, values
+        return told
+
+    def said_in(self, language: str) -> str:
+        """It in a language."""
+        values = {k: v.said_in(language) if isinstance(v, Told) else v for k, v in self._values.items()}
+        return filled(self._texts[language][self._key], language, values)
+
+
+def said_in(language: str, text: str) -> str:
+    """A sentence in a language, where it is known in it; else as it stands."""
+    return text.said_in(language) if isinstance(text, Told) else text

@@ -1,0 +1,120 @@
+"""The sheet of a verification: its head, what its code says, and what it was made from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.studies.assessment import File, TitleBlock
+from rocking_cli.studies.verification.results import Verification
+from rocking_cli.studies.verification.site_file import SiteFile
+from rocking_cli.views.sheet.document import Grid, Item, Listing, Part, Sentence, Sheet
+from rocking_cli.views.sheet.italian import build as italian
+from rocking_cli.views.sheet.language import DIGITS, Language
+
+PARTS: Mapping[str, Any] = {"NTC2018": italian.parts}
+"""What the sheets of a code say, by the name that site files have for it."""
+MOST = 200  # lines of a file that are printed
+
+
+@dataclass(frozen=True)
+class Made:
+    """What a sheet was made from.
+
+    Parameters
+    ----------
+    structure, site : File
+        The two files.
+    records : mapping of str to File or None
+        Of each ground motion its file; None for a pulse.
+    versions : mapping of str to str
+    """
+
+    structure: File
+    site: File
+    records: Mapping[str, File | None]
+    versions: Mapping[str, str]
+
+
+def check_has_sheet(site: SiteFile) -> None:
+    """Refuse a code that has no sheet. Raises `InputError`."""
+    if site.site.code not in PARTS:
+        problem = Problem(
+            f"there is no calculation sheet by {site.site.code}", site.document.file, field="code",
+            hint="without a sheet `rocking verify` says what it finds",
+        )  # fmt: skip
+        raise InputError(problem)
+
+
+def sheet(found: Verification, site: SiteFile, language: Language, title: TitleBlock, made: Made) -> Sheet:
+    """The sheet of a verification, in a language.
+
+    Parameters
+    ----------
+    found : Verification
+        What was found.
+    site : SiteFile
+        By which site.
+    language : Language
+        In which it is told.
+    title : TitleBlock
+        For whom, by whom, when and by which command.
+    made : Made
+        Files and versions.
+
+    Raises
+    ------
+    InputError
+        If the code of the site has no sheet.
+    """
+    check_has_sheet(site)
+    say = language
+    about = {say.say(name): text for name, text in title.known.items()}
+    if site.site.name:
+        about[say.say("site_name")] = site.site.name
+    about[say.say("date")] = title.date
+    about[say.say("program")] = f"rocking-cli {made.versions['rocking-cli']}"
+    first, *others = PARTS[site.site.code](say, found, site.site)
+    parts = [first, _reading(say, found), *others, _inputs(say, found, title, made)]
+    return Sheet(say, say.say("title", name=found.mechanism.name), _subtitle(say, found), about, parts, title.logo)
+
+
+def _subtitle(say: Language, found: Verification) -> str:
+    mechanism = found.mechanism
+    return say.say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
+
+
+def _reading(say: Language, found: Verification) -> Part:
+    has_mass = found.mechanism.has_mass
+    said = [say.say("reading_digits", digits=DIGITS, force="kN" if has_mass else "N/kg")]
+    said += [say.say("reading_marks"), *([] if has_mass else [say.say("per_kilogram")])]
+    return Part("reading", say.say("reading"), [*map(Sentence, said)])
+
+
+def _inputs(say: Language, found: Verification, title: TitleBlock, made: Made) -> Part:
+    files = [("structure_file", made.structure), ("site_file", made.site)]
+    rows = [[say.say(kind), file.name, file.checksum] for kind, file in files]
+    for name, file in made.records.items():
+        seen = [name, say.say("pulse")] if file is None else [file.name, file.checksum]
+        rows.append([say.say("record_file"), *seen])
+    versions = [[*each] for each in made.versions.items()]
+    items: list[Item] = [
+        Sentence(say.say("inputs_are")),
+        Listing(title.command),
+        Grid(say.say("files"), ["", say.say("file"), "SHA-256"], rows),
+        Grid(say.say("versions"), [say.say("package"), say.say("version")], versions),
+        Sentence(say.say("source", source=found.mechanism.source)),
+    ]
+    texts = [Part(kind, say.say(kind), list(_text(say, file))) for kind, file in
+             (("structure_text", made.structure), ("site_text", made.site))]  # fmt: skip
+    return Part("inputs", say.say("inputs"), items, texts)
+
+
+def _text(say: Language, file: File) -> Iterator[Item]:
+    """What is in a file, as far as it goes on paper."""
+    lines: Sequence[str] = file.text.splitlines()
+    yield Listing("\n".join(lines[:MOST]))
+    if len(lines) > MOST:
+        yield Sentence(say.say("cut", more=len(lines) - MOST))

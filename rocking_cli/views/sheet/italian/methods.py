@@ -1,0 +1,148 @@
+"""Steps to what each method says that the structure can take, as a ground acceleration and as a return period."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from rocking_cli.studies.verification.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum, Spectrum
+from rocking_cli.studies.verification.codes.italian.ground import Ground
+from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
+from rocking_cli.studies.verification.results import Method, State, Verified
+from rocking_cli.studies.verification.working import Working
+from rocking_cli.views.sheet.document import Item, Part, Sentence, Steps
+from rocking_cli.views.sheet.italian import spectra
+from rocking_cli.views.sheet.italian.site import hazard_at, is_close
+from rocking_cli.views.sheet.italian.states import LINE
+from rocking_cli.views.sheet.language import Language
+
+STATE = {"damage": "SLV", "linear": "SLV", "nonlinear": "SLV", "nonlinear_SLC": "SLC", "SLD": "SLD"}
+RULE = {"nonlinear": RULES[0], "nonlinear_SLC": RULES[1]}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a method compares.
+
+    Parameters
+    ----------
+    state : str
+        By whose ground.
+    name, capacity, unit : str, float, str
+        What the structure has.
+    demand : str
+        What the ground asks for, in symbols.
+    at : At or None
+        At which period it asks for a displacement; None for an acceleration at once.
+    """
+
+    state: str
+    name: str
+    capacity: float
+    unit: str
+    demand: str
+    at: spectra.At | None = None
+
+
+@dataclass(frozen=True)
+class Methods:
+    """The methods of a direction, and the language they are told in."""
+
+    say: Language
+    ground: Ground
+    found: Verified
+
+    def parts(self, key: str) -> Iterator[Part]:
+        """A part for each method whose limit state the site gives."""
+        for name, method in self.found.methods.items():
+            if method.a_g is None:
+                continue
+            heading = self.say.say(f"method_{name}")
+            yield Part(
+                f"{key}-{name}", heading, list(self._items(name, method, self._asked(name, self.found.states, "")))
+            )
+            if name in RULE:
+                line = self.found.straight_methods[name]
+                asked = self._asked(name, self.found.straight_states, f",{LINE}")
+                items = list(self._items(name, line, asked, f",{LINE}"))
+                yield Part(f"{key}-{name}-line", f"{heading}, {self.say.say('and_line')}", items)
+
+    def _asked(self, name: str, states: Mapping[str, State], more: str) -> Asked:
+        if name in RULE:
+            rule: Rule = RULE[name]
+            s = rule.state
+            at = spectra.At(f"T_[{s}{more}]", states[s].T, rule.damping)
+            return Asked(s, f"d_[{s}]", states[s].d, "m", f"S_[De](T_[{s}{more}])", at)
+        q = self.ground.site.q if name == "linear" else 1.0
+        symbol = "q a_[0]^[*]" if name == "linear" else "a_[0]^[*]"
+        return Asked(STATE[name], symbol, q * self.found.a0, "m/s²", self._peak(STATE[name]))
+
+    def _peak(self, state: str) -> str:
+        on_floor = isinstance(self.ground.spectrum(state), FloorSpectrum)
+        if self.ground.site.T0 is not None:
+            return "S_[eZ](T_[0])" if on_floor else "S_[e](T_[0])"
+        return "S_[Z]" if on_floor else "a_[g] S"
+
+    def _demand(self, spectrum: Spectrum, asked: Asked) -> float:
+        if asked.at is not None:
+            return spectrum.displacement(asked.at.T, asked.at.damping)
+        T0 = self.ground.site.T0
+        return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
+
+    def _items(self, name: str, method: Method, asked: Asked, more: str = "") -> Iterator[Item]:
+        """The a_g that it can take, how that is checked, zeta_E, and the return period."""
+        say, spectrum = self.say, self.ground.spectrum(asked.state)
+        assert spectrum is not None and method.a_g is not None and method.asked is not None  # its state is given
+        rows: list[Working] = []
+        if name == "linear":
+            put = say.put("{q} · {a}", q=self.ground.site.q, a=self.found.a0)
+            rows.append(
+                Working("q a_[0]^[*]", say.say("qa0"), "q · a_[0]^[*]", put, asked.capacity, "m/s²", "C8.7.1.6-9")
+            )
+        symbol, own = f"a_[g,{name.replace('_SLC', '')}{more}]", self._demand(spectrum, asked)
+        in_ratio = is_close(method.a_g, method.asked * asked.capacity / own)
+        if in_ratio:
+            put = say.put("{ag} · {c}/{d}", ag=method.asked, c=asked.capacity, d=own)
+            under = f"({asked.demand})" if " " in asked.demand else asked.demand
+            formula = f"a_[g] · {asked.name}/{under}"
+            rows.append(Working(symbol, say.say("a_g_method"), formula, put, method.a_g, "g", method.clause))
+        else:
+            formula = f"{asked.demand}(a_[g]) = {asked.name}"
+            rows.append(Working(symbol, say.say("a_g_solved"), formula, "", method.a_g, "g", method.clause))
+        yield Steps(rows)
+        if not in_ratio:
+            yield Sentence(say.say("check", state=asked.state))
+            yield Steps(list(self._checked(spectrum.with_ag(method.a_g), asked)))
+        put = say.put("{a}/{b}", a=method.a_g, b=method.asked)
+        zeta = Working(f"ζ_[E{more}]", say.say("zeta", state=asked.state), f"{symbol}/a_[g]", put, method.zeta or 0.0,
+                       "", method.clause)  # fmt: skip
+        yield Steps([zeta])
+        yield from self._lasts(method, asked, more)
+
+    def _checked(self, spectrum: Spectrum, asked: Asked) -> Iterator[Working]:
+        """What is asked for under another ground: to be held against the capacity."""
+        say = self.say
+        ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
+        if asked.at is None or isinstance(spectrum, FloorSpectrum):
+            yield from spectra.peaks(say, spectrum, asked.state)
+        elif isinstance(ground, GroundSpectrum):
+            yield from list(spectra.peaks(say, ground, asked.state))[:2]
+        if asked.at is not None:
+            yield from spectra.displacement(say, spectrum, asked.at)
+        elif self.ground.site.T0 is not None:
+            yield from spectra.at_own_period(say, spectrum, self.ground.site.T0, DAMPING)
+
+    def _lasts(self, method: Method, asked: Asked, more: str) -> Iterator[Item]:
+        """The same as a return period."""
+        say, TR, hazard = self.say, method.return_period, self.ground.hazard
+        if TR is None or hazard is None:
+            return
+        years = say.say("years")
+        if method.beyond:
+            yield Sentence(say.say("beyond_long" if (method.zeta or 0) >= 1 else "beyond_short", TR=say.number(TR)))
+            return
+        formula = f"{asked.demand}(T_[R]) = {asked.name}"
+        yield Steps([Working(f"T_[R{more}]", say.say("TR_capacity"), formula, "", TR, years, "3.2.1")])
+        yield Sentence(say.say("check_TR"))
+        spectrum = self.ground.at_return_period(TR)
+        yield Steps([*hazard_at(say, hazard, TR), *self._checked(spectrum, asked)])

@@ -1,0 +1,89 @@
+"""The head of the sheet: whether it passes in each direction and at each limit state, by how much, what governs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import isclose
+
+from rocking_cli.studies.verification.results import Method, Verification, Verified
+from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
+from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.verification import AGREE
+
+
+def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> Part:
+    """The summary."""
+    items: list[Item] = [verdict(say, found.first, where, each) for where, each in shown.items()]
+    if len(shown) > 1:
+        items += _which(say, found)
+    for where, each in shown.items():
+        items += [_states(say, where, each), _methods(say, where, each)]
+    caution = found.mechanism.caution
+    remarks = [remark for each in shown.values() for remark in each.remarks]
+    said = [say.remark(each) for each in dict.fromkeys([*remarks, *found.remarks])]
+    if caution:
+        said.append(say.say("caution", text=say.caution(found.mechanism.mechanism, caution)))
+    return Part("summary", say.say("summary"), items, [Part("remarks", say.say("remarks"), [*map(Sentence, said)])])
+
+
+def verdict(say: Language, first: str, where: str, each: Verified) -> Sentence:
+    """The answer of a direction."""
+    at, counts, passes = each.states[first], each.counts, each.passes(first)
+    if passes is None or at.demand is None or at.ratio is None or counts.a_g is None or counts.asked is None:
+        return Sentence(say.say("no_state", where=where, state=first), answers=True)
+    if each.governs == "damage":
+        other = each.methods["nonlinear"].a_g or 0.0
+        why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.asked)
+    else:
+        why = say.say(
+            "why_nonlinear", d=at.d, ratio=at.ratio, demand=at.demand, T=at.T, a_g=counts.a_g, asked=counts.asked
+        )
+    key = "verdict_passes" if passes else "verdict_fails"
+    text = say.say(key, where=where, state=first, zeta=counts.zeta, why="@").replace("@", why)
+    return Sentence(text, answers=True, fails=not passes)
+
+
+def _which(say: Language, found: Verification) -> Iterator[Item]:
+    """Which direction governs."""
+    least = found.governs
+    ratio, rest = (found.directions[each].states[found.first].ratio for each in (least, least.opposite))
+    if ratio is not None and rest is not None and not isclose(ratio, rest, rel_tol=AGREE):
+        yield Sentence(say.say("which", least=say.say(f"short_{least.label}"), ratio=ratio, rest=rest))
+
+
+def _states(say: Language, where: str, each: Verified) -> Grid:
+    rows = []
+    for state, at in each.states.items():
+        known = at.ratio is not None
+        outcome = say.say("unknown" if not known else "yes" if at.passes else "no")
+        rows.append([state, *(say.number(v, 4) for v in (at.d, at.demand, at.T, at.ratio)), outcome])
+    damage = each.methods.get("SLD")
+    if damage is not None and damage.zeta is not None:
+        numbers = [say.number(v, 4) for v in (damage.a_g, damage.asked, None, damage.zeta)]
+        numbers[:2] = [f"{text} g" for text in numbers[:2]]
+        rows.append([say.say("begins", state="SLD"), *numbers, say.say("yes" if damage.zeta >= 1 else "no")])
+    heads = [say.say("limit_state"), f"{say.say('allowed')} [m]", f"{say.say('asked')} [m]", "T [s]", say.say("ratio")]
+    return Grid(say.say("states", where=where), [*heads, say.say("outcome")], rows, (1, 2, 3, 4))
+
+
+def _methods(say: Language, where: str, each: Verified) -> Grid:
+    known = any(method.return_period is not None for method in each.methods.values())
+    rows = []
+    for key, method in each.methods.items():
+        if method.a_g is None:
+            continue
+        line = each.straight_methods[key]
+        numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.asked, method.zeta)]
+        years = [_years(say, method)] if known else []
+        rows.append([say.say(f"method_{key}"), *numbers, *years, say.say("governs") if key == each.governs else ""])
+    heads = [say.say("method"), f"a_[g] [g], {say.say('exact')}", f"a_[g] [g], {say.say('line')}"]
+    heads += [f"{say.say('asked')} [g]", "ζ_[E]", *([say.say("TR_years")] if known else []), ""]
+    return Grid(say.say("methods", where=where), heads, rows, range(1, len(heads) - 1))
+
+
+def _years(say: Language, method: Method) -> str:
+    """A return period, and whether it is beyond the table."""
+    if method.return_period is None:
+        return say.number(None)
+    mark = "" if not method.beyond else ">" if (method.zeta or 0.0) >= 1 else "<"
+    return f"{mark}{method.return_period:.0f}"

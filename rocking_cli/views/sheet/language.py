@@ -1,0 +1,118 @@
+"""How a sheet speaks: its texts, and how it writes numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import date
+from math import isnan
+from typing import Any, NamedTuple
+
+from rocking_cli.studies.verification.told import WITH_COMMA, filled, said_in
+from rocking_cli.views.sheet import texts_en, texts_it
+
+DIGITS = 6  # significant: recomputed from printed numbers, a result agrees to five
+ABSENT = "–"
+MINUS = "−"
+SPELLED = {
+    "alpha0": "α_[0]",
+    "lambda": "λ",
+    "a0*": "a_[0]^[*]",
+    "d0*": "d_[0]^[*]",
+    "a*": "a^[*]",
+    "d_SLV": "d_[SLV]",
+    "d_SLC": "d_[SLC]",
+    "xi1^-1/2 eta(xi)": "ξ_[1]^[−1/2] η(ξ)",
+    "xi1": "ξ_[1]",
+    "S_Z": "S_[Z]",
+    "a_g": "a_[g]",
+    "T0": "T_[0]",
+    "m/s2": "m/s²",
+}
+"""The symbols of plain sentences, as they are printed."""
+
+
+class Table(NamedTuple):
+    """The texts of a language, its months, what it calls mechanisms and says of them, and the words of pictures."""
+
+    texts: Mapping[str, str]
+    months: Sequence[str]
+    mechanisms: Mapping[str, str]
+    cautions: Mapping[str, str]
+    pictures: Mapping[str, str]
+
+
+TABLES = {
+    key: Table(each.TEXTS, each.MONTHS, each.MECHANISMS, each.CAUTIONS, each.PICTURES)
+    for key, each in (("en", texts_en), ("it", texts_it))
+}
+
+
+@dataclass(frozen=True)
+class Language:
+    """A language of the sheet.
+
+    Parameters
+    ----------
+    key : str
+        "en" or "it".
+    """
+
+    key: str
+
+    @property
+    def texts(self) -> Mapping[str, str]:
+        """Its texts."""
+        return TABLES[self.key].texts
+
+    def say(self, key: str, **values: Any) -> str:
+        """A text with its slots filled: numbers are written, and texts of others kept from being formulas."""
+        ready = {name: plain(value) if isinstance(value, str) else value for name, value in values.items()}
+        return filled(self.texts[key], self.key, ready)
+
+    def remark(self, text: str) -> str:
+        """A sentence of the study, in this language where it knows it, with its symbols as they are printed."""
+        return re.sub("|".join(map(re.escape, SPELLED)), lambda found: SPELLED[found[0]], said_in(self.key, text))
+
+    def number(self, value: float | None, digits: int = DIGITS) -> str:
+        """A number as it is printed."""
+        if value is None or isnan(value):
+            return ABSENT
+        mantissa, _, power = f"{value + 0.0:.{digits}g}".partition("e")
+        text = mantissa.replace("-", MINUS)
+        if self.key in WITH_COMMA:
+            text = text.replace(".", ",")
+        return f"{text} · 10^[{str(int(power)).replace('-', MINUS)}]" if power else text
+
+    def put(self, formula: str, **numbers: float) -> str:
+        """A formula with numbers in its slots, those below zero in parentheses."""
+        written = {name: self.number(value) for name, value in numbers.items()}
+        held = {name: f"({text})" if MINUS in text or "^" in text else text for name, text in written.items()}
+        return self.formula(formula).format(**held)
+
+    def formula(self, formula: str) -> str:
+        """The numbers that a formula itself has, such as 1.68, as the language writes them."""
+        return re.sub(r"(?<=\d)\.(?=\d)", ",", formula) if self.key in WITH_COMMA else formula
+
+    def day(self, when: date) -> str:
+        """A date."""
+        return f"{when.day} {TABLES[self.key].months[when.month - 1]} {when.year}"
+
+    @property
+    def words_of_pictures(self) -> Mapping[str, str]:
+        """The lines of pictures, by what they are in English."""
+        return TABLES[self.key].pictures
+
+    def mechanism(self, key: str, title: str) -> str:
+        """What a mechanism is; one that is not known here by its own words."""
+        return TABLES[self.key].mechanisms.get(key, plain(title))
+
+    def caution(self, key: str, text: str) -> str:
+        """What to beware of in a mechanism."""
+        return TABLES[self.key].cautions.get(key, plain(text))
+
+
+def plain(text: str) -> str:
+    """A text of others, in which nothing is taken for a sub- or superscript."""
+    return re.sub(r"([_^])\[", "\\1\N{WORD JOINER}[", text)

@@ -1,0 +1,29 @@
+"""Formulas in a line of text: `d_[0]^[*]` has a subscript and a superscript."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+Place = Literal["", "sub", "sup"]
+MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
+
+
+class Run(NamedTuple):
+    """A piece of text, and where it stands."""
+
+    text: str
+    place: Place = ""
+
+
+def runs(text: str) -> Iterator[Run]:
+    """The pieces of a text."""
+    end = 0
+    for mark in MARK.finditer(text):
+        if mark.start() > end:
+            yield Run(text[end : mark.start()])
+        yield Run(mark[2], "sub" if mark[1] == "_" else "sup")
+        end = mark.end()
+    if end < len(text):
+        yield Run(text[end:])
