@@ -176,3 +176,14 @@ class TestInPython:
             rk.verify(FACADE, SITE, polarities=(2,))
         answer = rk.verify(FACADE, SITE, motions=["sine:0.15g:0.6s"])
         assert answer.directions[Direction.POSITIVE].dynamic is not None
+
+
+def test_of_directions_that_are_alike_none_governs():
+    import rocking_cli as rk
+
+    site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    block = rk.Block(width=0.7, height=2.8)
+    said = " ".join(rk.verify(block, site, motions=["sine:0.3g:0.8s"]).sentences)
+    assert "Histories" not in said and "direction governs" not in said
+    leaning = rk.RigidBody(polygon=[[0, 0], [0.7, 0], [0.7, 2.8], [0.2, 2.8]])
+    assert "direction governs" in " ".join(rk.verify(leaning, site).sentences)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import isclose
 
 from rocking_cli.studies.verification.results import Dynamic, Verification, Verified
 from rocking_cli.studies.verification.working import Working
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
+ALIKE = 1e-6  # of a ratio: of directions that differ by less none governs
 ORDINAL = {True: "With FC", False: "Without FC, which is what `rocking respond` follows"}
 
 
@@ -123,6 +125,8 @@ def which_direction(found: Verification) -> str:
     least = found.governs
     ratio = found.directions[least].states[found.first].ratio
     rest = found.directions[least.opposite].states[found.first].ratio
+    if ratio is None or rest is None or isclose(ratio, rest, rel_tol=ALIKE):
+        return ""
     return f"The {least.label} direction governs: d over demand is {ratio:.3g}, in the other {rest:.3g}."
 
 
