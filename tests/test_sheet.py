@@ -16,6 +16,7 @@ import pytest
 
 from rocking_cli.studies.verification.codes.italian import remarks
 from rocking_cli.views.sheet import texts_en, texts_it
+from tests.browser import launch
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -604,14 +605,34 @@ class TestAskingForIt:
         (tmp_path / "s.yaml").write_text(FACADE, encoding="utf-8")
         return run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", *more, code=code)
 
-    def test_a_pdf_is_refused_with_what_to_do(self, tmp_path):
+    def test_a_pdf_is_printed_by_a_browser(self, tmp_path):
+        found, driver = launch()  # skipped where there is none
+        found.close()
+        driver.stop()
+        self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=0)
+        content = (tmp_path / "o.pdf").read_bytes()
+        assert content.startswith(b"%PDF-") and content.count(b"/Type /Page\n") + content.count(b"/Type/Page") > 3
+        assert content.rstrip().endswith(b"%%EOF")
+        assert {each.name for each in tmp_path.iterdir()} == {"o.pdf", "s.yaml", "site.yaml"}
+
+    def test_without_a_browser_it_is_said_before_any_work(self, tmp_path, monkeypatch):
+        monkeypatch.setenv("PATH", str(tmp_path))
+        monkeypatch.setattr("rocking_cli.io.browser.ELSEWHERE", ())
         result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf")
-        assert "print it to PDF" in result.stderr and "o.html" in result.stderr
+        assert "none is found here" in result.stderr and "ROCKING_BROWSER" in result.stderr
+        monkeypatch.setenv("ROCKING_BROWSER", "no-such-browser")
+        assert "there is no browser no-such-browser" in self.asked(tmp_path, "--sheet", tmp_path / "o.pdf").stderr
+        assert not (tmp_path / "o.pdf").exists()
+
+    def test_a_browser_that_does_not_print_is_said(self, tmp_path, monkeypatch):
+        monkeypatch.setenv("ROCKING_BROWSER", "false")
+        result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=1)
+        assert "did not print the page" in result.stderr
         assert not (tmp_path / "o.pdf").exists()
 
     def test_another_ending_is_refused(self, tmp_path):
         result = self.asked(tmp_path, "--sheet", tmp_path / "o.txt")
-        assert "does not end in .html or .docx" in result.stderr
+        assert "does not end in .html or .docx or .pdf" in result.stderr
 
     def test_a_head_without_a_sheet_is_refused(self, tmp_path):
         result = self.asked(tmp_path, "--author", "me")

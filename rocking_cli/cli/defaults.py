@@ -30,7 +30,7 @@ EVERYWHERE = (
 """Options that mean the same in every command that has them. Those that say what is asked, read or written are none."""
 IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")
 """Options that differ from command to command: only the table of a command gives them."""
-OTHERS = ("DEBUG",)
+OTHERS = ("DEBUG", "BROWSER")
 """Other variables of the environment that mean something."""
 
 

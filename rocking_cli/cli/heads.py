@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from rocking_cli.studies.assessment import File, TitleBlock
     from rocking_cli.views.sheet.language import Language
 
-NO_PDF = "open the .html in a browser and print it to PDF: the page has a layout for paper"
 LANGUAGES = ("en", "it")
 
 
@@ -90,17 +89,11 @@ head: options.Decorator = options.in_order(
 """The options of a head: `project`, `place`, `author` and `logo`."""
 
 
-def _sheet_path(ctx: click.Context, param: click.Parameter, value: str | None) -> Path | None:
-    """Where a sheet goes; of a PDF it is said how to make one."""
-    if value is not None and value.lower().endswith(".pdf"):
-        raise click.BadParameter(f"no PDF is written: give {value[:-4]}.html, and {NO_PDF}.", ctx, param)
-    return options.output_path(".html", ".docx")(ctx, param, value)
-
-
 sheet: options.Decorator = options.in_order(
     click.option(
-        "--sheet", callback=_sheet_path, metavar="FILE.html", shell_complete=complete.files,
-        help="Write the calculation sheet (.html, or .docx with rocking-cli[docx]).",
+        "--sheet", callback=options.output_path(".html", ".docx", ".pdf"), metavar="FILE.html",
+        shell_complete=complete.files,
+        help="Write the calculation sheet (.html, .docx with rocking-cli[docx], .pdf by a browser).",
     ),
     click.option("--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Of the sheet."),
     head,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rocking_cli.cli import heads, terminal
 from rocking_cli.excitation.records.opening import original
+from rocking_cli.io.browser import as_pdf, browser
 from rocking_cli.io.files import write_whole
 from rocking_cli.report.verified import VerifiedReport
 from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
@@ -30,6 +31,12 @@ def check(asked: SheetAsked, site: SiteFile) -> None:
         from rocking_cli.report.sheet_docx import check_package
 
         check_package()
+    if _is_pdf(asked.sheet):
+        browser()
+
+
+def _is_pdf(path: Path | None) -> bool:
+    return path is not None and path.suffix.lower() == ".pdf"
 
 
 def _is_docx(path: Path | None) -> bool:
@@ -58,6 +65,8 @@ def write(asked: SheetAsked, found: Verification, site: SiteFile, title: TitleBl
         from rocking_cli.report.sheet_page import render
 
         data = render(content, found.mechanism).encode()
+        if _is_pdf(asked.sheet):
+            data = as_pdf(data)
     write_whole(asked.sheet, lambda stream: stream.write(data))
     terminal.note(f"wrote {asked.sheet} ({len(data) / 1e6:.2g} MB)")
 

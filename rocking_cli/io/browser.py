@@ -1,0 +1,85 @@
+"""A page printed to PDF by the browser of the system: nothing else sets it as people see it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from rocking_cli.errors import InputError, Problem, Refused
+
+CHOSEN = "ROCKING_BROWSER"
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge", "microsoft-edge")
+ELSEWHERE = (  # where macOS and Windows keep what is on no path
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    "/Applications/Microsoft Edge.app/Contents/MacOS/Microsoft Edge",
+    "/Applications/Chromium.app/Contents/MacOS/Chromium",
+    r"C:\Program Files\Google\Chrome\Application\chrome.exe",
+    r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
+)
+PATIENCE = 120  # s
+
+
+def browser() -> str:
+    """The browser that prints: the one named in ROCKING_BROWSER, else the first that is found.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    found = next(_there(), None)
+    if found is None:
+        hint = f"install Chromium, Chrome or Edge, or name one in {CHOSEN}; or write .html and print it yourself"
+        raise InputError(Problem("a PDF is printed by a browser, and none is found here", hint=hint))
+    return found
+
+
+def _there() -> Iterator[str]:
+    chosen = os.environ.get(CHOSEN)
+    if chosen:
+        if (path := shutil.which(chosen)) is None:
+            hint = "name one that is there, or unset it"
+            raise InputError(Problem(f"there is no browser {chosen}", CHOSEN, hint=hint))
+        yield path
+    yield from filter(None, map(shutil.which, NAMES))
+    yield from (path for path in ELSEWHERE if Path(path).is_file())
+
+
+def as_pdf(page: bytes) -> bytes:
+    """A page of HTML that needs no network, printed.
+
+    Parameters
+    ----------
+    page : bytes
+        The page.
+
+    Returns
+    -------
+    bytes
+        The PDF.
+
+    Raises
+    ------
+    InputError
+        If there is no browser.
+    Refused
+        If it does not print.
+    """
+    program = browser()
+    with tempfile.TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True) as folder:
+        source, printed = Path(folder) / "page.html", Path(folder) / "page.pdf"
+        source.write_bytes(page)
+        options = ["--headless", "--disable-gpu", "--no-first-run", f"--user-data-dir={Path(folder) / 'profile'}"]
+        if sys.platform != "win32" and os.geteuid() == 0:
+            options.append("--no-sandbox")  # which root cannot have; the page is our own, and asks for nothing
+        command = [program, *options, "--no-pdf-header-footer", f"--print-to-pdf={printed}", source.as_uri()]
+        try:
+            subprocess.run(command, capture_output=True, timeout=PATIENCE, check=True)
+            return printed.read_bytes()
+        except (OSError, subprocess.SubprocessError) as error:
+            raise Refused(f"{program} did not print the page: {type(error).__name__}") from None
