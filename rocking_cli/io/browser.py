@@ -21,6 +21,7 @@ ELSEWHERE = (  # where macOS and Windows keep what is on no path
     r"C:\Program Files\Google\Chrome\Application\chrome.exe",
     r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
 )
+OPTIONS = ("headless", "disable-gpu", "no-first-run", "no-pdf-header-footer")
 PATIENCE = 120  # s
 
 
@@ -74,10 +75,10 @@ def as_pdf(page: bytes) -> bytes:
     with tempfile.TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True) as folder:
         source, printed = Path(folder) / "page.html", Path(folder) / "page.pdf"
         source.write_bytes(page)
-        options = ["--headless", "--disable-gpu", "--no-first-run", f"--user-data-dir={Path(folder) / 'profile'}"]
+        options = [*OPTIONS, f"user-data-dir={Path(folder) / 'profile'}", f"print-to-pdf={printed}"]
         if sys.platform != "win32" and os.geteuid() == 0:
-            options.append("--no-sandbox")  # which root cannot have; the page is our own, and asks for nothing
-        command = [program, *options, "--no-pdf-header-footer", f"--print-to-pdf={printed}", source.as_uri()]
+            options.append("no-sandbox")  # root can have none; the page is our own, and asks for nothing
+        command = [program, *(f"--{each}" for each in options), source.as_uri()]
         try:
             subprocess.run(command, capture_output=True, timeout=PATIENCE, check=True)
             return printed.read_bytes()
