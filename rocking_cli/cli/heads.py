@@ -93,7 +93,7 @@ sheet: options.Decorator = options.in_order(
     click.option(
         "--sheet", callback=options.output_path(".html", ".docx", ".pdf"), metavar="FILE.html",
         shell_complete=complete.files,
-        help="Write the calculation sheet (.html, .docx with rocking-cli[docx], .pdf by a browser).",
+        help="Write the calculation sheet (.html, .pdf by a browser, .docx by an extra package).",
     ),
     click.option("--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Of the sheet."),
     head,
