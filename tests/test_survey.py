@@ -425,3 +425,12 @@ def test_a_site_ranks_by_what_its_code_allows(tmp_path):
     found = rk.verify(rk.Block(width=0.6, height=8.0), site).to_dict()["directions"]["positive"]
     assert ratios["facade"] == pytest.approx(found["states"]["SLV"]["ratio"])
     assert [row.name for row in rk.survey(tmp_path / "t.csv", site=site).rows] == [e["name"] for e in data["rows"]]
+
+
+def test_what_differs_by_rounding_keeps_its_order():
+    import rocking_cli as rk
+
+    sizes = [(0.15, 0.85), (0.03, 0.17)]  # of one slenderness, whose lambda differ in the last bit
+    for each in (sizes, sizes[::-1]):
+        blocks = [rk.Block(name=f"{width}", width=width, height=height) for width, height in each]
+        assert [row.name for row in rk.survey(blocks).rows] == [block.name for block in blocks]

@@ -187,3 +187,17 @@ def test_of_directions_that_are_alike_none_governs():
     assert "Histories" not in said and "direction governs" not in said
     leaning = rk.RigidBody(polygon=[[0, 0], [0.7, 0], [0.7, 2.8], [0.2, 2.8]])
     assert "direction governs" in " ".join(rk.verify(leaning, site).sentences)
+
+
+def test_of_directions_that_differ_by_rounding_the_first_counts():
+    from dataclasses import replace
+
+    from rocking_cli.core import Direction
+
+    found = verified(FACADE)
+    positive, negative = Direction.POSITIVE, Direction.NEGATIVE
+    for off, least, alike in ((1e-14, positive, True), (-1e-14, positive, True), (1e-6, negative, False)):
+        state = found.directions[negative].states[found.first]
+        other = replace(found.directions[negative], states={found.first: replace(state, d=state.d * (1 - off))})
+        both = replace(found, directions={positive: found.directions[positive], negative: other})
+        assert (both.governs, both.alike) == (least, alike)

@@ -146,18 +146,23 @@ class Bad:
 Order = Callable[[Surveyed], tuple[float, ...]]
 
 
+def _rounded(value: float) -> float:
+    """A number to nine digits: what is alike but for rounding keeps its order, whatever the processor."""
+    return float(f"{value:.9g}")
+
+
 def _by_lambda(found: Surveyed) -> tuple[float, ...]:
-    return (found.uplift,)
+    return (_rounded(found.uplift),)
 
 
 def _by_response(found: Surveyed) -> tuple[float, ...]:
     assert found.under is not None
     peak = found.under.peak_ratio
-    return (-found.under.overturned, -(inf if isnan(peak) else peak), found.uplift)
+    return (-found.under.overturned, -(inf if isnan(peak) else _rounded(peak)), _rounded(found.uplift))
 
 
 def _by_ratio(found: Surveyed) -> tuple[float, ...]:
-    return (found.ratio, found.uplift)
+    return (_rounded(found.ratio), _rounded(found.uplift))
 
 
 ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "ratio": _by_ratio}

@@ -12,7 +12,6 @@ from rocking_cli.views import verification_words as words
 from rocking_cli.views.view import ABSENT, Table, View, heading, number
 
 AGREE = 1e-9  # relative: directions that differ by less are shown once
-CURVES = ("exact", "straight")
 
 
 def view(found: Verification, site: str | None = None) -> View:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import isclose
 
 from rocking_cli.studies.verification.results import Dynamic, Verification, Verified
 from rocking_cli.studies.verification.working import Working
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
-ALIKE = 1e-6  # of a ratio: of directions that differ by less none governs
 ORDINAL = {True: "With FC", False: "Without FC, which is what `rocking respond` follows"}
 
 
@@ -78,7 +76,7 @@ def beyond_first(found: Verified, first: str) -> Iterator[str]:
     if damage is not None and damage.zeta is not None and damage.asked is not None and damage.a_g is not None:
         yield (
             f"SLD: it begins to rock at a_g = {damage.a_g:.4g} g, asked for are {damage.asked:.4g} g: "
-            f"{'passes' if damage.zeta >= 1 else 'fails'}."
+            f"{'passes' if damage.passes else 'fails'}."
         )
 
 
@@ -125,7 +123,7 @@ def which_direction(found: Verification) -> str:
     least = found.governs
     ratio = found.directions[least].states[found.first].ratio
     rest = found.directions[least.opposite].states[found.first].ratio
-    if ratio is None or rest is None or isclose(ratio, rest, rel_tol=ALIKE):
+    if ratio is None or rest is None or found.alike:
         return ""
     return f"The {least.label} direction governs: d over demand is {ratio:.3g}, in the other {rest:.3g}."
 

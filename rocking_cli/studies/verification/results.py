@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.verification.capacity import ExactCurve
@@ -12,6 +12,7 @@ from rocking_cli.studies.verification.chain import Chain
 from rocking_cli.studies.verification.working import Working
 
 CLOSE = 1e-12  # of a demand: what rounding may take from a capacity that equals it
+ALIKE = 1e-9  # of a ratio: of directions that differ by less none governs
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,11 @@ class Method:
     def zeta(self) -> float | None:
         """zeta_E, capacity over what is asked for."""
         return None if self.a_g is None or self.asked is None else self.a_g / self.asked
+
+    @property
+    def passes(self) -> bool | None:
+        """Whether it takes what is asked for; None where the site does not say."""
+        return None if self.zeta is None else self.zeta >= 1 - CLOSE
 
 
 @dataclass(frozen=True)
@@ -178,8 +184,8 @@ class Verified:
 
     def passes(self, state: str) -> bool | None:
         """Whether it passes at a limit state by what governs; None where the site does not give it."""
-        at, zeta = self.states[state], self.counts.zeta
-        return None if zeta is None else zeta >= 1 - CLOSE or bool(at.passes)
+        held = self.counts.passes
+        return None if held is None else held or bool(self.states[state].passes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,10 +219,17 @@ class Verification:
 
     @property
     def governs(self) -> Direction:
-        """The direction with the smaller ratio of displacements."""
+        """The direction with the smaller ratio of displacements; the first of those that are alike."""
+        ratios = self._ratios
+        return next(direction for direction, ratio in ratios.items() if ratio <= min(ratios.values()) * (1 + ALIKE))
 
-        def ratio(direction: Direction) -> float:
-            found = self.directions[direction].states[self.first].ratio
-            return found if found is not None and isfinite(found) else float("inf")
+    @property
+    def alike(self) -> bool:
+        """Whether no direction has a smaller ratio than the other."""
+        ratios = self._ratios.values()
+        return max(ratios) <= min(ratios) * (1 + ALIKE)
 
-        return min(self.directions, key=ratio)
+    @property
+    def _ratios(self) -> dict[Direction, float]:
+        found = {direction: each.states[self.first].ratio for direction, each in self.directions.items()}
+        return {key: ratio if ratio is not None and isfinite(ratio) else inf for key, ratio in found.items()}

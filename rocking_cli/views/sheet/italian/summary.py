@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import isclose
 
 from rocking_cli.studies.verification.results import Method, Verification, Verified
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
 from rocking_cli.views.sheet.language import Language
-from rocking_cli.views.verification import AGREE
 
 
 def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> Part:
@@ -47,7 +45,7 @@ def _which(say: Language, found: Verification) -> Iterator[Item]:
     """Which direction governs."""
     least = found.governs
     ratio, rest = (found.directions[each].states[found.first].ratio for each in (least, least.opposite))
-    if ratio is not None and rest is not None and not isclose(ratio, rest, rel_tol=AGREE):
+    if ratio is not None and rest is not None and not found.alike:
         yield Sentence(say.say("which", least=say.say(f"short_{least.label}"), ratio=ratio, rest=rest))
 
 
@@ -61,7 +59,7 @@ def _states(say: Language, where: str, each: Verified) -> Grid:
     if damage is not None and damage.zeta is not None:
         numbers = [say.number(v, 4) for v in (damage.a_g, damage.asked, None, damage.zeta)]
         numbers[:2] = [f"{text} g" for text in numbers[:2]]
-        rows.append([say.say("begins", state="SLD"), *numbers, say.say("yes" if damage.zeta >= 1 else "no")])
+        rows.append([say.say("begins", state="SLD"), *numbers, say.say("yes" if damage.passes else "no")])
     heads = [say.say("limit_state"), f"{say.say('allowed')} [m]", f"{say.say('asked')} [m]", "T [s]", say.say("ratio")]
     return Grid(say.say("states", where=where), [*heads, say.say("outcome")], rows, (1, 2, 3, 4))
 
