@@ -10,7 +10,7 @@ STAMP := $(VENV)/.installed
 RELEASE_STAMP := $(VENV)/.installed-release
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz lint type contracts check bench validation stub pictures \
+.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz properties lint type contracts check bench validation stub pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -67,6 +67,9 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 
 fuzz: setup  ## Hostile records, structures and command lines; INPUTS=100000 is how many
 	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FUZZ'] = '$(or $(INPUTS),10000)'; sys.exit(pytest.main(['-q', 'tests/test_fuzz.py']))"
+
+properties: setup  ## New examples for every property test, random ones; EXAMPLES=1000 is how many for each
+	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_PROPERTIES'] = '$(or $(EXAMPLES),500)'; sys.exit(pytest.main(['-q', '-n', 'auto', '-m', 'hypothesis', '--ignore=tests/test_fuzz.py', 'tests']))"
 
 soak: setup  ## What takes too long for the tests, some ten minutes: 500 damaged stores, 50 races of three processes
 	$(BIN)/python -m tests.soak

@@ -9,9 +9,12 @@ from pathlib import Path
 import hypothesis
 import pytest
 
-# How long an example takes says how busy the machine is, and nothing of what is tested. `make fuzz` tries far more.
-hypothesis.settings.register_profile("untimed", deadline=None, max_examples=50)
-hypothesis.settings.load_profile("untimed")
+# How long an example takes says how busy the machine is, and nothing of what is tested. The suite tries the same
+# examples everywhere, so that a failure says something of the change at hand; `make properties` looks for new ones.
+PROPERTIES = int(os.environ.get("ROCKING_PROPERTIES", 0))
+hypothesis.settings.register_profile("suite", deadline=None, max_examples=50, derandomize=True)
+hypothesis.settings.register_profile("search", deadline=None, max_examples=max(PROPERTIES, 1))
+hypothesis.settings.load_profile("search" if PROPERTIES else "suite")
 
 PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLES = PROJECT / "examples"
