@@ -55,6 +55,15 @@ CASES = {
     "two bodies on a floor": (WALL, SITE + FLOOR + SLC),
     "on a floor": (FACADE, SITE + FLOOR),
     "parapet": ("mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n", SITE + SLC + "T0: 0.08\n"),
+    "parapet by its size": (
+        "mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n",
+        SITE + SLC + "element: {kind: cantilever, L: 1.2, t: 0.25, w: 18000.0, E: 1.2e+9}\n",
+    ),
+    "wall with a seat": (
+        "mechanism: block\nname: s\nwidth: 1\nheight: 5\nmass: 10000\n"
+        "loads: [{name: floor, mass: 100, at: [0, 5], seat: 0.3}]\n",
+        SITE + SLC,
+    ),
     "parapet on a floor": ("mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n", SITE + FLOOR + "T0: 0.5\n"),
     "table": (FACADE, TABLE),
     "table and floor": (WALL, TABLE + FLOOR),
@@ -405,7 +414,7 @@ class Recomputed:
             return d
         if name in ("d_[SLV]", "d_[SLC]"):
             share = {"d_[SLV]": 0.4, "d_[SLC]": 0.6}[name] * v["d_[0]^[*]"]
-            return share if "min" not in each.formula else min(share, number(each.result))
+            return share if "min" not in each.formula else min(share, number(each.numbers.split("; ")[1].rstrip(")")))
         if name.startswith("a^[*]_"):
             if "lin" in name:
                 return v["a_[0]^[*]"] * (1 - v[f"d_[{self.state}]"] / v["d_[0]^[*]"])
@@ -420,6 +429,8 @@ class Recomputed:
     def of_site(self, each, v, eta):
         name, period = each.symbol, re.search(r"\((T_\[.*?\]|t)\)", each.symbol)
         T = v[period[1]] if period else None
+        if name == "T_[0]":  # of the one site here that gives an element
+            return 6.2 * (1.2 / 0.25) * 1.2 * sqrt(18000 / (1.2e9 * G))
         if name == "T_[B]":
             return v["T_[C]"] / 3
         if name == "T_[D]":

@@ -22,6 +22,7 @@ from rocking_cli.studies.verification.codes import codes
 from rocking_cli.studies.verification.codes.italian import demand, hazard
 from rocking_cli.studies.verification.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
 from rocking_cli.studies.verification.codes.italian.hazard import Hazard
+from rocking_cli.studies.verification.told import said_in
 
 G = 9.80665
 WEIGHT = 18000 / G  # of masonry, as a density
@@ -170,24 +171,77 @@ class TestCurves:
         with pytest.raises(InputError, match="lies outside block"):
             control_at(FACADE, 3.0, 1.0, None)
 
-    def test_what_holds_for_ever_has_no_d0(self):
+    def test_what_would_hold_for_ever_counts_as_it_pulls_at_rest(self):
+        """The same numbers as under a constant force, of a bar whose line hardly turns."""
         bar = {
-            "name": "bar",
-            "from": {"ground": [-5, 7.5]},
-            "to": {"at": [-0.3, 7.5]},
-            "stiffness": 1e8,
-            "only": "tension",
-        }
-        with pytest.raises(InputError, match="does not vanish before the kinematic limit"):
-            verified(rk.Block(**TIED, ties=[bar]))
+            "name": "bar", "from": {"ground": [-5e4, 7.5]}, "to": {"at": [-0.3, 7.5]},
+            "stiffness": 1e8, "prestress": 2e4, "only": "tension",
+        }  # fmt: skip
+        pull = {"name": "pull", "force": [-2e4, 0.0], "at": [-0.3, 7.5]}
+        held, pulled = verified(rk.Block(**TIED, ties=[bar])), verified(rk.Block(**TIED, loads=[pull]))
+        assert held.chain.alpha0 == pytest.approx(pulled.chain.alpha0, rel=1e-9)
+        assert [held.d0, held.states["SLV"].a] == pytest.approx([pulled.d0, pulled.states["SLV"].a], rel=1e-4)
+        slack = {**bar, "prestress": 0.0}
+        free, loose = verified(rk.Block(**TIED)), verified(rk.Block(**TIED, ties=[slack]))
+        assert [loose.a0, loose.d0] == pytest.approx([free.a0, free.d0], rel=1e-12)
+        code = codes()["NTC2018"]
+        found = code.verify(rk.Block(**TIED, ties=[bar]), code.site.model_validate(SITE), None)
+        assert any("elastic (bar) a* would vanish nowhere" in each for each in found.remarks)
+        assert any("Con ciò che è elastico (bar)" in said_in("it", each) for each in found.remarks)
 
-    def test_an_elastic_tie_says_how_far_it_lifts_the_curve(self):
-        rod = {"name": "t", "path": [{"ground": [0, 0]}, {"at": [0, 5]}], "stiffness": 60 * 1e4 * G / 5}
+    def test_histories_follow_what_the_verdict_is_of(self):
+        rod = {"name": "rod", "path": [{"ground": [0, 0]}, {"at": [0, 5]}], "stiffness": 1e9, "prestress": 1e4}
+        motion = rk.GroundMotion("pulse", 0.01, 3.0 * np.sin(np.linspace(0, 2 * pi, 101)))
+        steady = {"name": "rod", "path": rod["path"], "stiffness": 0.0, "prestress": 1e4}
+        peaks = []
+        for tie in (rod, steady):
+            block = rk.Block(width=1.0, height=5.0, mass=1e4, ties=[tie])
+            found = rk.verify(block, SITE, motions=[motion]).directions[Direction.POSITIVE].dynamic
+            peaks.append(found.peaks(confident=False))
+        assert peaks[0] == peaks[1] != [0.0]
+
+    def test_an_elastic_tie_says_how_far_it_lifts_the_curve_and_what_it_carries(self):
+        k = 60 * 1e4 * G / 5
+        rod = {"name": "t", "path": [{"ground": [0, 0]}, {"at": [0, 5]}], "stiffness": k}
         found = verified(rk.Block(width=1.0, height=5.0, mass=1e4, ties=[rod]))
         assert found.exact.end == pytest.approx(0.85142217, abs=6e-9)
         _, a = found.exact.points(2001)
         assert found.exact.largest == pytest.approx(max(a), rel=1e-3) and max(a) > 1.01 * found.a0
         assert any(f"{found.exact.largest / found.a0:.3g} times a0*" in each for each in found.remarks)
+        # Its top turns about the foot of the face it leans over, half a width beside its own foot.
+        phi = found.exact.rotation(found.states["SLV"].d)
+        force = k * (abs(0.5 + complex(-0.5, 5.0) * np.exp(-1j * phi)) - 5.0)
+        assert any(f"the tie t carries {force / 1e3:.4g} kN" in each for each in found.remarks)
+
+    def test_a_force_that_never_lets_go_has_no_d0(self):
+        down = {"name": "down", "force": [0.0, -1e5], "at": [0.0, 0.0]}
+        block = rk.Block(width=1.0, height=5.0, mass=1.0, loads=[down])
+        with pytest.raises(InputError, match="what holds the structure has no end"):
+            verified(block)
+
+    def test_a_seat_ends_what_collapse_allows(self):
+        """The top of a block, half a width in from its pivot, goes h sin(phi) - b (1 - cos(phi)) sideways."""
+        floor = {"name": "floor", "mass": 100.0, "at": [0.0, 5.0]}
+        block = rk.Block(width=1.0, height=5.0, mass=1e4, loads=[{**floor, "seat": 0.3}])
+        found, free = verified(block), verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[floor]))
+        phi = found.exact.rotation(found.states["SLC"].d)
+        assert 5.0 * sin(phi) + 0.5 * (1 - cos(phi)) == pytest.approx(0.3, rel=1e-9)
+        assert found.states["SLC"].d < free.states["SLC"].d and found.states["SLV"] == free.states["SLV"]
+        assert any("off its seat of 0.3 m" in each for each in found.remarks)
+        assert found.straight_states["SLC"].d == found.states["SLC"].d
+        wide = verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[{**floor, "seat": 0.9}]))
+        assert wide.states == free.states and not any("off its seat" in each for each in wide.remarks)
+
+    def test_the_period_of_an_element_by_its_size(self):
+        element = {"kind": "cantilever", "L": 1.2, "t": 0.3, "w": 18e3, "E": 1.2e9}
+        T0 = 6.2 * 4.0 * 1.2 * sqrt(18e3 / (1.2e9 * G))
+        one, other = verified(FACADE, element=element), verified(FACADE, T0=T0)
+        methods = ("damage", "linear", "nonlinear")
+        of = [[a_g(each)[key] for key in methods] for each in (one, other, verified(FACADE))]
+        assert of[0] == pytest.approx(of[1], rel=1e-9) and of[0] != pytest.approx(of[2], rel=1e-3)
+        spans = verified(FACADE, element={**element, "kind": "spanning"})
+        wanted = a_g(verified(FACADE, T0=T0 * 2.2 / 6.2))["damage"]
+        assert a_g(spans)["damage"] == pytest.approx(wanted, rel=1e-9)
 
     def test_what_has_no_horizontal_inertia_is_said_by_the_letter_too(self):
         wall = rk.SpanningWall(thickness=0.3, height=3.0, hinge=0.5, overburden=2e4, density=WEIGHT, depth=1.0)

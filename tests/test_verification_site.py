@@ -53,6 +53,14 @@ WRONG = [
     (TABLE.replace("[475", "[20"), 5, "hazard[2]", "return periods must increase, got 20 after 30 years"),
     (TABLE.replace("soil: B\n", ""), 1, "soil", "is missing: a hazard needs"),
     (TABLE + "ag: 0.2\n", 6, "ag", "goes not with hazard"),
+    (
+        GOOD + "element: {kind: cantilever, L: 1, t: 0.3, w: 18000, E: 1.2e+9}\nT0: 0.1\n",
+        6,
+        "element",
+        "goes not with T0",
+    ),
+    (GOOD + "element: {kind: fixed, L: 1, t: 0.3, w: 18000, E: 1.2e+9}\n", 6, "element.kind", "cantilever or spanning"),
+    (GOOD + "element: {kind: spanning, L: 1, t: 0.3, w: 18000}\n", 6, "element.E", "is missing"),
     ("", None, None, "the file is empty"),
 ]
 

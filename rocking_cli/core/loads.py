@@ -39,6 +39,10 @@ class Load(Described):
     floor: Literal["borne", "sliding", "dragged"] | None = Field(
         None, description="sets the shares of a floor that is borne at its far end too: its mass is that of all of it"
     )
+    seat: float | None = quantity(
+        "length on which what it stands for rests, such as a beam's: moved sideways by it, it is lost", unit="m",
+        default=None, gt=0, le=100,
+    )  # fmt: skip
     each: bool = Field(False, description="whether each of several bodies that move alike has one")
 
     @model_validator(mode="after")
@@ -48,6 +52,8 @@ class Load(Described):
         shares = [key for key in ("horizontal", "vertical", "weight") if getattr(self, key) is not None]
         if self.force is not None and (shares or self.floor is not None):
             raise geometry_error(shares[0] if shares else "floor", "a force has no mass to share")
+        if self.force is not None and self.seat is not None:
+            raise geometry_error("seat", "a force has no seat: it is of a mass")
         if self.floor is not None:
             for key in shares:
                 if key in FLOORS[self.floor]:
@@ -65,5 +71,6 @@ class Load(Described):
         return PointMass(self.name, spot, count * self.mass, **{**FLOORS.get(self.floor or "", {}), **given})
 
     def enlarged(self, factor: float) -> Load:
-        """The same load on a structure of another size: only where it acts is multiplied."""
-        return self.model_copy(update={"at": [factor * each for each in self.at]})
+        """The same load on a structure of another size: only where it acts, and its seat, are multiplied."""
+        seat = None if self.seat is None else factor * self.seat
+        return self.model_copy(update={"at": [factor * each for each in self.at], "seat": seat})

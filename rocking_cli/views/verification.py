@@ -7,6 +7,7 @@ from math import isclose
 from typing import Any
 
 from rocking_cli.studies.verification.results import Dynamic, Method, State, Verification, Verified
+from rocking_cli.studies.verification.ties import carried, elastic
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views import verification_words as words
 from rocking_cli.views.view import ABSENT, Table, View, heading, number
@@ -180,6 +181,7 @@ def _data(each: Verified) -> dict[str, Any]:
         "a0_star": each.a0,
         "d0_star": each.d0,
         "states": {name: _state(at) for name, at in each.states.items()},
+        **({"ties": _ties(each)} if elastic(each.chain.mechanism) else {}),
         "a_g": {key: method.a_g for key, method in each.methods.items() if key != "SLD"},
         "zeta": {key: method.zeta for key, method in each.methods.items()},
         "governs": each.governs,
@@ -190,6 +192,12 @@ def _data(each: Verified) -> dict[str, Any]:
 
 def _state(at: State) -> dict[str, float | None]:
     return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio}
+
+
+def _ties(each: Verified) -> dict[str, dict[str, float]]:
+    """What each elastic tie carries at the limit states [N]."""
+    forces = {name: carried(each.exact, at.d) for name, at in each.states.items()}
+    return {tie: {f"force_{name}": known[tie] for name, known in forces.items()} for tie in next(iter(forces.values()))}
 
 
 def _return_periods(methods: Mapping[str, Method]) -> dict[str, dict[str, Any]]:

@@ -10,7 +10,7 @@ from math import pi
 import numpy as np
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.attached import Spot
+from rocking_cli.core.attached import PointMass, Spot
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
@@ -29,6 +29,15 @@ def root(rises: Callable[[float], float], low: float, high: float) -> float:
             break
         low, high = (middle, high) if rises(middle) < 0 else (low, middle)
     return high
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A seat that is lost: of which load, its length [m], and the displacement d at which that is [m]."""
+
+    load: str
+    length: float
+    d: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +74,7 @@ class ExactCurve:
         over = self._slid(spot, phi) >= interlock.overlap
         if not over.any():
             return None
-        k = int(over.argmax())
-        return root(lambda x: float(self._slid(spot, np.array([x]))[0]) - interlock.overlap, phi[k - 1], phi[k])
+        return self._lost(spot, interlock.overlap, phi, int(over.argmax()))
 
     def _slid(self, spot: Spot, phi: Reals) -> Reals:
         path = self.chain.mechanism.followed(phi, self.chain.direction)(spot).z
@@ -79,18 +87,26 @@ class ExactCurve:
     @cached_property
     def end(self) -> float:
         """The rotation at which a* vanishes, of what holds it up to collapse [rad]. Raises `InputError` without one."""
-        first = self._vanishes(self._bare if self.lost_on_the_way else self.chain.mechanism)
-        if first is None:
+        if self._first is None:
             raise InputError(
                 Problem(
                     f"in the {self.chain.direction.label} direction a* does not vanish before the kinematic limit: "
-                    "what ties it would hold for ever",
-                    field="ties",
-                    hint="the code counts what is there up to collapse: give the tie as a force, its yield force",
+                    "what holds the structure has no end",
+                    field="ties" if self.chain.mechanism.ties else "loads",
+                    hint="the code counts what is there up to collapse: leave out what is not",
                 )
             )
-        self._hold_to_a_function(first)
-        return first
+        self._hold_to_a_function(self._first)
+        return self._first
+
+    @property
+    def is_endless(self) -> bool:
+        """Whether a* vanishes nowhere before the kinematic limit."""
+        return self._first is None
+
+    @cached_property
+    def _first(self) -> float | None:
+        return self._vanishes(self._bare if self.lost_on_the_way else self.chain.mechanism)
 
     def _vanishes(self, mechanism: Mechanism) -> float | None:
         try:
@@ -161,6 +177,26 @@ class ExactCurve:
         lost = self.acceleration_at(self.torn) - self.acceleration_at(self.torn, after=True)
         return self.displacement_at(self.torn) if lost > self.largest / 2 else None
 
+    @cached_property
+    def seat(self) -> Seat | None:
+        """The load that is the first to be moved off its seat, up to the end of the curve; None if none is."""
+        phi, mechanism = np.linspace(0.0, self.end, STEPS + 1), self.chain.mechanism
+        spots = {thing.name: thing.spot for thing in mechanism.attached if isinstance(thing, PointMass)}
+        lost = []
+        for load in mechanism.loads or []:
+            if load.seat is None:
+                continue
+            over = self._slid(spots[load.name], phi) >= load.seat
+            if over.any():
+                lost.append((self._lost(spots[load.name], load.seat, phi, int(over.argmax())), load.name, load.seat))
+        if not lost:
+            return None
+        at, name, length = min(lost)
+        return Seat(name, length, self.displacement_at(at))
+
+    def _lost(self, spot: Spot, length: float, phi: Reals, k: int) -> float:
+        return root(lambda x: float(self._slid(spot, np.array([x]))[0]) - length, phi[k - 1], phi[k])
+
     def points(self, count: int = 65) -> tuple[Reals, Reals]:
         """The curve, displacements [m] and accelerations [m/s2], shape (n,) each."""
         phi = np.linspace(0.0, self.end, count)
@@ -174,6 +210,7 @@ class StraightCurve:
     a0: float
     d0: float
     broken: float | None = None
+    seat: Seat | None = None
 
     def acceleration(self, d: float) -> float:
         """a* at a displacement [m/s2]."""

@@ -97,7 +97,8 @@ def with_histories(
     SolverError
         If a motion cannot be followed to its end.
     """
-    model = structure.model("nonlinear")
+    taken = structure if found.mechanism is structure.mechanism else Prepared(found.mechanism, structure.file)
+    model = taken.model("nonlinear")
     curves = {direction: each.exact for direction, each in found.directions.items()}
     every = []
     for motion in motions:

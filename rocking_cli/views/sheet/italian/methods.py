@@ -79,14 +79,14 @@ class Methods:
 
     def _peak(self, state: str) -> str:
         on_floor = isinstance(self.ground.spectrum(state), FloorSpectrum)
-        if self.ground.site.T0 is not None:
+        if self.ground.site.own_period is not None:
             return "S_[eZ](T_[0])" if on_floor else "S_[e](T_[0])"
         return "S_[Z]" if on_floor else "a_[g] S"
 
     def _demand(self, spectrum: Spectrum, asked: Asked) -> float:
         if asked.at is not None:
             return spectrum.displacement(asked.at.T, asked.at.damping)
-        T0 = self.ground.site.T0
+        T0 = self.ground.site.own_period
         return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
 
     def _items(self, name: str, method: Method, asked: Asked, more: str = "") -> Iterator[Item]:
@@ -129,8 +129,8 @@ class Methods:
             yield from list(spectra.peaks(say, ground, asked.state))[:2]
         if asked.at is not None:
             yield from spectra.displacement(say, spectrum, asked.at)
-        elif self.ground.site.T0 is not None:
-            yield from spectra.at_own_period(say, spectrum, self.ground.site.T0, DAMPING)
+        elif self.ground.site.own_period is not None:
+            yield from spectra.at_own_period(say, spectrum, self.ground.site.own_period, DAMPING)
 
     def _lasts(self, method: Method, asked: Asked, more: str) -> Iterator[Item]:
         """The same as a return period."""

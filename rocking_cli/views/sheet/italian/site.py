@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import log
 
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.codes.italian.demand import DAMPING, GroundSpectrum
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.hazard import (
@@ -18,7 +19,7 @@ from rocking_cli.studies.verification.codes.italian.hazard import (
     return_period,
     soil_factor,
 )
-from rocking_cli.studies.verification.codes.italian.site import SIZES, Shaking
+from rocking_cli.studies.verification.codes.italian.site import SIZES, Element, Shaking
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
 from rocking_cli.views.sheet.italian import spectra
@@ -78,10 +79,18 @@ def _of_state(say: Language, ground: Ground, state: str) -> Part:
     assert spectrum is not None  # else it is not shown
     rows = [*_of_life(say, ground, state), *spectra.peaks(say, spectrum, state)]
     items: list[Item] = [Steps(rows)]
-    T0 = ground.site.T0
+    T0 = ground.site.own_period
     if T0 is not None:
+        items += [Steps([_own_period(say, site.element)])] if (site := ground.site).element is not None else []
         items += [Sentence(say.say("free")), Steps(list(spectra.at_own_period(say, spectrum, T0, DAMPING)))]
     return Part(f"site-{state}", say.say("ground_at", state=state), items)
+
+
+def _own_period(say: Language, one: Element) -> Working:
+    """The period of an element that is free to vibrate."""
+    put = "{k} · {L}/{t} · {L} · √({w}/({E} · {g}))"
+    put = say.put(put, k=one.kappa, L=one.L, t=one.t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
+    return Working("T_[0]", say.say("given_T0"), "κ (L/t) L √(w/(E g))", put, one.period, "s", "C8.7.1.6-9")
 
 
 def _of_life(say: Language, ground: Ground, state: str) -> Iterator[Working]:

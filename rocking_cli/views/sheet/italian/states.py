@@ -137,6 +137,9 @@ class Writer:
         if rule.at_breaks and curve.broken is not None:
             put = say.put("min({share} · {d0}; {d})", share=rule.share, d0=curve.d0, d=curve.broken)
             formula = say.formula(f"min({rule.share:g} d_[0]^[*]; d_[t])")
+        elif rule.at_seats and curve.seat is not None:
+            put = say.put("min({share} · {d0}; {d})", share=rule.share, d0=curve.d0, d=curve.seat.d)
+            formula = say.formula(f"min({rule.share:g} d_[0]^[*]; d_[a])")
         else:
             put = say.put("{share} · {d0}", share=rule.share, d0=curve.d0)
             formula = say.formula(f"{rule.share:g} d_[0]^[*]")
@@ -144,7 +147,7 @@ class Writer:
 
     def _period_and_demand(self, rule: Rule, at: State, name: str, a: float) -> Iterator[Working]:
         """T, S_De there and the ratio; `a` is a* of the curve that `name` is on [m/s2]."""
-        say, s, T0 = self.say, rule.state, self.ground.site.T0
+        say, s, T0 = self.say, rule.state, self.ground.site.own_period
         if T0 is not None:
             put = say.put("min({a}; 4 · π^[2] · {d}/{T}^[2])", a=a, d=at.d, T=T0)
             formula = f"min(a^[*]_[{name}]; 4 π^[2] d_[{s}]/T_[0]^[2])"

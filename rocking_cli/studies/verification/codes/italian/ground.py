@@ -54,7 +54,7 @@ class Ground:
             return None
         if given.spectrum is not None:
             field = "spectrum" if state == "SLV" else f"{state}.spectrum"
-            return TableSpectrum(tuple((T, a) for T, a in given.spectrum), 1.0, self.site.T0 or 0.0, field)
+            return TableSpectrum(tuple((T, a) for T, a in given.spectrum), 1.0, self.site.own_period or 0.0, field)
         assert given.ag is not None and given.F0 is not None and given.TC is not None and given.S is not None
         return GroundSpectrum(given.ag, given.F0, given.TC, given.S, self.site.soil)
 

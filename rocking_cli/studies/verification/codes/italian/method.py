@@ -19,6 +19,7 @@ from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
 from rocking_cli.studies.verification.codes.italian.site import ItalianSite
 from rocking_cli.studies.verification.results import Method, State, Verification, Verified
+from rocking_cli.studies.verification.ties import elastic, lasting
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"
@@ -38,7 +39,9 @@ class _Case:
         d = rule.share * curve.d0
         if rule.at_breaks and curve.broken is not None:
             d = min(d, curve.broken)
-        a = with_elastic_branch(curve.acceleration(d), d, site.T0)
+        if rule.at_seats and curve.seat is not None:
+            d = min(d, curve.seat.d)
+        a = with_elastic_branch(curve.acceleration(d), d, site.own_period)
         T = rule.factor * pi * sqrt(d / a)
         spectrum = self.ground.spectrum(rule.state)
         return State(d, a, T, None if spectrum is None else spectrum.displacement(T, rule.damping))
@@ -55,7 +58,7 @@ class _Case:
 
     def forces(self, spectrum: Spectrum) -> float:
         """The acceleration that starts it [m/s2]: of the ground or the floor, of what vibrates its own."""
-        T0 = self.ground.site.T0
+        T0 = self.ground.site.own_period
         return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
 
     def methods(self, states: Mapping[str, State]) -> dict[str, Method]:
@@ -96,16 +99,18 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     MechanismError
         If the structure does not stand.
     """
-    ground = Ground(site)
-    found = {direction: _verified(mechanism, direction, ground, control) for direction in mechanism.directions}
+    ground, taken = Ground(site), lasting(mechanism)
+    found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
     remarks = wordings.of_site(ground, list(found.values()))
-    return Verification(mechanism, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks)
+    if taken is not mechanism:
+        remarks = [wordings.of_ties_at_rest(elastic(mechanism)), *remarks]
+    return Verification(taken, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks)
 
 
 def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, control: Control | None) -> Verified:
     chain = Chain(mechanism, direction)
     exact = ExactCurve(chain, control or chain.barycentre, ground.site.FC)
-    straight = StraightCurve(exact.a0, exact.d0, exact.broken)
+    straight = StraightCurve(exact.a0, exact.d0, exact.broken, exact.seat)
     case, line = _Case(ground, exact), _Case(ground, straight)
     states = {rule.state: case.state(rule) for rule in RULES}
     on_line = {rule.state: line.state(rule) for rule in RULES}

@@ -9,7 +9,11 @@ ENGLISH = {
     "confidence": (
         "FC = {FC:g}: it is {least:g}, that of LC1, as long as no compressive strength is taken into account."
     ),
-    "seats": "The code ends d_SLC also where parts lose their seat, such as beams: that is not looked at here.",
+    "seats": (
+        "The code ends d_SLC also where parts lose their seat, such as beams: a load may say its `seat`, and one here "
+        "does not."
+    ),
+    "seat": "The load {name} is moved off its seat of {length:.3g} m at d = {d:.4g} m: d_SLC ends there.",
     "no_soil": (
         "No soil is given: displacements at long periods do not go down to those of the ground, which is on the "
         "safe side."
@@ -36,6 +40,12 @@ ENGLISH = {
         "A tie is in alpha0 by its force at rest: the rigid-plastic tie of the code is one with its yield force as "
         "prestress, or a force. What is elastic here brings a* to {largest:.4g} m/s2 at most, {over:.3g} times a0*."
     ),
+    "at_rest": (
+        "Held by what is elastic ({names}) a* would vanish nowhere, and the code counts what is there up to collapse: "
+        "it is taken as it pulls at rest, here and in histories. To count on more, give the "
+        "yield force as a load or as a prestress without stiffness."
+    ),
+    "carries": "At d_SLV the tie {name} carries {force:.4g} kN: it and its anchors must hold that.",
     "torn": (
         "The courses of the crossing walls have slid apart at d = {d:.4g} m: d0* is that of the curve without them, "
         "which alone is there up to collapse."
@@ -65,8 +75,10 @@ ITALIAN = {
     "missing": "Il file del sito non assegna {states}: per tali stati limite non si esegue alcuna verifica.",
     "confidence": "FC = {FC:g}: vale {least:g}, quello di LC1, finché non si considera la resistenza a compressione.",
     "seats": (
-        "La norma limita d_SLC anche per la perdita dell'appoggio di elementi quali le travi: qui non è considerata."
+        "La norma limita d_SLC anche per la perdita dell'appoggio di elementi quali le travi: di un carico si può "
+        "assegnare l'appoggio (`seat`), e qui di qualcuno manca."
     ),
+    "seat": "Il carico {name} perde il suo appoggio di {length:.3g} m a d = {d:.4g} m: d_SLC termina in quel punto.",
     "no_soil": (
         "La categoria di sottosuolo non è assegnata: ai lunghi periodi gli spostamenti non si riducono a quelli del "
         "terreno, a favore di sicurezza."
@@ -94,6 +106,12 @@ ITALIAN = {
         "la forza di snervamento come pretensione, o come forza. Ciò che qui è elastico porta a* al massimo a "
         "{largest:.4g} m/s2, {over:.3g} volte a0*."
     ),
+    "at_rest": (
+        "Con ciò che è elastico ({names}) a* non si annullerebbe mai, e la norma considera quanto è presente fino al "
+        "collasso: qui e nelle analisi al passo esso agisce con la forza a riposo. Per contare "
+        "su di più si assegni la forza di snervamento come carico, o come pretensione senza rigidezza."
+    ),
+    "carries": "In d_SLV il tirante {name} porta {force:.4g} kN: il tirante e i suoi ancoraggi devono reggerli.",
     "torn": (
         "I filari delle pareti ortogonali si sfilano a d = {d:.4g} m: d0* è quello della curva senza di essi, la sola "
         "presente fino al collasso."

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
+from math import sqrt
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from rocking_cli.core.fields import quantity
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
 from rocking_cli.studies.fragility.together import Part, Sound
 from rocking_cli.studies.verification.site_file import Site
@@ -98,6 +100,29 @@ class Floor(Part):
             yield ("z",), f"is above the roof: the building is {H:g} m high, got {z:g} m"
 
 
+KAPPA = {"cantilever": 6.2, "spanning": 2.2}
+
+
+class Element(Part):
+    """An element that is free to vibrate before it rocks, of which the code estimates the period [C8.7.1.6-9]."""
+
+    kind: Literal["cantilever", "spanning"] = Field(description="whether it is held at its foot or at both ends")
+    L: float = quantity("its length", unit="m", gt=0, le=1000)
+    t: float = quantity("its thickness", unit="m", gt=0, le=1000)
+    w: float = quantity("its weight for a volume", unit="N/m3", gt=0, le=1e6)
+    E: float = quantity("its modulus of elasticity", unit="Pa", gt=0, le=1e12)
+
+    @property
+    def kappa(self) -> float:
+        """The factor of its support."""
+        return KAPPA[self.kind]
+
+    @property
+    def period(self) -> float:
+        """T0 [s]."""
+        return self.kappa * (self.L / self.t) * self.L * sqrt(self.w / (self.E * STANDARD_GRAVITY))
+
+
 class ItalianSite(Shaking, Site):
     """What a site file holds: the ground of one limit state (SLV), and of others; or the hazard of all of them."""
 
@@ -117,10 +142,19 @@ class ItalianSite(Shaking, Site):
         "period of an element that is free to vibrate before it rocks, such as a parapet", unit="s", default=None
     )
 
+    element: Element | None = Field(None, description="instead of T0: the element, from which T0 follows")
+
+    @property
+    def own_period(self) -> float | None:
+        """T0 [s], as given or of the element."""
+        return self.T0 if self.element is None else self.element.period
+
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """The ground is given in one way; a hazard has what belongs to it."""
         yield from super().between(given, sound)
+        if given.get("element") is not None and given.get("T0") is not None:
+            yield ("element",), "goes not with T0, which follows from it: give one of them"
         if given.get("hazard") is None:
             for name in ("VN", "CU"):
                 if given.get(name) is not None:

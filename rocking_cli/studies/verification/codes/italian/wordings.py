@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+from rocking_cli.core.ties import Tie
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.capacity import ExactCurve
 from rocking_cli.studies.verification.chain import Chain
@@ -14,6 +15,7 @@ from rocking_cli.studies.verification.codes.italian.hazard import LONGEST, SHORT
 from rocking_cli.studies.verification.codes.italian.remarks import TEXTS
 from rocking_cli.studies.verification.codes.italian.rules import RULES
 from rocking_cli.studies.verification.results import Method, State, Verified
+from rocking_cli.studies.verification.ties import carried, elastic
 from rocking_cli.studies.verification.told import Told
 
 LONG = 4.0  # s: above it the code asks for a study of the site, or records
@@ -44,7 +46,9 @@ def of_site(ground: Ground, found: Collection[Verified]) -> list[str]:
     crushes = any(each.chain.mechanism.crushing is not None for each in found)
     if ground.site.FC < LEAST_CONFIDENT and not crushes:
         said.append(_told("confidence", FC=ground.site.FC, least=LEAST_CONFIDENT))
-    said.append(_told("seats"))
+    loads = [load for each in found for load in each.chain.mechanism.loads or [] if load.mass is not None]
+    if any(load.seat is None for load in loads):
+        said.append(_told("seats"))
     return said
 
 
@@ -77,8 +81,9 @@ def _of_lives(ground: Ground) -> list[str]:
 
 def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -> list[str]:
     """Of one direction."""
-    said = [*_of_line(curve, states), *_of_ties(curve), *_of_break(curve, states), *_of_letter(curve.chain, curve)]
-    T0 = ground.site.T0
+    said = [*_of_line(curve, states), *_of_ties(curve, states), *_of_break(curve, states), *_of_seat(curve, states)]
+    said += _of_letter(curve.chain, curve)
+    T0 = ground.site.own_period
     if T0 is not None:
         on = [rule.state for rule in RULES if states[rule.state].a < curve.acceleration(states[rule.state].d)]
         if on:
@@ -97,11 +102,18 @@ def _of_line(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     return [_told("line", most=100 * float(off), there=100 * abs(there), side=side)]
 
 
-def _of_ties(curve: ExactCurve) -> list[str]:
-    if not any(spring.stiffness > 0 for spring in curve.chain.mechanism.springs):
+def _of_ties(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+    if not elastic(curve.chain.mechanism):
         return []
-    over = curve.largest / curve.a0
-    return [_told("ties", largest=curve.largest, over=over)]
+    said: list[str] = [_told("ties", largest=curve.largest, over=curve.largest / curve.a0)]
+    for name, force in carried(curve, states["SLV"].d).items():
+        said.append(_told("carries", name=name, force=force / 1e3))
+    return said
+
+
+def of_ties_at_rest(ties: Sequence[Tie]) -> str:
+    """That ties count as they pull at rest."""
+    return _told("at_rest", names=", ".join(tie.name for tie in ties))
 
 
 def _of_break(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
@@ -112,6 +124,13 @@ def _of_break(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     if curve.broken is not None and states["SLV"].d == curve.broken:
         said.append(_told("ends"))
     return said
+
+
+def _of_seat(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+    seat = curve.seat
+    if seat is None or states["SLC"].d != seat.d:
+        return []
+    return [_told("seat", name=seat.load, length=seat.length, d=seat.d)]
 
 
 def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:

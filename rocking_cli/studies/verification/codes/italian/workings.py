@@ -41,6 +41,12 @@ def of_ground(ground: Ground) -> list[Working]:
         Working("FC", "confidence factor, by which accelerations are divided", "given", "", site.FC, "", "C8.7.1.3"),
         Working("q", "behaviour factor of the linear method", "given", "", site.q, "", METHODS),
     ]
+    if site.element is not None:
+        one = site.element
+        put = f"{one.kappa} x {_n(one.L)}/{_n(one.t)} x {_n(one.L)}"
+        put += f" x sqrt({_n(one.w)}/({_n(one.E)} x {STANDARD_GRAVITY}))"
+        formula = "kappa (L/t) L sqrt(w/(E g))"
+        found.append(Working("T0", "period of the element", formula, put, one.period, "s", METHODS))
     for state in STATES:
         found += _of_hazard(ground, state)
         spectrum = ground.spectrum(state)
@@ -86,7 +92,7 @@ def _of_spectrum(ground: Ground, state: str, spectrum: Spectrum) -> Iterator[Wor
         )  # fmt: skip
     if isinstance(spectrum, FloorSpectrum):
         yield from _of_floor(state, spectrum)
-    T0 = ground.site.T0
+    T0 = ground.site.own_period
     if T0 is not None:
         value = spectrum.acceleration(T0, 0.05) / STANDARD_GRAVITY
         name = "S_eZ" if isinstance(spectrum, FloorSpectrum) else "S_e"
@@ -167,8 +173,9 @@ def _of_states(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -
     for rule in RULES:
         at, s = states[rule.state], rule.state
         broken = rule.at_breaks and curve.broken is not None and at.d == curve.broken
-        formula = "displacement of a break" if broken else f"{rule.share:g} d0*"
-        put = "" if broken else f"{rule.share:g} x {_n(curve.d0)}"
+        off = rule.at_seats and curve.seat is not None and at.d == curve.seat.d
+        formula = "displacement of a break" if broken else "loss of a seat" if off else f"{rule.share:g} d0*"
+        put = "" if broken or off else f"{rule.share:g} x {_n(curve.d0)}"
         yield Working(f"d_{s}", f"displacement allowed at {s}", formula, put, at.d, "m", "C8.7.1.2.1.6")
         formula = f"alpha g/(e* FC) at d_{s}"
         yield Working(f"a*(d_{s})", "acceleration there", formula, "", at.a, "m/s2", "C8.7.1.3")
