@@ -18,6 +18,7 @@ from rocking_cli.core.extras import Extra as Extra
 from rocking_cli.core.fields import Vertex as Vertex
 from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length
+from rocking_cli.core.fields import point as point
 from rocking_cli.core.fields import quantity as quantity
 from rocking_cli.core.joints import Joint as Joint
 from rocking_cli.core.kinematics import Direction as Direction
@@ -26,6 +27,10 @@ from rocking_cli.core.kinematics import RigidMotion as RigidMotion
 from rocking_cli.core.kinematics import four_bar as four_bar
 from rocking_cli.core.kinematics import four_bar_limit as four_bar_limit
 from rocking_cli.core.kinematics import rotation as rotation
+from rocking_cli.core.linkage import LinkageMotion as LinkageMotion
+from rocking_cli.core.linkage import NoMotion as NoMotion
+from rocking_cli.core.loops import Guide as Guide
+from rocking_cli.core.loops import Pin as Pin
 from rocking_cli.core.mechanism import Mechanism as Mechanism
 from rocking_cli.core.sketch import Angle as Angle
 from rocking_cli.core.sketch import Hinge as Hinge

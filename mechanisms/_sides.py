@@ -1,0 +1,144 @@
+"""The joints of a linkage in one direction as users give them, and their mirror images."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import radians
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from rocking_cli.core import Guide, Pin, Vertex, geometry_error, point, quantity
+from rocking_cli.core.fields import Described, Name
+
+GROUND = "ground"
+Pair = Annotated[list[Name], Field(min_length=2, max_length=2)]
+
+
+class Connection(Described):
+    """A joint: what it joins, and where."""
+
+    pivot: Name | None = Field(None, description="the body that turns about a point of the ground")
+    hinge: Pair | None = Field(None, description="two bodies that share a point")
+    slide: Name | Pair | None = Field(
+        None, description="the body of which a point stays on a line, of the ground or of a second body"
+    )
+    fixed: Pair | None = Field(None, description="two bodies that are one, or a body and ground")
+    at: Vertex | Name | None = point("where it is; at a crack its name and end, such as: crack left", default=None)
+    along: Vertex | None = quantity("the direction of the line of a slide, [x, y]", default=None)
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        kinds = [key for key in ("pivot", "hinge", "slide", "fixed") if getattr(self, key) is not None]
+        if len(kinds) != 1:
+            raise geometry_error(kinds[1] if kinds else "hinge", "give one of pivot, hinge, slide and fixed")
+        kind = kinds[0]
+        for key, needed in (("at", kind != "fixed"), ("along", kind == "slide")):
+            if (getattr(self, key) is not None) != needed:
+                what = f"is missing: a {kind} needs it" if needed else f"goes not with {kind}"
+                raise geometry_error(key, what)
+        if self.along is not None and not any(self.along):
+            raise geometry_error("along", "is no direction: give [x, y], not both zero")
+        if len(set(self.bodies)) < len(self.bodies):
+            raise geometry_error(kind, f"joins {self.bodies[0]} to itself")
+        return self
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """What it joins, in the order of the file."""
+        for each in (self.pivot, self.slide):
+            if isinstance(each, str):
+                return (each,)
+        return tuple(self.hinge or self.fixed or self.slide or ())
+
+    def enlarged(self, factor: float) -> Connection:
+        """The same joint of a structure of another size."""
+        if not isinstance(self.at, list):
+            return self
+        return self.model_copy(update={"at": [factor * each for each in self.at]})
+
+
+class Side(Described):
+    """One direction of rocking: the body whose rotation is phi, and the joints."""
+
+    lead: Name = Field(description="the body whose rotation phi is")
+    joints: dict[Name, Connection] = Field(description="what holds the bodies, by names", min_length=1, max_length=1000)
+    limit_deg: float | None = quantity(
+        "where the motion ends at the latest; left out, where it locks or the leading body lies flat", unit="deg",
+        default=None, gt=0, le=180,
+    )  # fmt: skip
+
+    def enlarged(self, factor: float) -> Side:
+        """The same side of a structure of another size."""
+        return self.model_copy(update={"joints": {key: each.enlarged(factor) for key, each in self.joints.items()}})
+
+
+@dataclass(frozen=True)
+class Held:
+    """A side with all of its points known.
+
+    Parameters
+    ----------
+    lead : str
+        The body whose rotation phi is.
+    joints : sequence of Pin or Guide
+        What holds the bodies.
+    fixed : sequence of pairs of str
+        Bodies that are one.
+    ground : sequence of str
+        Bodies that rest.
+    end : float or None
+        Where the motion ends at the latest [rad].
+    """
+
+    lead: str
+    joints: Sequence[Pin | Guide]
+    fixed: Sequence[tuple[str, str]]
+    ground: Sequence[str]
+    end: float | None
+
+    @classmethod
+    def of(cls, side: Side) -> Held:
+        """A side of which every joint says where it is by numbers."""
+        joints: list[Pin | Guide] = []
+        fixed: list[tuple[str, str]] = []
+        ground: list[str] = []
+        for name, each in side.joints.items():
+            at = complex(*each.at) if isinstance(each.at, list) else 0j
+            if each.fixed is not None:
+                rests = [body for body in each.bodies if body != GROUND]
+                if len(rests) == 1:
+                    ground += rests
+                else:
+                    fixed.append((rests[0], rests[1]))
+            elif each.slide is not None:
+                joints.append(Guide(name, each.bodies, at, complex(*(each.along or ()))))
+            else:
+                joints.append(Pin(name, each.bodies, at))
+        end = None if side.limit_deg is None else radians(side.limit_deg)
+        return cls(side.lead, joints, fixed, ground, end)
+
+
+def mirrored(side: Side, middle: float, images: Mapping[str, str]) -> Side:
+    """The joints of the other direction: about a vertical line, of the images of its bodies."""
+
+    def image(point: Sequence[float]) -> list[float]:
+        return [2 * middle - point[0], point[1]]
+
+    def other(name: str) -> str:
+        return images.get(name, name)
+
+    joints: dict[str, Connection] = {}
+    for name, each in side.joints.items():
+        changed: dict[str, object] = {}
+        for key in ("pivot", "hinge", "slide", "fixed"):
+            value = getattr(each, key)
+            if value is not None:
+                changed[key] = other(value) if isinstance(value, str) else [other(body) for body in value]
+        if isinstance(each.at, list):
+            changed["at"] = image(each.at)
+        if each.along is not None:
+            changed["along"] = [-each.along[0], each.along[1]]
+        joints[name] = each.model_copy(update=changed)
+    return side.model_copy(update={"lead": other(side.lead), "joints": joints})

@@ -1,0 +1,287 @@
+"""A linkage of any rigid bodies, given in the file: no code needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import ConfigDict, Field, model_validator
+
+from mechanisms import _faces as faces
+from mechanisms._members import Member, Shape
+from mechanisms._sides import GROUND, Held, Side, mirrored
+from rocking_cli.core import (
+    Body,
+    Direction,
+    Guide,
+    Hinge,
+    Joint,
+    LinkageMotion,
+    Mechanism,
+    NoMotion,
+    Outline,
+    Reals,
+    RigidMotion,
+    Sketch,
+    geometry_error,
+)
+from rocking_cli.core.fields import Name
+from rocking_cli.errors import MechanismError
+
+ALIKE = 1e-6  # of the size of the structure: how far an image may be from the body it is of
+CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding
+
+EXAMPLE_BODIES = {
+    "lower": {"polygon": [[0.0, 0.0], [0.3, 0.0], [0.3, 1.5], [0.0, 1.5]]},
+    "upper": {"polygon": [[0.0, 1.5], [0.3, 1.5], [0.3, 3.0], [0.0, 3.0]]},
+}
+EXAMPLE_SIDE = {
+    "lead": "lower",
+    "joints": {
+        "A": {"pivot": "lower", "at": [0.3, 0.0]},
+        "B": {"hinge": ["lower", "upper"], "at": [0.0, 1.5]},
+        "C": {"slide": "upper", "at": [0.3, 3.0], "along": [0.0, 1.0]},
+    },
+}
+
+
+class Linkage(Mechanism):
+    """Bodies and, for each direction, the joints that hold them."""
+
+    mechanism: ClassVar[str] = "linkage"
+    title: ClassVar[str] = "linkage of any rigid bodies"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 2, for any joints"
+    verified: ClassVar[str] = "block, walls, asymmetric frame and arch rebuilt; loop closure of each joint"
+
+    starter: ClassVar[tuple[str, ...]] = ("density", "depth")
+
+    model_config = ConfigDict(validate_by_name=True, validate_by_alias=True)
+
+    members: dict[Name, Shape] = Field(
+        alias="bodies",
+        description="the bodies by their names: polygon, parts, disc, masses, or mass, centroid and inertia",
+        examples=[EXAMPLE_BODIES],
+        min_length=1,
+        max_length=1000,
+    )
+    positive: Side | Literal["mirror", "none"] = Field(
+        description="clockwise rocking: {lead, joints}; mirror: the image of the other; none: it cannot",
+        examples=[EXAMPLE_SIDE],
+    )
+    negative: Side | Literal["mirror", "none"] = Field(
+        "mirror", description="anticlockwise rocking, in the same way", examples=["mirror"]
+    )
+
+    @model_validator(mode="after")
+    def _moves(self) -> Self:
+        self._check_masses()
+        sides = {direction: getattr(self, direction.label) for direction in Direction}
+        for direction, side in sides.items():
+            if isinstance(side, Side):
+                self._check_names(direction, side)
+            elif side == "mirror" and not isinstance(sides[direction.opposite], Side):
+                raise geometry_error(direction.label, "is the mirror of the other direction, which gives no joints")
+            elif side == "none" and self.one_sided != direction.opposite.label:
+                raise geometry_error(
+                    direction.label,
+                    f"it cannot rock that way only if it leans: give one_sided: {direction.opposite.label}",
+                )
+        for direction in self.directions:
+            self._check_moves(direction)
+        return self
+
+    def _check_masses(self) -> None:
+        for name in self.members:
+            if name == GROUND:
+                raise geometry_error(("bodies", name), "is what joints call the ground: give it another name")
+        weighs = {name: each.weighs for name, each in self._members.items()}
+        if self.mass is None and any(weighs.values()) and not all(weighs.values()):
+            name = next(name for name, known in weighs.items() if not known)
+            raise geometry_error(
+                ("bodies", name), "has no mass, and others have: give the structure density and depth, or this its mass"
+            )
+        if self.mass is None and self.density is not None and not all(weighs.values()):
+            raise geometry_error("depth", "is missing: density needs the size out of plane")
+
+    def _check_names(self, direction: Direction, side: Side) -> None:
+        known = ", ".join(self.members)
+        if side.lead not in self.members:
+            raise geometry_error((direction.label, "lead"), f"there is no body {side.lead!r}; there are {known}")
+        for name, each in side.joints.items():
+            where = (direction.label, "joints", name)
+            for body in each.bodies:
+                if body not in self.members and not (body == GROUND and each.fixed is not None):
+                    why = "use pivot, or slide with one body, for joints with the ground" if body == GROUND else (
+                        f"there is no body {body!r}; there are {known}"
+                    )  # fmt: skip
+                    raise geometry_error(where, why)
+            if isinstance(each.at, str):
+                raise geometry_error((*where, "at"), f"is a point [x, y], got {each.at!r}")
+
+    def _check_moves(self, direction: Direction) -> None:
+        """Refuse joints that leave no motion, one the wrong way, or one that closes a face."""
+        where = direction.label
+        try:
+            linkage = self._linkages[direction]
+        except NoMotion as error:
+            own = (where, "joints", error.joint) if error.joint and isinstance(getattr(self, where), Side) else (where,)
+            raise geometry_error(own, error.reason) from None
+        motions = linkage.motions(np.zeros(1))
+        lifted, driven = (
+            sum(
+                each.body.mass * part(motions[name].carry(each.body.centroid)[1][0])
+                for name, each in self._members.items()
+            )
+            for part in (np.imag, lambda dz: direction * np.real(dz))
+        )
+        if lifted < 0 and driven < 0:
+            raise geometry_error(where, f"{self._held[direction].lead} turns the wrong way: let another body lead")
+        self._check_opens(direction, motions)
+
+    def _check_opens(self, direction: Direction, motions: Mapping[str, RigidMotion]) -> None:
+        fastest = max(
+            float(abs(motions[name].carry(z)[1][0])) for name, each in self._members.items()
+            for z in (each.body.centroid, *(z for shape in each.outlines for z in shape))
+        )  # fmt: skip
+        for joint in self._held[direction].joints:
+            face = self._face(joint.bodies, joint.at)
+            if isinstance(joint, Guide) or face is None:
+                continue
+            way = [motions[name].carry(face.far)[1][0] for name in joint.bodies]
+            rate = (way[1] - way[0] if len(way) > 1 else way[0]) * np.conj(face.normal)
+            if rate.real < -CLOSES * fastest:
+                names = " and ".join([*joint.bodies, *(["the ground"] if len(way) == 1 else [])])
+                side = getattr(self, direction.label)
+                raise geometry_error(
+                    (direction.label, "joints", joint.name) if isinstance(side, Side) else direction.label,
+                    f"{joint.name} closes: there {names} would go into one another at "
+                    f"[{face.far.real:.4g}, {face.far.imag:.4g}]; hinge at the other end of the face",
+                )
+
+    # Masses
+
+    @cached_property
+    def _members(self) -> Mapping[str, Member]:
+        """The bodies with the masses that the file gives, or relative ones."""
+        return {name: shape.member(name, self.density, self.depth) for name, shape in self.members.items()}
+
+    @property
+    def has_mass(self) -> bool:
+        return self.mass is not None or all(each.weighs for each in self._members.values())
+
+    def total_mass(self) -> float | None:
+        """Its bodies have the masses of their density, or their own."""
+        return self.mass
+
+    def bodies(self) -> Sequence[Body]:
+        bodies = [each.body for each in self._members.values()]
+        if self.has_mass:
+            return bodies
+        total = sum(body.mass for body in bodies)
+        return [Body(b.name, b.mass / total, b.inertia / total, b.centroid, b.outline) for b in bodies]
+
+    # Motion
+
+    @cached_property
+    def _held(self) -> Mapping[Direction, Held]:
+        """The joints of the directions in which it can rock."""
+        found = {}
+        for direction in self.directions:
+            side = getattr(self, direction.label)
+            if side == "mirror":
+                side = mirrored(getattr(self, direction.opposite.label), self._middle, self._images(direction))
+            found[direction] = Held.of(side)
+        return found
+
+    @property
+    def _middle(self) -> float:
+        """Half way between the outermost points [m]."""
+        x = [z.real for each in self._members.values() for shape in each.outlines for z in shape]
+        x += [each.body.centroid.real for each in self._members.values()]
+        return (min(x) + max(x)) / 2
+
+    def _images(self, direction: Direction) -> Mapping[str, str]:
+        """The mirror image of each body among them."""
+        bodies = [each.body for each in self._members.values()]
+        size = max(abs(body.centroid - self._middle) for body in bodies) + 1.0 * max(
+            (abs(z - each.body.centroid) for each in self._members.values() for shape in each.outlines for z in shape),
+            default=0.0,
+        )
+        found = {}
+        for body in bodies:
+            at = complex(2 * self._middle - body.centroid.real, body.centroid.imag)
+            near = [
+                other.name
+                for other in bodies
+                if abs(other.centroid - at) <= ALIKE * size
+                and abs(other.mass - body.mass) <= ALIKE * body.mass
+                and abs(other.inertia - body.inertia) <= ALIKE * (body.inertia + body.mass * size**2)
+            ]
+            if not near:
+                raise geometry_error(
+                    direction.label,
+                    f"{body.name} has no mirror image among the bodies: give the joints of both directions",
+                )
+            found[body.name] = near[0]
+        return found
+
+    @cached_property
+    def _linkages(self) -> Mapping[Direction, LinkageMotion]:
+        centres = {name: each.body.centroid for name, each in self._members.items()}
+        return {
+            direction: LinkageMotion(centres, held.joints, held.lead, direction, held.fixed, held.ground, held.end)
+            for direction, held in self._held.items()
+        }
+
+    def _linkage(self, direction: Direction) -> LinkageMotion:
+        if direction not in self._linkages:
+            raise MechanismError(f"it cannot rock in the {direction.label} direction")
+        return self._linkages[direction]
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        found = self._linkage(direction).motions(phi)
+        return [found[name] for name in self._members]
+
+    def limit(self, direction: Direction) -> float:
+        return self._linkage(direction).limit
+
+    # Contacts and picture
+
+    def _face(self, bodies: Sequence[str], at: complex) -> faces.Face | None:
+        shapes: list[Sequence[Outline]] = [self._members[name].outlines for name in bodies]
+        return faces.under(shapes[0], at) if len(shapes) == 1 else faces.between(shapes[0], shapes[1], at)
+
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        found = []
+        for each in self._held[direction].joints if direction in self._held else ():
+            names, face = each.bodies, self._face(each.bodies, each.at)
+            letter = f"{each.name}{direction.prime}" if getattr(self, direction.label) == "mirror" else each.name
+            if isinstance(each, Guide):
+                if len(names) > 1:
+                    return ()  # its line turns: the forces there are not looked at
+                found.append(Joint(letter, each.at, names, slide=each.along / abs(each.along)))
+                continue
+            normal = face.normal if face is not None else 1j
+            if len(names) == 1:
+                found.append(Joint(letter, each.at, names, normal=normal))
+                continue
+            flat = names[face.inside] if face is not None and face.inside is not None else None
+            if normal.imag < 0:  # the second bears the first
+                names, normal = names[::-1], -normal
+            found.append(Joint(letter, each.at, names, normal=normal, face=flat or names[0]))
+        return found
+
+    def sketch(self) -> Sketch:
+        return Sketch(
+            outlines={name: each.outlines for name, each in self._members.items() if each.outlines},
+            hinges={direction: self._pictured(direction) for direction in self.directions},
+        )
+
+    def _pictured(self, direction: Direction) -> Sequence[Hinge]:
+        return self.joints(direction) or [
+            Hinge(each.name, each.at, each.bodies)
+            for each in self._held[direction].joints
+            if not isinstance(each, Guide)
+        ]

@@ -1,0 +1,350 @@
+"""Linkages of any rigid bodies: where hinges, pivots, slides and the turn of one body put all others, exactly.
+
+With the loops of `rocking_cli.core.loops` and "the leading body turns by -s phi", c(x, phi) = 0: Newton from rest, continued in
+phi, gives x; x' and x'' follow from c_x x' = -c_phi and its derivative, so that all are exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core.kinematics import Direction, Reals, RigidMotion, rotation
+from rocking_cli.core.loops import LinkageJoint, Loops
+
+NULL = 1e-9  # of the largest singular value: directions in which the joints hold nothing
+CLOSED = 1e-10  # of the size: how far a joint may gape
+SURE = 1e-3  # rad: where it is first seen whether the loops close
+FAR = 3e-3  # rad, and of the size: how far a prediction may be off before a step is halved
+ROUGH = 0.1  # of x': how far its prediction may be off, which across a singular position it is
+STEP = 0.05  # rad: the longest step
+LEAST = 1e-11  # rad: a step this short ends the motion
+ROUNDS = 12  # of Newton
+SETTLED = 1e-10  # of a step of Newton: the one after it would be rounding
+FLAT = np.pi / 2  # rad: the leading body lies down
+KEPT = 8  # motions that are remembered
+
+
+class NoMotion(ValueError):
+    """Why joints leave no motion, or more than one.
+
+    Parameters
+    ----------
+    reason : str
+        A sentence without a full stop.
+    joint, body : str, optional
+        What it is about.
+    """
+
+    def __init__(self, reason: str, *, joint: str | None = None, body: str | None = None) -> None:
+        self.reason, self.joint, self.body = reason, joint, body
+        super().__init__(reason)
+
+
+class _Node(NamedTuple):
+    """A rotation at which all is known."""
+
+    phi: float
+    x: Reals
+    dx: Reals
+    ddx: Reals
+
+
+class LinkageMotion:
+    """Bodies and the joints of one direction of rocking.
+
+    Parameters
+    ----------
+    bodies : mapping of str to complex
+        A reference point of each, such as its centroid [m].
+    joints : iterable of Pin or Guide
+        What holds them.
+    lead : str
+        The body whose rotation phi is.
+    direction : Direction
+        In which it turns.
+    fixed : iterable of pairs of str, optional
+        Bodies that move as one in this direction.
+    ground : iterable of str, optional
+        Bodies that stay where they are.
+    end : float, optional
+        Where the motion ends at the latest [rad]; by default where the leading body lies flat.
+
+    Raises
+    ------
+    NoMotion
+        If the joints leave no motion, or more than one.
+
+    Examples
+    --------
+    A wall that hinges at mid-height, its top held sideways:
+
+    >>> from rocking_cli.core import Direction, Guide, LinkageMotion, Pin
+    >>> wall = LinkageMotion(
+    ...     {"lower": 0.75j, "upper": 2.25j},
+    ...     [Pin("A", ("lower",), 0.15 + 0j), Pin("B", ("lower", "upper"), -0.15 + 1.5j), Guide("C", ("upper",), 0.15 + 3j, 1j)],
+    ...     "lower", Direction.POSITIVE,
+    ... )
+    >>> round(wall.limit, 6)
+    1.570796
+    """
+
+    def __init__(
+        self,
+        bodies: Mapping[str, complex],
+        joints: Iterable[LinkageJoint],
+        lead: str,
+        direction: Direction,
+        fixed: Iterable[tuple[str, str]] = (),
+        ground: Iterable[str] = (),
+        end: float | None = None,
+    ) -> None:
+        self.direction, self.joints = direction, list(joints)
+        self._bodies = list(bodies)
+        self._end = FLAT if end is None else end
+        first = _merged(self._bodies, fixed, ground)
+        links = list(dict.fromkeys(name for name in first.values() if name is not None))
+        self._link_of = {name: None if own is None else links.index(own) for name, own in first.items()}
+        self._check_held(lead)
+        self._lead_name, self._lead = lead, self._link_of[lead] or 0
+        points = [*bodies.values(), *(joint.at for joint in self.joints)]
+        middle = sum(points) / len(points)
+        self._size = 2 * max(abs(point - middle) for point in points) or 1.0
+        self._centres = [bodies[link] / self._size for link in links]
+        self._loops = self._of(self.joints)
+        self._rows = self._independent()
+        self._memory: dict[bytes, Sequence[RigidMotion]] = {}
+        self._first = self._node(np.zeros((1, self._loops.unknowns)), np.zeros(1))
+        self._check_closes()
+
+    def _check_held(self, lead: str) -> None:
+        if self._link_of[lead] is None:
+            raise NoMotion(f"{lead} cannot lead: it is fixed to the ground", body=lead)
+        held = {self._link_of[name] for joint in self.joints for name in joint.bodies}
+        for name, link in self._link_of.items():
+            if link is not None and link not in held:
+                what = " and ".join(other for other, own in self._link_of.items() if own == link)
+                raise NoMotion(f"no joint holds {what}: if it rests, fix it to the ground", body=name)
+
+    def _of(self, joints: Sequence[LinkageJoint]) -> Loops:
+        scaled = [replace(joint, at=joint.at / self._size) for joint in joints]
+        return Loops(self._centres, scaled, self._link_of)
+
+    # Whether it moves
+
+    def _independent(self) -> NDArray[np.intp]:
+        """As many independent equations as there are unknowns; the last is that of the leading body."""
+        held = self._loops.matrix(np.zeros((1, self._loops.unknowns)))[0]
+        matrix = np.vstack([held, self._turn_of_lead])
+        self._check_rank(held, matrix)
+        chosen, left = [len(held)], matrix.copy()
+        for _ in range(self._loops.unknowns - 1):
+            way = left[chosen[-1]] / np.linalg.norm(left[chosen[-1]])
+            for _ in range(2):  # once leaves rounding
+                left = left - np.outer(left @ way, way)
+            chosen.append(int(np.linalg.norm(left, axis=1).argmax()))
+        return np.array(sorted(chosen))
+
+    @property
+    def _turn_of_lead(self) -> Reals:
+        row = np.zeros(self._loops.unknowns)
+        row[self._lead] = 1.0
+        return row
+
+    def _check_rank(self, held: Reals, matrix: Reals) -> None:
+        """Raise `NoMotion` if at rest the joints hold everything, or leave more than the turn of the leading body."""
+        free = _free(held)
+        if not len(free):
+            raise self._nothing_moves()
+        if np.abs(free[:, self._lead]).max() < 1e-7:
+            raise NoMotion(
+                f"{self._lead_name} cannot lead: it does not turn; what can move is {self._movers(free)}",
+                body=self._lead_name,
+            )
+        loose = _free(matrix)
+        if len(loose):
+            raise NoMotion(
+                f"more than one motion is left: with {self._lead_name} held still {self._movers(loose)} can still move. "
+                "A joint is missing there"
+            )
+
+    def _nothing_moves(self) -> NoMotion:
+        """That nothing can move, and without which one joint it could."""
+        able = []
+        for joint in self.joints:
+            loops = self._of([each for each in self.joints if each is not joint])
+            if len(_free(loops.matrix(np.zeros((1, loops.unknowns)))[0])):
+                able.append(joint.name)
+        if not able:
+            return NoMotion("nothing can move: there are joints too many")
+        which = f"without {able[0]}" if len(able) == 1 else f"without one of {', '.join(able)}"
+        return NoMotion(f"nothing can move: {which} it could", joint=able[-1])
+
+    def _movers(self, free: Reals) -> str:
+        """The bodies that move in some of a set of directions."""
+        moved = self._loops.moving(free)
+        return " and ".join(name for name, link in self._link_of.items() if link is not None and moved[link])
+
+    def _check_closes(self) -> None:
+        """Raise `NoMotion` if the loops do not close a little further on."""
+        phi = np.array([min(SURE, self._end / 2)])
+        if self._stepped(self._first, float(phi[0])) is None:
+            gaps = np.abs(self._residuals(self._newton(self._predicted(self._first, phi), phi), phi)[0][:-1])
+            raise NoMotion(
+                "the joints let it move by an infinitesimal rotation only: a little further on they do not close. Three "
+                "of them are in line, or two hold the same thing",
+                joint=self._loops.names[int(gaps.argmax())] if gaps.size else None,
+            )
+
+    # The motion
+
+    def _residuals(self, x: Reals, phi: Reals) -> Reals:
+        return np.column_stack([self._loops.residuals(x), x[:, self._lead] + self.direction * phi])
+
+    def _matrix(self, x: Reals) -> Reals:
+        """Derivatives of the equations that were chosen, shape (n, unknowns, unknowns)."""
+        lead = np.broadcast_to(self._turn_of_lead, (len(x), 1, self._loops.unknowns))
+        return np.concatenate([self._loops.matrix(x), lead], axis=1)[:, self._rows]
+
+    def _newton(self, x: Reals, phi: Reals) -> Reals:
+        """Positions from guesses, shape (n, unknowns)."""
+        for _ in range(ROUNDS):
+            step = _solved(self._matrix(x), self._residuals(x, phi)[:, self._rows])
+            x = x - step
+            if not np.isfinite(step).all() or (np.abs(step) <= SETTLED * (1 + np.abs(x))).all():
+                break
+        return x
+
+    def _derivatives(self, x: Reals) -> tuple[Reals, Reals]:
+        """x' and x'' at positions."""
+        matrix = self._matrix(x)
+        drive = np.zeros((len(x), len(self._rows)))
+        drive[:, -1] = -self.direction
+        dx = _solved(matrix, drive)
+        bending = np.column_stack([self._loops.bending(x, dx), np.zeros(len(x))])
+        return dx, -_solved(matrix, bending[:, self._rows])
+
+    def _node(self, x: Reals, phi: Reals) -> _Node:
+        dx, ddx = self._derivatives(x)
+        return _Node(float(phi[0]), x[0], dx[0], ddx[0])
+
+    def _predicted(self, node: _Node, phi: Reals) -> Reals:
+        by = (phi - node.phi)[:, None]
+        return np.asarray(node.x + by * node.dx + by**2 / 2 * node.ddx)
+
+    def _stepped(self, node: _Node, by: float) -> _Node | None:
+        """The next node, or None if it cannot be had by so long a step."""
+        phi = np.array([node.phi + by])
+        guess = self._predicted(node, phi)
+        x = self._newton(guess, phi)
+        if not np.abs(x - guess).max() <= FAR or not np.abs(self._residuals(x, phi)).max() <= CLOSED:
+            return None
+        if np.linalg.slogdet(self._matrix(x)[0])[0] != self._sign:
+            return None
+        found = self._node(x, phi)
+        off = np.abs(found.dx - node.dx - by * node.ddx).max()
+        return found if off <= ROUGH * np.abs(found.dx).max() else None
+
+    @cached_property
+    def _sign(self) -> float:
+        """On which side of a singular position it is."""
+        return float(np.linalg.slogdet(self._matrix(np.zeros((1, self._loops.unknowns)))[0])[0])
+
+    @cached_property
+    def _nodes(self) -> list[_Node]:
+        """The motion from rest to its end, in steps from which Newton finds all between."""
+        found, by = [self._first], STEP / 4
+        while found[-1].phi < self._end:
+            by = min(by, self._end - found[-1].phi)
+            if (node := self._stepped(found[-1], by)) is not None:
+                found.append(node)
+                by = min(1.5 * by, STEP)
+            else:
+                by /= 2
+                if by < LEAST:
+                    break
+        return found
+
+    @property
+    def limit(self) -> float:
+        """Where the motion ends [rad]: the leading body lies flat, it locks, or as it was told."""
+        return self._nodes[-1].phi
+
+    def motions(self, phi: Reals) -> dict[str, RigidMotion]:
+        """The motion of every body over rotations, shape (n,) [rad]; beyond the limit that of the limit."""
+        phi = np.asarray(phi, dtype=np.float64)
+        key = phi.tobytes()
+        if key not in self._memory:
+            if len(self._memory) >= KEPT:
+                self._memory.pop(next(iter(self._memory)))
+            self._memory[key] = self._found(phi)
+        still = rotation(phi, 0j, 0.0)
+        return {name: still if link is None else self._memory[key][link] for name, link in self._link_of.items()}
+
+    def _found(self, phi: Reals) -> Sequence[RigidMotion]:
+        inside = np.clip(phi, 0.0, self.limit)
+        x = self._newton(self._between(inside), inside)
+        dx, ddx = self._derivatives(x)
+        q, dq, ddq = (self._size * each for each in self._loops.places(x, dx, ddx))
+        return [
+            RigidMotion(self._size * centre, q[:, k], dq[:, k], ddq[:, k], x[:, k], dx[:, k], ddx[:, k])
+            for k, centre in enumerate(self._centres)
+        ]
+
+    def _between(self, phi: Reals) -> Reals:
+        """Positions that are nearly right: of the polynomial with value and two derivatives of the nodes on either side."""
+        at = np.array([node.phi for node in self._nodes])
+        if len(at) == 1:
+            return np.repeat(self._first.x[None], len(phi), axis=0)
+        left = np.clip(np.searchsorted(at, phi, side="right") - 1, 0, len(at) - 2)
+        h = (at[left + 1] - at[left])[:, None]
+        t = (phi - at[left])[:, None] / h
+        x, dx, ddx = (np.stack([getattr(node, key) for node in self._nodes]) for key in ("x", "dx", "ddx"))
+        ends = [(x[k], h * dx[k], h**2 * ddx[k]) for k in (left, left + 1)]
+        found = np.zeros_like(ends[0][0])
+        for (value, slope, bend), s, sign in zip(ends, (t, 1 - t), (1, -1), strict=True):
+            found += (1 - 10 * s**3 + 15 * s**4 - 6 * s**5) * value
+            found += sign * (s - 6 * s**3 + 8 * s**4 - 3 * s**5) * slope
+            found += (s**2 - 3 * s**3 + 3 * s**4 - s**5) / 2 * bend
+        return found
+
+
+def _merged(names: Sequence[str], fixed: Iterable[tuple[str, str]], ground: Iterable[str]) -> dict[str, str | None]:
+    """Of each body the first of those that it moves with; None: the ground."""
+    link: dict[str, str | None] = {name: name for name in names}
+
+    def put(old: str | None, new: str | None) -> None:
+        for name, own in link.items():
+            if own == old:
+                link[name] = new
+
+    for one, other in fixed:
+        a, b = link[one], link[other]
+        if a != b:
+            put(*((a, b) if a is not None and (b is None or names.index(b) < names.index(a)) else (b, a)))
+    for name in ground:
+        if link[name] is not None:
+            put(link[name], None)
+    return link
+
+
+def _free(matrix: Reals) -> Reals:
+    """The directions that a matrix takes to zero, as rows."""
+    if not len(matrix):
+        return np.eye(matrix.shape[1])
+    _, values, ways = np.linalg.svd(matrix)
+    rank = int((values > NULL * values.max(initial=0.0)).sum())
+    return np.asarray(ways[rank:])
+
+
+def _solved(matrix: Reals, right: Reals) -> Reals:
+    """Solutions of many systems; not a number where one has none."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
+    except np.linalg.LinAlgError:
+        return np.full(right.shape, np.nan)

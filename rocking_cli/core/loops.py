@@ -1,0 +1,257 @@
+"""The equations of a linkage: joints put bodies on one another, and what is left are the loops that must close.
+
+A hinge puts a body where the one before it is: along a tree of hinges from the ground every place is a sum of turned arms,
+q = a + A e^(i psi) + u, with u the free place of a tree that no hinge holds to the ground. The unknowns are psi and u.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core.kinematics import Points, Reals
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A point that two bodies share, or that the ground holds of one.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    bodies : tuple of str
+        Two bodies, or one that turns about a point of the ground.
+    at : complex
+        The point at rest [m].
+    """
+
+    name: str
+    bodies: tuple[str, ...]
+    at: complex
+
+
+@dataclass(frozen=True)
+class Guide:
+    """A point of a body that stays on a line of the ground, or of a second body, with which the line turns.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    bodies : tuple of str
+        The body of the point, and that of the line, or none for the ground.
+    at : complex
+        The point at rest [m].
+    along : complex
+        The direction of the line at rest.
+    """
+
+    name: str
+    bodies: tuple[str, ...]
+    at: complex
+    along: complex
+
+
+LinkageJoint = Pin | Guide
+
+
+class Places(NamedTuple):
+    """Reference points of all links and their first two derivatives, shape (n, links) each."""
+
+    q: Points
+    dq: Points
+    ddq: Points
+
+
+class _Sum(NamedTuple):
+    """A point as a constant, arms that turn with each link, and shares of the free places."""
+
+    constant: complex
+    arms: Points
+    free: Reals
+
+
+class Loops:
+    """What must hold between the turns of links.
+
+    Parameters
+    ----------
+    centres : sequence of complex
+        A reference point of each link [over the size].
+    joints : sequence of Pin or Guide
+        With points over the size.
+    link_of : mapping of str to int or None
+        The link of each body; None: the ground.
+    """
+
+    def __init__(
+        self, centres: Sequence[complex], joints: Sequence[LinkageJoint], link_of: Mapping[str, int | None]
+    ) -> None:
+        self.count = len(centres)
+        self._centres, self._link_of = list(centres), link_of
+        pins = [joint for joint in joints if isinstance(joint, Pin)]
+        tree, places = self._grown(pins)
+        self.trees = max((len(place.free) for place in places), default=0)
+        self._a = np.array([place.constant for place in places])
+        self._A = np.array([place.arms for place in places]).reshape(self.count, self.count)
+        self._u = np.array([place.free for place in places]).reshape(self.count, self.trees)
+        self._gather([joint for joint in joints if not any(joint is used for used in tree)], places)
+
+    # The tree of hinges
+
+    def _ends(self, joint: LinkageJoint) -> tuple[int | None, int | None]:
+        links = [self._link_of[name] for name in joint.bodies]
+        return links[0], links[1] if len(links) > 1 else None
+
+    def _grown(self, pins: Sequence[Pin]) -> tuple[list[Pin], list[_Sum]]:
+        """The hinges along which links are placed, and where that puts each."""
+        near: dict[int | None, list[tuple[int | None, Pin]]] = {}
+        for pin in pins:
+            a, b = self._ends(pin)
+            near.setdefault(a, []).append((b, pin))
+            near.setdefault(b, []).append((a, pin))
+        used: list[Pin] = []
+        placed: dict[int, tuple[complex, Points, int | None]] = {}
+        roots: list[int] = []
+
+        def grow(start: int | None) -> None:
+            waiting = [start]
+            while waiting:
+                here = waiting.pop(0)
+                for there, pin in near.get(here, []):
+                    if there is None or there in placed:
+                        continue
+                    constant, arms, tree = self._from(here, pin.at, placed)
+                    arms[there] -= pin.at - self._centres[there]
+                    placed[there] = constant, arms, tree
+                    used.append(pin)
+                    waiting.append(there)
+
+        grow(None)
+        for link in range(self.count):
+            if link not in placed:
+                placed[link] = self._centres[link], np.zeros(self.count, np.complex128), len(roots)
+                roots.append(link)
+                grow(link)
+        sums = []
+        for link in range(self.count):
+            constant, arms, tree = placed[link]
+            free = np.zeros(len(roots))
+            if tree is not None:
+                free[tree] = 1.0
+            sums.append(_Sum(constant, arms, free))
+        return used, sums
+
+    def _from(
+        self, link: int | None, at: complex, placed: Mapping[int, tuple[complex, Points, int | None]]
+    ) -> tuple[complex, Points, int | None]:
+        """A point of a link that is placed, or of the ground."""
+        if link is None:
+            return at, np.zeros(self.count, np.complex128), None
+        constant, arms, tree = placed[link]
+        arms = arms.copy()
+        arms[link] += at - self._centres[link]
+        return constant, arms, tree
+
+    # What is left
+
+    def _gather(self, joints: Sequence[LinkageJoint], places: Sequence[_Sum]) -> None:
+        """The equations of the joints that close loops: Im(w e^(-i psi_b) gap) = 0, gap = k + C e^(i psi) + S u."""
+        constant, arms, free, weights, turns, names = [], [], [], [], [], []
+        for joint in joints:
+            a, b = self._ends(joint)
+            ends = [self._point(link, joint.at, places) for link in (a, b)]
+            gap = [one - other for one, other in zip(*ends, strict=True)]
+            kinds = [(1j, -1), (1.0, -1)] if isinstance(joint, Pin) else [
+                (np.conj(joint.along) / abs(joint.along), -1 if b is None else b)
+            ]  # fmt: skip
+            for weight, turn in kinds:  # the imaginary part of i gap is its real part
+                for into, value in zip((constant, arms, free), gap, strict=True):
+                    into.append(value)
+                weights.append(weight)
+                turns.append(turn)
+                names.append(joint.name)
+        m = len(names)
+        self._k = np.array(constant, dtype=np.complex128)
+        self._C = np.array(arms, dtype=np.complex128).reshape(m, self.count)
+        self._S = np.array(free, dtype=np.float64).reshape(m, self.trees)
+        self._w = np.array(weights, dtype=np.complex128)
+        self._turn = np.array(turns, dtype=np.intp)
+        self.names: list[str] = names
+        """The joint of each equation."""
+
+    def _point(self, link: int | None, at: complex, places: Sequence[_Sum]) -> tuple[complex, Points, Reals]:
+        if link is None:
+            return at, np.zeros(self.count, np.complex128), np.zeros(self.trees)
+        place = places[link]
+        arms = place.arms.copy()
+        arms[link] += at - self._centres[link]
+        return place.constant, arms, place.free
+
+    @property
+    def unknowns(self) -> int:
+        """How many."""
+        return self.count + 2 * self.trees
+
+    def _parts(self, x: Reals) -> tuple[Reals, Points]:
+        """psi and u, shape (n, links) and (n, trees)."""
+        free = x[:, self.count :]
+        return x[:, : self.count], np.asarray(free[:, : self.trees] + 1j * free[:, self.trees :])
+
+    def _turned(self, e: Points) -> Points:
+        """w e^(-i psi_b) of each equation, shape (n, m)."""
+        body = self._turn >= 0
+        found = np.broadcast_to(self._w, (len(e), len(self._w))).copy()
+        found[:, body] *= np.conj(e[:, self._turn[body]])
+        return found
+
+    def residuals(self, x: Reals) -> Reals:
+        """How far the loops are from closed, shape (n, m) [over the size]."""
+        psi, u = self._parts(x)
+        e = np.exp(1j * psi)
+        return np.asarray((self._turned(e) * (self._k + e @ self._C.T + u @ self._S.T)).imag)
+
+    def matrix(self, x: Reals) -> Reals:
+        """Their derivatives, shape (n, m, unknowns)."""
+        psi, u = self._parts(x)
+        e = np.exp(1j * psi)
+        w, gap = self._turned(e), self._k + e @ self._C.T + u @ self._S.T
+        found = np.empty((len(x), len(self._w), self.unknowns))
+        found[:, :, : self.count] = (w[:, :, None] * (1j * self._C) * e[:, None, :]).imag
+        body = np.flatnonzero(self._turn >= 0)
+        found[:, body, self._turn[body]] -= (w * gap).real[:, body]
+        found[:, :, self.count : self.count + self.trees] = w.imag[:, :, None] * self._S
+        found[:, :, self.count + self.trees :] = w.real[:, :, None] * self._S
+        return found
+
+    def bending(self, x: Reals, dx: Reals) -> Reals:
+        """What their second derivatives are without x'', shape (n, m)."""
+        (psi, u), (dpsi, du) = self._parts(x), self._parts(dx)
+        e = np.exp(1j * psi)
+        gap = self._k + e @ self._C.T + u @ self._S.T
+        rate = (1j * dpsi * e) @ self._C.T + du @ self._S.T
+        pull = -(dpsi**2 * e) @ self._C.T
+        body = self._turn >= 0
+        spin = np.where(body, dpsi[:, self._turn], 0.0)
+        return np.asarray((self._turned(e) * (pull - 2j * spin * rate - spin**2 * gap)).imag)
+
+    def places(self, x: Reals, dx: Reals, ddx: Reals) -> Places:
+        """Where the links are [over the size]."""
+        (psi, u), (dpsi, du), (ddpsi, ddu) = self._parts(x), self._parts(dx), self._parts(ddx)
+        e = np.exp(1j * psi)
+        q = self._a + e @ self._A.T + u @ self._u.T
+        dq = (1j * dpsi * e) @ self._A.T + du @ self._u.T
+        ddq = ((1j * ddpsi - dpsi**2) * e) @ self._A.T + ddu @ self._u.T
+        return Places(q, dq, ddq)
+
+    def moving(self, ways: Reals) -> NDArray[np.bool_]:
+        """Which links move in some of a set of directions from rest, shape (links,)."""
+        still = np.zeros_like(ways)
+        psi, _ = self._parts(ways)
+        _, dq, _ = self.places(still, ways, still)
+        return np.asarray((np.abs(dq) + np.abs(psi)).max(axis=0) > 1e-6)
