@@ -129,7 +129,7 @@ class Shape(Described):
 
     def _is_weighed(self, own: Sequence[float | None]) -> bool:
         """Whether density and depth are known, its own or of all of its parts."""
-        parts = [(part.density or own[0], part.depth or own[1]) for part in self._solids] or [tuple(own)]
+        parts = [(part.density or own[0], part.depth or own[1]) for part in self._solids] or [(own[0], own[1])]
         return all(None not in each for each in parts)
 
     def enlarged(self, factor: float) -> Shape:

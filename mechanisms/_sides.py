@@ -138,6 +138,10 @@ def mirrored(side: Side, middle: float, images: Mapping[str, str]) -> Side:
                 changed[key] = other(value) if isinstance(value, str) else [other(body) for body in value]
         if isinstance(each.at, list):
             changed["at"] = image(each.at)
+        elif each.at is not None:
+            swapped = {"left": "right", "right": "left"}
+            *words, end = each.at.split(" ")
+            changed["at"] = " ".join([*words, swapped.get(end, end)])
         if each.along is not None:
             changed["along"] = [-each.along[0], each.along[1]]
         joints[name] = each.model_copy(update=changed)

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from math import inf
 from typing import ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from mechanisms import _faces as faces
+from mechanisms._cracks import EDGE, Crack, Cracked, active, cracked, weakest
 from mechanisms._members import Member, Shape
 from mechanisms._sides import GROUND, Held, Side, mirrored
 from rocking_cli.core import (
     Body,
     Direction,
+    Extra,
     Guide,
     Hinge,
     Joint,
@@ -28,8 +31,10 @@ from rocking_cli.core import (
     geometry_error,
 )
 from rocking_cli.core.fields import Name
+from rocking_cli.core.ties import Place, Tie
 from rocking_cli.errors import MechanismError
 
+MOST_CRACKS = 2  # in a direction
 ALIKE = 1e-6  # of the size of the structure: how far an image may be from the body it is of
 CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding
 
@@ -74,13 +79,21 @@ class Linkage(Mechanism):
         "mirror", description="anticlockwise rocking, in the same way", examples=["mirror"]
     )
 
+    cracks: dict[Name, Crack] | None = Field(
+        None,
+        description="cuts whose place is where lambda is least: {body, along: [[x, y], [x, y]], cut: horizontal}",
+        min_length=1,
+        max_length=4,
+    )
+
     @model_validator(mode="after")
     def _moves(self) -> Self:
+        self._check_cracks()
         self._check_masses()
         sides = {direction: getattr(self, direction.label) for direction in Direction}
         for direction, side in sides.items():
             if isinstance(side, Side):
-                self._check_names(direction, side)
+                self._check_names(direction, self._cracked.sides[direction])
             elif side == "mirror" and not isinstance(sides[direction.opposite], Side):
                 raise geometry_error(direction.label, "is the mirror of the other direction, which gives no joints")
             elif side == "none" and self.one_sided != direction.opposite.label:
@@ -91,6 +104,20 @@ class Linkage(Mechanism):
         for direction in self.directions:
             self._check_moves(direction)
         return self
+
+    def _check_cracks(self) -> None:
+        for name, crack in (self.cracks or {}).items():
+            shape = self.members.get(crack.body)
+            if shape is None or shape.polygon is None or shape.inertia is not None:
+                why = f"cuts a polygon; {crack.body!r} is none" if shape else f"there is no body {crack.body!r}"
+                raise geometry_error(("cracks", name, "body"), why)
+            others = {each.cut for each in (self.cracks or {}).values() if each.body == crack.body}
+            if len(others) > 1:
+                raise geometry_error(("cracks", name, "cut"), f"{crack.body} is cut the other way too: one way only")
+        for direction, side in self._sides.items():
+            named = active(side, self.cracks or {})
+            if len(named) > MOST_CRACKS:
+                raise geometry_error(direction.label, f"{', '.join(named)} are too many: one or two in a direction")
 
     def _check_masses(self) -> None:
         for name in self.members:
@@ -106,13 +133,14 @@ class Linkage(Mechanism):
             raise geometry_error("depth", "is missing: density needs the size out of plane")
 
     def _check_names(self, direction: Direction, side: Side) -> None:
-        known = ", ".join(self.members)
-        if side.lead not in self.members:
+        bodies = self._cracked.shapes
+        known = ", ".join(bodies)
+        if side.lead not in bodies:
             raise geometry_error((direction.label, "lead"), f"there is no body {side.lead!r}; there are {known}")
         for name, each in side.joints.items():
             where = (direction.label, "joints", name)
             for body in each.bodies:
-                if body not in self.members and not (body == GROUND and each.fixed is not None):
+                if body not in bodies and not (body == GROUND and each.fixed is not None):
                     why = "use pivot, or slide with one body, for joints with the ground" if body == GROUND else (
                         f"there is no body {body!r}; there are {known}"
                     )  # fmt: skip
@@ -163,9 +191,15 @@ class Linkage(Mechanism):
     # Masses
 
     @cached_property
+    def _whole(self) -> Mapping[str, Member]:
+        """The bodies before they crack."""
+        return {name: shape.member(name, self.density, self.depth) for name, shape in self.members.items()}
+
+    @cached_property
     def _members(self) -> Mapping[str, Member]:
         """The bodies with the masses that the file gives, or relative ones."""
-        return {name: shape.member(name, self.density, self.depth) for name, shape in self.members.items()}
+        shapes = self._cracked.shapes
+        return {name: shape.member(name, self.density, self.depth) for name, shape in shapes.items()}
 
     @property
     def has_mass(self) -> bool:
@@ -185,30 +219,74 @@ class Linkage(Mechanism):
     # Motion
 
     @cached_property
-    def _held(self) -> Mapping[Direction, Held]:
-        """The joints of the directions in which it can rock."""
+    def _sides(self) -> Mapping[Direction, Side]:
+        """The joints of the directions in which it can rock, as the file or its mirror has them."""
         found = {}
         for direction in self.directions:
-            side = getattr(self, direction.label)
-            if side == "mirror":
-                side = mirrored(getattr(self, direction.opposite.label), self._middle, self._images(direction))
-            found[direction] = Held.of(side)
+            side, other = (getattr(self, each.label) for each in (direction, direction.opposite))
+            if side == "mirror" and isinstance(other, Side):
+                side = mirrored(other, self._middle, self._images(direction))
+            if isinstance(side, Side):
+                found[direction] = side
+        return found
+
+    @cached_property
+    def _cracked(self) -> Cracked:
+        """Bodies and joints with the cracks where they are weakest."""
+        cracks = self.cracks or {}
+        return cracked(self.members, self._sides, cracks, self._shares)
+
+    @cached_property
+    def _shares(self) -> Mapping[Direction, Mapping[str, float]]:
+        return {direction: self._weakest(direction, side) for direction, side in self._sides.items()}
+
+    def _weakest(self, direction: Direction, side: Side) -> Mapping[str, float]:
+        """The shares along their lines at which the cracks of a direction give the least lambda."""
+        cracks = {name: (self.cracks or {})[name] for name in active(side, self.cracks or {})}
+        if not cracks:
+            return {}
+
+        def at(shares: Mapping[str, float]) -> float:
+            found = cracked(self.members, {direction: side}, cracks, {direction: shares})
+            kept = {key: getattr(self, key) for key in ("density", "depth", "mass", "gravity") if getattr(self, key)}
+            loads = [
+                load.model_copy(update={"body": found.piece(load.body, complex(*load.at))}) if load.body else load
+                for load in self.loads or []
+            ]
+            ties = [_on_pieces(tie, found) for tie in self.ties or []]
+            sides = {direction.label: found.sides[direction], direction.opposite.label: "none"}
+            leans = {"one_sided": direction.label, "rebound": 0.0}
+            one = Linkage.from_fields(
+                {"members": found.shapes, **sides, **leans, **kept, "loads": loads or None, "ties": ties or None}
+            )
+            return one.uplift(direction)
+
+        failed: list[Exception] = []
+
+        def lambda_at(shares: Mapping[str, float]) -> float:
+            try:
+                return at(shares)
+            except (ValidationError, MechanismError) as error:
+                failed.append(error)
+                return inf
+
+        found = weakest(lambda_at, list(cracks))
+        if not lambda_at(found) < inf:
+            raise failed[-1]
         return found
 
     @property
     def _middle(self) -> float:
         """Half way between the outermost points [m]."""
-        x = [z.real for each in self._members.values() for shape in each.outlines for z in shape]
-        x += [each.body.centroid.real for each in self._members.values()]
+        x = [z.real for each in self._whole.values() for shape in each.outlines for z in shape]
+        x += [each.body.centroid.real for each in self._whole.values()]
         return (min(x) + max(x)) / 2
 
     def _images(self, direction: Direction) -> Mapping[str, str]:
         """The mirror image of each body among them."""
-        bodies = [each.body for each in self._members.values()]
-        size = max(abs(body.centroid - self._middle) for body in bodies) + 1.0 * max(
-            (abs(z - each.body.centroid) for each in self._members.values() for shape in each.outlines for z in shape),
-            default=0.0,
-        )
+        bodies = [each.body for each in self._whole.values()]
+        points = [z for each in self._whole.values() for shape in each.outlines for z in shape]
+        size = max(abs(z - self._middle) for z in [*points, *(body.centroid for body in bodies)])
         found = {}
         for body in bodies:
             at = complex(2 * self._middle - body.centroid.real, body.centroid.imag)
@@ -225,7 +303,15 @@ class Linkage(Mechanism):
                     f"{body.name} has no mirror image among the bodies: give the joints of both directions",
                 )
             found[body.name] = near[0]
+        for name, crack in (self.cracks or {}).items():
+            if found[crack.body] != crack.body or crack.cut == "vertical":
+                why = f"the crack {name} has no mirror image: give the joints of both directions"
+                raise geometry_error(direction.label, why)
         return found
+
+    @cached_property
+    def _held(self) -> Mapping[Direction, Held]:
+        return {direction: Held.of(side) for direction, side in self._cracked.sides.items()}
 
     @cached_property
     def _linkages(self) -> Mapping[Direction, LinkageMotion]:
@@ -246,6 +332,19 @@ class Linkage(Mechanism):
 
     def limit(self, direction: Direction) -> float:
         return self._linkage(direction).limit
+
+    def piece(self, body: str, at: complex) -> str:
+        return self._cracked.piece(body, at)
+
+    def extras(self, direction: Direction) -> Sequence[Extra]:
+        found = []
+        for name, share in self._shares.get(direction, {}).items():
+            crack = (self.cracks or {})[name]
+            what = "height" if crack.cut == "horizontal" else "place"
+            at_end = not 10 * EDGE < share < 1 - 10 * EDGE
+            more = ", at the end of its line: beyond, lambda may be less" if at_end else ", where lambda is least"
+            found.append(Extra(f"crack_{name}", crack.level(share), "m", f"{what} of the crack {name}{more}"))
+        return found
 
     # Contacts and picture
 
@@ -285,3 +384,13 @@ class Linkage(Mechanism):
             for each in self._held[direction].joints
             if not isinstance(each, Guide)
         ]
+
+
+def _on_pieces(tie: Tie, found: Cracked) -> Tie:
+    """A tie between pieces of bodies that are cut."""
+
+    def moved(place: Place) -> Place:
+        return place.model_copy(update={"body": found.piece(place.body, place.point)}) if place.body else place
+
+    changed = {key: moved(place) for key in ("start", "end") if (place := getattr(tie, key)) is not None}
+    return tie.model_copy(update={**changed, **({"path": [moved(each) for each in tie.path]} if tie.path else {})})

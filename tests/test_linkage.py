@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import pi, sqrt
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -134,6 +135,108 @@ class TestRebuilt:
             assert found.uplift(s) == pytest.approx(frame.uplift(s), rel=1e-10)
             assert found.critical_rotation(s) == pytest.approx(frame.critical_rotation(s), rel=1e-10)
             assert found.limit(s) == pytest.approx(pi / 2)
+
+
+class TestCracks:
+    WALL: ClassVar = rectangle(-0.15, 0, 0.15, 3.0)
+    SIDE: ClassVar = {
+        "lead": "wall below K",
+        "joints": {
+            "A": {"pivot": "wall", "at": [0.15, 0.0]},
+            "B": {"hinge": ["wall below K", "wall above K"], "at": "K left"},
+            "C": {"slide": "wall", "at": [0.0, 3.0], "along": [0.0, 1.0]},
+        },
+    }
+
+    def cracked(self, load, **more):
+        crack = {"K": {"body": "wall", "along": [[0.0, 0.3], [0.0, 2.9]]}}
+        floor = {"name": "floor", "mass": load / 9.80665, "at": [0.0, 3.0], "body": "wall", "horizontal": 0.0}
+        return rk.Linkage(
+            bodies={"wall": self.WALL}, cracks=crack, density=1800.0, depth=1.0, loads=[{**floor, **more}],
+            positive=self.SIDE,
+        )  # fmt: skip
+
+    def test_the_weakest_height_of_a_spanning_wall(self):
+        """xi = 1/(1 + sqrt(rho k/(1 + rho))), rho = 1, k = 1/2: 9 t/h at 2/3, the same in both directions."""
+        weight = 1800 * 0.9 * 9.80665
+        found = self.cracked(weight)
+        assert found.uplift(Direction.POSITIVE) == pytest.approx(0.9, rel=1e-12)
+        assert found.extras(Direction.POSITIVE)[0].value == pytest.approx(2.0, rel=1e-6)
+        assert [body.name for body in found.bodies()] == ["wall 1", "wall 2"]
+        same = rk.SpanningWall(thickness=0.3, height=3.0, hinge=2 / 3, overburden=weight, density=1800.0, depth=1.0)
+        alike(found, same, 1e-5)
+
+    def test_other_heights_in_the_two_directions(self):
+        weight = 1800 * 0.9 * 9.80665
+        found = self.cracked(weight, at=[0.05, 3.0])
+        wall = rk.SpanningWall(
+            thickness=0.3, height=3.0, hinge="weakest", overburden=weight, overburden_eccentricity=0.05, support=0.0,
+            density=1800.0, depth=1.0,
+        )  # fmt: skip
+        for s in Direction:
+            assert found.uplift(s) == pytest.approx(wall.uplift(s), rel=1e-10)
+            assert found.extras(s)[0].value == pytest.approx(3 * wall.extras(s)[0].value, rel=1e-5)
+        assert len(found.bodies()) == 3
+        assert found.restitution_from_kinematics(Direction.POSITIVE) == pytest.approx(
+            wall.restitution_from_kinematics(Direction.POSITIVE), rel=1e-4
+        )
+
+    def test_two_cracks_by_brute_force(self):
+        """A wall whose foot part rests: no pair of heights on a grid gives less."""
+        side = {
+            "lead": "wall between",
+            "joints": {
+                "A": {"hinge": ["wall below K", "wall above K"], "at": "K right"},
+                "B": {"hinge": ["wall below M", "wall above M"], "at": "M left"},
+                "C": {"slide": "wall above M", "at": [0.0, 3.0], "along": [0.0, 1.0]},
+                "F": {"fixed": ["wall below K", "ground"]},
+            },
+        }
+        side["lead"] = "wall above K"
+        cracks = {
+            "K": {"body": "wall", "along": [[0, 0.1], [0, 1.2]]},
+            "M": {"body": "wall", "along": [[0, 1.4], [0, 2.8]]},
+        }
+        floor = {"name": "f", "mass": 3000.0, "at": [0.0, 3.0], "body": "wall", "horizontal": 0.0}
+        given = {"density": 1800.0, "depth": 1.0, "one_sided": "positive", "rebound": 0.5, "negative": "none"}
+        found = rk.Linkage(bodies={"wall": self.WALL}, cracks=cracks, positive=side, loads=[floor], **given)
+
+        def at(low, high):
+            parts = {"a": rectangle(-0.15, 0, 0.15, low), "b": rectangle(-0.15, low, 0.15, high)}
+            parts["c"] = rectangle(-0.15, high, 0.15, 3.0)
+            joints = {
+                "A": {"hinge": ["a", "b"], "at": [0.15, low]},
+                "B": {"hinge": ["b", "c"], "at": [-0.15, high]},
+                "C": {"slide": "c", "at": [0.0, 3.0], "along": [0.0, 1.0]},
+                "F": {"fixed": ["a", "ground"]},
+            }
+            top = {**floor, "body": "c"}
+            one = rk.Linkage(bodies=parts, positive={"lead": "b", "joints": joints}, loads=[top], **given)
+            return one.uplift(Direction.POSITIVE)
+
+        grid = [at(low, high) for low in np.linspace(0.1001, 1.1999, 7) for high in np.linspace(1.41, 2.79, 15)]
+        least = found.uplift(Direction.POSITIVE)
+        assert least <= min(grid) * (1 + 1e-9) and least > 0.97 * min(grid)
+        places = {extra.key: extra.value for extra in found.extras(Direction.POSITIVE)}
+        assert least == pytest.approx(at(places["crack_K"], places["crack_M"]), rel=1e-9)
+        assert "at the end of its line" in found.extras(Direction.POSITIVE)[0].meaning
+
+    @pytest.mark.parametrize(
+        ("change", "said"),
+        [
+            ({"body": "roof"}, "there is no body 'roof'"),
+            ({"along": [[0.0, 1.0], [0.1, 1.0]]}, "both ends have the same height"),
+            ({"along": [[0.0, -2.0], [0.0, -1.0]]}, "does not cut wall in two"),
+            ({"cut": "vertical", "along": [[-0.1, 1.0], [0.1, 1.0]]}, "is a point"),
+        ],
+    )
+    def test_what_cannot_be_cut(self, change, said):
+        crack = {"K": {"body": "wall", "along": [[0.0, 0.3], [0.0, 2.9]], **change}}
+        with pytest.raises(InputError, match=said):
+            rk.Linkage(
+                bodies={"wall": self.WALL}, cracks=crack, positive=self.SIDE, negative="none", one_sided="positive",
+                rebound=0.1,
+            )  # fmt: skip
 
 
 class TestMotion:
@@ -283,5 +386,5 @@ class TestFiles:
         (tmp_path / "s.yaml").write_text(text, encoding="utf-8")
         found = rk.load_structure(tmp_path / "s.yaml")
         assert found.directions == [Direction.POSITIVE]
-        answer = rk.respond(found, rk.GroundMotion("r", 0.01, 6.0 * np.sin(np.linspace(0, 6, 200))))
+        answer = rk.respond(found, rk.GroundMotion("r", 0.01, 4.5 * np.sin(np.linspace(0, 6, 40))))
         assert 0 < answer["nonlinear"].peak_ratio < 1

@@ -55,18 +55,30 @@ class Carrier:
         Shapes of those whose shape is known.
     alike : mapping of str to int
         Of those that stand for several: how many.
+    piece : callable
+        The piece of a body that a point is on, where it cracked.
     """
 
     bodies: Mapping[str, Body]
     outlines: Mapping[str, Sequence[Outline]]
     alike: Mapping[str, int]
+    piece: Callable[[str, complex], str] = lambda body, at: body
 
     @classmethod
-    def of(cls, bodies: Sequence[Body], sketch: Sketch, alike: Mapping[str, int]) -> Carrier:
+    def of(
+        cls,
+        bodies: Sequence[Body],
+        sketch: Sketch,
+        alike: Mapping[str, int],
+        piece: Callable[[str, complex], str] = lambda body, at: body,
+    ) -> Carrier:
         """The carrier of a mechanism; shapes that are drawn at will do not count."""
         shapes = {body.name: [body.outline] for body in bodies if body.outline}
         return cls(
-            {body.name: body for body in bodies}, {**(sketch.outlines if sketch.uniform else {}), **shapes}, alike
+            {body.name: body for body in bodies},
+            {**(sketch.outlines if sketch.uniform else {}), **shapes},
+            alike,
+            piece,
         )
 
     def body(self, name: str | None, loc: Loc) -> str:
@@ -83,7 +95,7 @@ class Carrier:
 
     def spot(self, name: str | None, point: complex, loc: Loc, field: str) -> Spot:
         """A point of a body. Raises `Refused` if it lies outside it."""
-        body = self.body(name, loc)
+        body = self.body(name if name is None else self.piece(name, point), loc)
         shapes = self.outlines.get(body, ())
         if shapes and not any(_holds(np.asarray(shape), point) for shape in shapes):
             corners = np.concatenate([np.asarray(shape) for shape in shapes])

@@ -1,7 +1,7 @@
 """Linkages of any rigid bodies: where hinges, pivots, slides and the turn of one body put all others, exactly.
 
-With the loops of `rocking_cli.core.loops` and "the leading body turns by -s phi", c(x, phi) = 0: Newton from rest, continued in
-phi, gives x; x' and x'' follow from c_x x' = -c_phi and its derivative, so that all are exact.
+With the loops of `rocking_cli.core.loops` and "the leading body turns by -s phi", c(x, phi) = 0: Newton from rest,
+continued in phi, gives x; x' and x'' follow from c_x x' = -c_phi and its derivative, so that all are exact.
 """
 
 from __future__ import annotations
@@ -87,8 +87,13 @@ class LinkageMotion:
     >>> from rocking_cli.core import Direction, Guide, LinkageMotion, Pin
     >>> wall = LinkageMotion(
     ...     {"lower": 0.75j, "upper": 2.25j},
-    ...     [Pin("A", ("lower",), 0.15 + 0j), Pin("B", ("lower", "upper"), -0.15 + 1.5j), Guide("C", ("upper",), 0.15 + 3j, 1j)],
-    ...     "lower", Direction.POSITIVE,
+    ...     [
+    ...         Pin("A", ("lower",), 0.15 + 0j),
+    ...         Pin("B", ("lower", "upper"), -0.15 + 1.5j),
+    ...         Guide("C", ("upper",), 0.15 + 3j, 1j),
+    ...     ],
+    ...     "lower",
+    ...     Direction.POSITIVE,
     ... )
     >>> round(wall.limit, 6)
     1.570796
@@ -169,8 +174,8 @@ class LinkageMotion:
         loose = _free(matrix)
         if len(loose):
             raise NoMotion(
-                f"more than one motion is left: with {self._lead_name} held still {self._movers(loose)} can still move. "
-                "A joint is missing there"
+                f"more than one motion is left: with {self._lead_name} held still {self._movers(loose)} can still "
+                "move. A joint is missing there"
             )
 
     def _nothing_moves(self) -> NoMotion:
@@ -196,8 +201,8 @@ class LinkageMotion:
         if self._stepped(self._first, float(phi[0])) is None:
             gaps = np.abs(self._residuals(self._newton(self._predicted(self._first, phi), phi), phi)[0][:-1])
             raise NoMotion(
-                "the joints let it move by an infinitesimal rotation only: a little further on they do not close. Three "
-                "of them are in line, or two hold the same thing",
+                "the joints let it move by an infinitesimal rotation only: a little further on they do not close. "
+                "Three of them are in line, or two hold the same thing",
                 joint=self._loops.names[int(gaps.argmax())] if gaps.size else None,
             )
 
@@ -287,9 +292,12 @@ class LinkageMotion:
         return {name: still if link is None else self._memory[key][link] for name, link in self._link_of.items()}
 
     def _found(self, phi: Reals) -> Sequence[RigidMotion]:
-        inside = np.clip(phi, 0.0, self.limit)
-        x = self._newton(self._between(inside), inside)
-        dx, ddx = self._derivatives(x)
+        if phi.any():
+            inside = np.clip(phi, 0.0, self.limit)
+            x = self._newton(self._between(inside), inside)
+            dx, ddx = self._derivatives(x)
+        else:  # how far it goes does not matter
+            x, dx, ddx = (np.repeat(each[None], len(phi), axis=0) for each in self._first[1:])
         q, dq, ddq = (self._size * each for each in self._loops.places(x, dx, ddx))
         return [
             RigidMotion(self._size * centre, q[:, k], dq[:, k], ddq[:, k], x[:, k], dx[:, k], ddx[:, k])
@@ -297,7 +305,7 @@ class LinkageMotion:
         ]
 
     def _between(self, phi: Reals) -> Reals:
-        """Positions that are nearly right: of the polynomial with value and two derivatives of the nodes on either side."""
+        """Positions that are nearly right: the polynomial with values and derivatives of the nodes on either side."""
         at = np.array([node.phi for node in self._nodes])
         if len(at) == 1:
             return np.repeat(self._first.x[None], len(phi), axis=0)

@@ -1,7 +1,7 @@
 """The equations of a linkage: joints put bodies on one another, and what is left are the loops that must close.
 
-A hinge puts a body where the one before it is: along a tree of hinges from the ground every place is a sum of turned arms,
-q = a + A e^(i psi) + u, with u the free place of a tree that no hinge holds to the ground. The unknowns are psi and u.
+A hinge puts a body where the one before it is: along a tree of hinges from the ground every place is a sum of turned
+arms, q = a + A e^(i psi) + u, with u the free place of a tree that no hinge holds to the ground. Unknown are psi and u.
 """
 
 from __future__ import annotations
@@ -162,7 +162,8 @@ class Loops:
 
     def _gather(self, joints: Sequence[LinkageJoint], places: Sequence[_Sum]) -> None:
         """The equations of the joints that close loops: Im(w e^(-i psi_b) gap) = 0, gap = k + C e^(i psi) + S u."""
-        constant, arms, free, weights, turns, names = [], [], [], [], [], []
+        gaps: tuple[list[complex], list[Points], list[Reals]] = [], [], []
+        weights, turns, names = [], [], []
         for joint in joints:
             a, b = self._ends(joint)
             ends = [self._point(link, joint.at, places) for link in (a, b)]
@@ -171,15 +172,15 @@ class Loops:
                 (np.conj(joint.along) / abs(joint.along), -1 if b is None else b)
             ]  # fmt: skip
             for weight, turn in kinds:  # the imaginary part of i gap is its real part
-                for into, value in zip((constant, arms, free), gap, strict=True):
-                    into.append(value)
+                for into, value in zip(gaps, gap, strict=True):
+                    into.append(value)  # type: ignore[attr-defined]
                 weights.append(weight)
                 turns.append(turn)
                 names.append(joint.name)
         m = len(names)
-        self._k = np.array(constant, dtype=np.complex128)
-        self._C = np.array(arms, dtype=np.complex128).reshape(m, self.count)
-        self._S = np.array(free, dtype=np.float64).reshape(m, self.trees)
+        self._k = np.array(gaps[0], dtype=np.complex128)
+        self._C = np.array(gaps[1], dtype=np.complex128).reshape(m, self.count)
+        self._S = np.array(gaps[2], dtype=np.float64).reshape(m, self.trees)
         self._w = np.array(weights, dtype=np.complex128)
         self._turn = np.array(turns, dtype=np.intp)
         self.names: list[str] = names

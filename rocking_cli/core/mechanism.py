@@ -234,7 +234,8 @@ class Mechanism(Described, ABC):
             if not self.has_mass:
                 key = "loads" if self.loads else "ties" if self.ties else "interlock"
                 raise Refused((), key, "the structure has no masses: give density and depth, or its mass")
-            limits = {direction: self.limit(direction) for direction in self.directions}
+            tied = [thing for _, thing in self._hung if springs_of(thing)]
+            limits = {direction: self.limit(direction) for direction in self.directions} if tied else {}
             follow = {direction: partial(self.followed, direction=direction) for direction in Direction}
             for loc, thing in self._hung:
                 check_stretched(loc, thing, follow, limits)
@@ -377,6 +378,10 @@ class Mechanism(Described, ABC):
         """Of bodies that stand for several which move alike: how many, by their names; by default none does."""
         return {}
 
+    def piece(self, body: str, at: complex) -> str:
+        """The body that a point is on, of one that is in pieces where it cracked; by default none is."""
+        return body
+
     def carries(self) -> Sequence[Attached]:
         """What hangs on it by its own fields, such as the floor on a wall, beside loads and ties; by default none."""
         return ()
@@ -465,7 +470,7 @@ class Mechanism(Described, ABC):
         own: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if not self._is_laden:
             return own
-        carrier = Carrier.of(self.bodies(), self.sketch(), self.alike())
+        carrier = Carrier.of(self.bodies(), self.sketch(), self.alike(), self.piece)
         taken = [*(thing.name for _, thing in own), *([INTERLOCK] if self.interlock is not None else [])]
         found = [*own, *attach(carrier, self.loads or [], self.ties or [], taken)]
         if self.interlock is not None:

@@ -35,7 +35,7 @@ def _models() -> dict[str, type[Site]]:
 
 def control_at(mechanism: Mechanism, x: float, y: float, body: str | None) -> Control:
     """A control point of a body, which may be left out where there is one. Raises `InputError` if it is not on it."""
-    carrier = Carrier.of(mechanism.bodies(), mechanism.sketch(), mechanism.alike())
+    carrier = Carrier.of(mechanism.bodies(), mechanism.sketch(), mechanism.alike(), mechanism.piece)
     try:
         spot = carrier.spot(body, complex(x, y), (), "control")
     except Refused as error:

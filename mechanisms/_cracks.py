@@ -1,0 +1,274 @@
+"""Bodies that crack where it takes least: where they may be cut, and what becomes of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Literal, NamedTuple, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from mechanisms._members import Shape
+from mechanisms._polygons import Points, area_of, distance, inside
+from mechanisms._sides import Connection, Side
+from rocking_cli.core import Direction, Reals, Vertex, geometry_error, quantity
+from rocking_cli.core.fields import Described, Name
+
+SCAN = 24  # places of a crack at which it is looked for first; of two, of either
+EDGE = 1e-6  # of its line: as near to its ends as a crack may come
+SAME_PLACE = 1e-5  # of its line: the cracks of both directions that are nearer are one
+FINE = 1e-9  # of its line: how near to the least it is sought
+
+
+class Crack(Described):
+    """A cut through a body that may be anywhere along a line."""
+
+    body: Name = Field(description="the body that it cuts, a polygon")
+    along: Annotated[list[Vertex], Field(min_length=2, max_length=2)] = quantity(
+        "from where to where it may be, two points", unit="m", example=[[0.0, 0.5], [0.0, 6.0]]
+    )
+    cut: Literal["horizontal", "vertical"] = Field("horizontal", description="which way it runs through the body")
+
+    @model_validator(mode="after")
+    def _runs(self) -> Self:
+        one, other = (self.level_of(complex(*point)) for point in self.along)
+        if one == other:
+            way = "height" if self.cut == "horizontal" else "x"
+            raise geometry_error("along", f"both ends have the same {way}: a {self.cut} crack has no room there")
+        return self
+
+    def level_of(self, z: complex) -> float:
+        """How high, or how far to the right, a point is [m]."""
+        return z.imag if self.cut == "horizontal" else z.real
+
+    def level(self, share: float) -> float:
+        """Where it is at a share of its line [m]."""
+        one, other = (self.level_of(complex(*point)) for point in self.along)
+        return one + share * (other - one)
+
+    @property
+    def sides(self) -> tuple[str, str]:
+        """What its pieces are called."""
+        return ("below", "above") if self.cut == "horizontal" else ("left of", "right of")
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """What its ends are called, in the order of x or y."""
+        return ("left", "right") if self.cut == "horizontal" else ("bottom", "top")
+
+    def enlarged(self, factor: float) -> Crack:
+        """The same crack of a structure of another size."""
+        return self.model_copy(update={"along": [[factor * each for each in point] for point in self.along]})
+
+
+class Halves(NamedTuple):
+    """The two pieces of a polygon, and the ends of the cut between them."""
+
+    low: Points
+    high: Points
+    ends: tuple[complex, complex]
+
+
+def halves(corners: Points, level: float, *, level_cut: bool) -> Halves | None:
+    """A polygon cut in two at a height, or at an x; None where the cut does not go through it once."""
+    height: Reals = (corners.imag if level_cut else corners.real) - level
+    low: list[complex] = []
+    high: list[complex] = []
+    ends: list[complex] = []
+    for k, z in enumerate(corners):
+        following = (k + 1) % len(corners)
+        if height[k] == 0:
+            return None
+        (low if height[k] < 0 else high).append(complex(z))
+        if height[k] * height[following] < 0:
+            on = complex(z + (corners[following] - z) * height[k] / (height[k] - height[following]))
+            on = complex(on.real, level) if level_cut else complex(level, on.imag)
+            low.append(on)
+            high.append(on)
+            ends.append(on)
+    if len(ends) != 2:
+        return None
+    one, other = sorted(ends, key=lambda z: z.real if level_cut else z.imag)
+    return Halves(np.array(low), np.array(high), (one, other))
+
+
+class Cracked(NamedTuple):
+    """A structure whose cracks are somewhere.
+
+    Parameters
+    ----------
+    shapes : mapping of str to Shape
+        The bodies, with the pieces of those that are cut.
+    sides : mapping of Direction to Side
+        The joints, which name pieces and points.
+    pieces : mapping of str to sequence of str
+        The pieces of each body that is cut.
+    """
+
+    shapes: Mapping[str, Shape]
+    sides: Mapping[Direction, Side]
+    pieces: Mapping[str, Sequence[str]]
+
+    def piece(self, body: str, at: complex) -> str:
+        """The piece of a body that a point is on, or nearest to; the body itself where it is whole."""
+        z = np.array([at])
+        names = self.pieces.get(body, [body])
+        return (
+            min(names, key=lambda piece: float(_away(z, np.array(self.shapes[piece].corners)))) if names[1:] else body
+        )
+
+
+def active(side: Side, cracks: Mapping[str, Crack]) -> list[str]:
+    """The cracks that a side speaks of; the others are closed in its direction."""
+    words = [side.lead, *(each.at for each in side.joints.values() if isinstance(each.at, str))]
+    words += [name for each in side.joints.values() for name in each.bodies]
+    return [
+        name for name in cracks if any(word.split(" ")[-1] == name or word.startswith(f"{name} ") for word in words)
+    ]
+
+
+def cracked(
+    shapes: Mapping[str, Shape],
+    sides: Mapping[Direction, Side],
+    cracks: Mapping[str, Crack],
+    shares: Mapping[Direction, Mapping[str, float]],
+) -> Cracked:
+    """A structure with its cracks at shares of their lines, in each direction. Raises the error of a field."""
+    levels = {d: {name: cracks[name].level(share) for name, share in of.items()} for d, of in shares.items()}
+    _join_equal(levels, cracks)
+    made, pieces, ends = dict(shapes), dict[str, Sequence[str]](), dict[tuple[str, float], tuple[complex, complex]]()
+    for body in dict.fromkeys(crack.body for crack in cracks.values()):
+        own = {name: crack for name, crack in cracks.items() if crack.body == body}
+        cuts = sorted({level for of in levels.values() for name, level in of.items() if name in own})
+        if not cuts:
+            continue
+        rest, names = np.array(shapes[body].corners), []
+        whole = abs(area_of(rest))
+        flat = next(iter(own.values())).cut == "horizontal"
+        for k, level in enumerate(cuts):
+            cut = halves(rest, level, level_cut=flat)
+            if cut is None:
+                at = f"{'y' if flat else 'x'} = {level:.4g} m"
+                why = f"at {at} it does not cut {body} in two: a crack goes through it once"
+                raise geometry_error(("cracks", next(iter(own)), "along"), why)
+            names.append(f"{body} {k + 1}")
+            made[names[-1]] = _piece(shapes[body], cut.low, whole)
+            ends[body, level] = cut.ends
+            rest = cut.high
+        names.append(f"{body} {len(cuts) + 1}")
+        made[names[-1]] = _piece(shapes[body], rest, whole)
+        del made[body]
+        pieces[body] = names
+    found = Cracked(made, {}, pieces)
+    told = {d: _Names(cracks, levels[d], found, ends).side(side) for d, side in sides.items()}
+    return found._replace(sides=told)
+
+
+def _join_equal(levels: dict[Direction, dict[str, float]], cracks: Mapping[str, Crack]) -> None:
+    """Cracks of both directions at one place but for rounding are at one place."""
+    known: dict[str, list[float]] = {}
+    for of in levels.values():
+        for name, level in of.items():
+            span = abs(cracks[name].level(1.0) - cracks[name].level(0.0))
+            near = [
+                other for other in known.setdefault(cracks[name].body, []) if abs(other - level) < SAME_PLACE * span
+            ]
+            of[name] = near[0] if near else level
+            known[cracks[name].body].append(of[name])
+
+
+def _piece(shape: Shape, corners: Points, whole: float) -> Shape:
+    changed: dict[str, object] = {"polygon": [[z.real, z.imag] for z in corners.tolist()]}
+    if shape.mass is not None:
+        changed["mass"] = shape.mass * abs(area_of(corners)) / whole
+    return shape.model_copy(update=changed)
+
+
+class _Names(NamedTuple):
+    """What the names of a side mean where the cracks are."""
+
+    cracks: Mapping[str, Crack]
+    levels: Mapping[str, float]
+    made: Cracked
+    ends: Mapping[tuple[str, float], tuple[complex, complex]]
+
+    def side(self, side: Side) -> Side:
+        """The side with pieces and points, and what is closed in its direction."""
+        joints: dict[str, Connection] = {}
+        for name, each in side.joints.items():
+            changed: dict[str, object] = {}
+            at = self._point(each.at, name) if isinstance(each.at, str) else each.at
+            if at is not None:
+                changed["at"] = at
+            for key in ("pivot", "hinge", "slide", "fixed"):
+                value = getattr(each, key)
+                if isinstance(value, str):
+                    changed[key] = self._piece(value, at)
+                elif value is not None:
+                    changed[key] = [self._piece(body, at) for body in value]
+            joints[name] = each.model_copy(update=changed)
+        for body, names in self.made.pieces.items():
+            open_here = {level for crack, level in self.levels.items() if self.cracks[crack].body == body}
+            cuts = sorted(level for own, level in self.ends if own == body)
+            for k, level in enumerate(cuts):
+                if level not in open_here:
+                    joints[f"{names[k]}, {names[k + 1]}"] = Connection(fixed=[names[k], names[k + 1]])
+        return side.model_copy(update={"lead": self._piece(side.lead, None), "joints": joints})
+
+    def _point(self, text: str, joint: str) -> list[float]:
+        """The end of a crack."""
+        for name, level in self.levels.items():
+            crack = self.cracks[name]
+            for end, at in zip(crack.ends, self.ends[crack.body, level], strict=True):
+                if text == f"{name} {end}":
+                    return [at.real, at.imag]
+        known = [f"{name} {end}" for name, crack in self.cracks.items() for end in crack.ends]
+        raise geometry_error(("joints", joint, "at"), f"is a point [x, y], or one of {', '.join(known)}; got {text!r}")
+
+    def _piece(self, name: str, at: object) -> str:
+        """A piece by its name: `wall below K`; a body that is cut, by where its joint is."""
+        for crack, level in self.levels.items():
+            body = self.cracks[crack].body
+            for k, side in enumerate(self.cracks[crack].sides):
+                if name == f"{body} {side} {crack}":
+                    cuts = sorted(own for other, own in self.ends if other == body)
+                    return self.made.pieces[body][cuts.index(level) + k]
+        return self.made.piece(name, complex(*at)) if isinstance(at, list) else name
+
+
+def _away(z: Points, corners: Points) -> float:
+    """How far a point is from a polygon; 0 within."""
+    return 0.0 if inside(z, corners)[0] else float(distance(z, corners)[0])
+
+
+def weakest(lambda_at: Callable[[Mapping[str, float]], float], names: Sequence[str]) -> dict[str, float]:
+    """The shares along their lines at which one or two cracks give the least lambda.
+
+    Parameters
+    ----------
+    lambda_at : callable
+        Uplift acceleration with the cracks at some shares; infinite where they leave no mechanism.
+    names : sequence of str
+        The cracks.
+    """
+    from scipy.optimize import Bounds, minimize, minimize_scalar
+
+    shares = (np.arange(SCAN) + 0.5) / SCAN
+    if len(names) == 1:
+        values = np.array([lambda_at({names[0]: float(share)}) for share in shares])
+        k = int(values.argmin())
+        low = EDGE if k == 0 else float(shares[k - 1])
+        high = 1 - EDGE if k == SCAN - 1 else float(shares[k + 1])
+        found = minimize_scalar(
+            lambda share: lambda_at({names[0]: float(share)}), bounds=(low, high), method="bounded",
+            options={"xatol": FINE},
+        )  # fmt: skip
+        return {names[0]: float(found.x)}
+    coarse = shares[::2]
+    grid = [(float(one), float(other)) for one in coarse for other in coarse]
+    start = min(grid, key=lambda pair: lambda_at(dict(zip(names, pair, strict=True))))
+    result = minimize(
+        lambda pair: lambda_at(dict(zip(names, (float(each) for each in pair), strict=True))), start,
+        method="Nelder-Mead", bounds=Bounds([EDGE] * 2, [1 - EDGE] * 2), options={"xatol": FINE, "fatol": 0.0},
+    )  # fmt: skip
+    return dict(zip(names, (float(each) for each in result.x), strict=True))
