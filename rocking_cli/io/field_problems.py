@@ -14,6 +14,13 @@ from rocking_cli.io.yaml_file import Document, Place, spell
 from rocking_cli.text import cut, did_you_mean
 
 
+OF_KIND: Any = {
+    "float_type": (), "int_type": (), "string_type": (), "literal_error": (), "list_type": (), "model_type": (),
+    "dict_type": (), list: ("list_type",), dict: ("model_type", "dict_type"),
+}  # fmt: skip
+"""The errors that say of what kind a value must be, and which of them a list or a mapping is not."""
+
+
 def problems(
     document: Document, model: type[BaseModel], errors: Iterable[ErrorDetails], *, owner: str, lister: str
 ) -> list[Problem]:
@@ -76,14 +83,19 @@ def place_of(data: Any, error: ErrorDetails) -> Place:
 
 def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) -> bool:
     """Whether an error speaks of the branch of a union that the user meant: of a mapping, not that it is no number."""
-    if error["type"] not in ("float_type", "int_type"):
+    if error["type"] not in OF_KIND:
         return True
     place = place_of(data, error)
     given = data
     for part in place:
         given = given.get(part) if isinstance(given, dict) else given[part]
-    others = (place_of(data, each) for each in errors if each["type"] not in ("float_type", "int_type"))
-    return not (isinstance(given, dict) and any(each[: len(place)] == place for each in others))
+    if isinstance(given, str):
+        others = {each["type"] for each in errors if place_of(data, each) == place}
+        return error["type"] not in ("model_type", "dict_type", "list_type") or "literal_error" not in others
+    if not isinstance(given, dict | list) or error["type"] in OF_KIND[type(given)]:
+        return True
+    found = [(each["type"], place_of(data, each)) for each in errors]
+    return not any(at[: len(place)] == place and (kind not in OF_KIND or len(at) > len(place)) for kind, at in found)
 
 
 def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
