@@ -1,0 +1,32 @@
+"""The limit analysis of an assembly of rigid blocks: its weakest mechanism, and how far that one is valid.
+
+Blocks touch along joints that bear no tension. `contacts` finds the joints, `collapse` the multiplier of the weakest
+mechanism and its velocities, `friction` what friction that needs, `linkage` its groups and hinges, `thrust` the line of
+thrust, and `Displaced` whether the joints still carry the forces once it has moved.
+"""
+
+from mechanisms._assembly.blocks import Block as Block
+from mechanisms._assembly.blocks import Contact as Contact
+from mechanisms._assembly.blocks import Guide as Guide
+from mechanisms._assembly.contacts import contacts as contacts
+from mechanisms._assembly.displaced import Admissible as Admissible
+from mechanisms._assembly.displaced import Displaced as Displaced
+from mechanisms._assembly.displaced import first_violation as first_violation
+from mechanisms._assembly.faults import AssemblyFault as AssemblyFault
+from mechanisms._assembly.faults import ContactFault as ContactFault
+from mechanisms._assembly.faults import DoesNotStand as DoesNotStand
+from mechanisms._assembly.faults import NoAnswer as NoAnswer
+from mechanisms._assembly.faults import NothingMoves as NothingMoves
+from mechanisms._assembly.friction import Friction as Friction
+from mechanisms._assembly.friction import friction as friction
+from mechanisms._assembly.leading import leading as leading
+from mechanisms._assembly.limit import Collapse as Collapse
+from mechanisms._assembly.limit import Shared as Shared
+from mechanisms._assembly.limit import collapse as collapse
+from mechanisms._assembly.mechanism import Hinge as Hinge
+from mechanisms._assembly.mechanism import Linkage as Linkage
+from mechanisms._assembly.mechanism import Opening as Opening
+from mechanisms._assembly.mechanism import linkage as linkage
+from mechanisms._assembly.thrust import Passage as Passage
+from mechanisms._assembly.thrust import Thrust as Thrust
+from mechanisms._assembly.thrust import thrust as thrust

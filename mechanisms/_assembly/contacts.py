@@ -1,0 +1,155 @@
+"""Where blocks touch: the common parts of their edges.
+
+A gap counts relative to the smaller of the two blocks: a drawing in millimetres must keep its joints, and a building
+of many blocks must not be joined across what is an open gap to each of them. The ground may be drawn at any size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from mechanisms._assembly.blocks import Block, Contact
+from mechanisms._assembly.faults import ContactFault, listed
+from mechanisms._polygons import Points, distance, overlap, size_of
+
+GAP = 2e-3  # of the smaller block: 2 mm of a voussoir of width and height .5 m each
+PARALLEL = 0.05  # sine of the angle of two edges that may still lie on each other
+LEVEL = 1e-6  # upward part of a normal that is none
+
+Piece = tuple[complex, complex]  # from its start to its end the second body is on the left
+
+
+def contacts(
+    blocks: Sequence[Block],
+    ground: Sequence[Block],
+    *,
+    gap: float = GAP,
+    friction: float | None = None,
+    per_pair: Mapping[tuple[str, str], float | None] | None = None,
+) -> list[Contact]:
+    """All joints of an assembly.
+
+    Parameters
+    ----------
+    blocks : sequence of Block
+        What can move.
+    ground : sequence of Block
+        What cannot; parts of the ground may overlap each other.
+    gap : float
+        How far edges that touch may be apart, over width and height together of the smaller block.
+    friction : float, optional
+        Coefficient of friction of every joint; None: none slides.
+    per_pair : mapping, optional
+        The same of the joints of two bodies, named in either order.
+
+    Returns
+    -------
+    list of Contact
+        In the order of the bodies, the ground last. Collinear parts between the same two bodies are one joint, from
+        the first end to the last; a corner on an edge is none.
+
+    Raises
+    ------
+    ContactFault
+        If names are used twice, blocks overlap or touch nothing, or `per_pair` names two that do not touch.
+    """
+    bodies = [*blocks, *ground]
+    names = [body.name for body in bodies]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ContactFault(f"more than one body is called {listed(twice)}", twice)
+    outlines = [body.outline for body in bodies]
+    sizes = [size_of(z) if k < len(blocks) else np.inf for k, z in enumerate(outlines)]
+    found: list[Contact] = []
+    for i, j in _near(outlines, gap * max(sizes[: len(blocks)], default=0.0)):
+        if i >= len(blocks):
+            continue  # ground on ground
+        tolerance = gap * min(sizes[i], sizes[j])
+        if overlap(outlines[i], outlines[j], tolerance):
+            raise ContactFault(f"{listed([names[i], names[j]])} overlap", (names[i], names[j]))
+        for start, end in _merged(_pieces(outlines[i], outlines[j], tolerance), tolerance):
+            normal = 1j * (end - start) / abs(end - start)
+            joint = Contact(names[i], names[j], start, end, normal, friction)
+            joint = replace(joint, faces=_faces(joint, outlines[i], outlines[j], tolerance))
+            bears = j >= len(blocks) or normal.imag < -LEVEL  # the ground, or the lower of the two
+            found.append(joint.turned() if bears else joint)
+    _all_touch(blocks, found)
+    return _with_friction(found, per_pair or {})
+
+
+def _near(outlines: Sequence[Points], margin: float) -> list[tuple[int, int]]:
+    """Pairs of outlines whose boxes are within a margin, in order."""
+    low = np.array([[z.real.min(), z.imag.min()] for z in outlines]).reshape(-1, 2) - margin
+    high = np.array([[z.real.max(), z.imag.max()] for z in outlines]).reshape(-1, 2)
+    meet = np.asarray((low[:, None] <= high[None]).all(axis=2))
+    meet &= meet.T
+    return [(i, j) for i, j in combinations(range(len(outlines)), 2) if meet[i, j]]
+
+
+def _pieces(one: Points, other: Points, tolerance: float) -> list[Piece]:
+    """The common parts of edges of two outlines, halfway between where they are drawn."""
+    da, db = np.roll(one, -1) - one, np.roll(other, -1) - other
+    ua, ub = da / np.abs(da), db / np.abs(db)
+    product = ua.conj()[:, None] * ub
+    i, j = np.nonzero((product.real < 0) & (np.abs(product.imag) <= PARALLEL))
+    if i.size == 0:
+        return []
+    a, b, da, db = one[i], other[j], da[i], db[j]
+    t = (db - da) / np.abs(db - da)  # along both, the longer counts more
+    # An edge of one outline runs against t, one of the other with it.
+    a0, a1 = (t.conj() * a).real, (t.conj() * (a + da)).real
+    b0, b1 = (t.conj() * b).real, (t.conj() * (b + db)).real
+    low, high = np.maximum(a1, b0), np.minimum(a0, b1)
+    start_a, end_a = (a + (low - a0) / (a1 - a0) * da, a + (high - a0) / (a1 - a0) * da)
+    start_b, end_b = (b + (low - b0) / (b1 - b0) * db, b + (high - b0) / (b1 - b0) * db)
+    touch = (high - low > tolerance) & (np.abs(start_a - start_b) <= tolerance) & (np.abs(end_a - end_b) <= tolerance)
+    starts, ends = (start_a + start_b) / 2, (end_a + end_b) / 2
+    return [(complex(s), complex(e)) for s, e in zip(starts[touch], ends[touch], strict=True)]
+
+
+def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
+    """Pieces that lie on one line as one, from the first end to the last: what is rigid bears at both."""
+    joined: list[Piece] = []
+    for piece in sorted(pieces, key=lambda p: -abs(p[1] - p[0])):
+        for k, other in enumerate(joined):
+            along = (other[1] - other[0]) / abs(other[1] - other[0])
+            away = [(z - other[0]) * along.conjugate() for z in (*piece, *other)]
+            ways = (piece[1] - piece[0]).real * along.real + (piece[1] - piece[0]).imag * along.imag
+            if ways > 0 and max(abs(z.imag) for z in away) <= tolerance:
+                places = sorted(zip((z.real for z in away), range(4), strict=True))
+                ends = [*piece, *other]
+                joined[k] = ends[places[0][1]], ends[places[-1][1]]
+                break
+        else:
+            joined.append(piece)
+    return joined
+
+
+def _faces(joint: Contact, one: Points, other: Points, tolerance: float) -> tuple[str, str]:
+    """At each end the body whose face goes on beyond it; empty where both or neither do."""
+    found = []
+    for end, way in ((joint.start, -1), (joint.end, 1)):
+        beyond = np.array([end + way * 3 * tolerance * (joint.end - joint.start) / joint.length])
+        on = [bool(distance(beyond, z)[0] <= tolerance) for z in (one, other)]
+        found.append((joint.a if on[0] else joint.b) if on[0] != on[1] else "")
+    return found[0], found[1]
+
+
+def _all_touch(blocks: Sequence[Block], found: Sequence[Contact]) -> None:
+    touched = {name for joint in found for name in (joint.a, joint.b)}
+    loose = [block.name for block in blocks if block.name not in touched]
+    if loose:
+        verb = "touches" if len(loose) == 1 else "touch"
+        raise ContactFault(f"{listed(loose)} {verb} nothing along an edge: a corner on an edge is no joint", loose)
+
+
+def _with_friction(found: list[Contact], per_pair: Mapping[tuple[str, str], float | None]) -> list[Contact]:
+    given = {frozenset(pair): value for pair, value in per_pair.items()}
+    missing = [pair for pair in per_pair if frozenset(pair) not in {frozenset((c.a, c.b)) for c in found}]
+    if missing:
+        raise ContactFault(f"{listed(missing[0])} have no joint that could be given a friction", missing[0])
+    return [replace(c, friction=given.get(frozenset((c.a, c.b)), c.friction)) for c in found]

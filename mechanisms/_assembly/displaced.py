@@ -1,0 +1,194 @@
+"""Whether the forces of a displaced mechanism can pass through the joints that are left.
+
+A joint that stays closed bears at both its ends, one that hinges at one, one that opens at none. The forces on the
+blocks, inertia among them, must be balanced by normal forces that are at least zero and by shear; where they are not,
+another joint would have opened, and the mechanism is no longer the one that moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.faults import NoAnswer
+from mechanisms._assembly.mechanism import Opening
+from mechanisms._assembly.programme import least
+from mechanisms._assembly.rays import Bearing, Bearings, Frame, scaled
+from rocking_cli.core import Reals
+
+BALANCED = 1e-6  # of the weight: forces that joints need not carry may be no more, or they are not in balance
+RANK = 1e-10  # of the largest singular value
+HELD = 1e-9  # of the weight: a tension that counts as none
+STEPS = 64  # in which a first violation is looked for
+
+Placed = Mapping[str, tuple[complex, float]]
+
+
+@dataclass(frozen=True)
+class Admissible:
+    """Whether forces can be carried.
+
+    Parameters
+    ----------
+    margin : float
+        The greatest share of the weight that each normal force, and with friction each edge of a cone, can at least
+        have at once, at most 1; below zero it is the tension that is missing.
+    contact : int or None
+        The joint that decides it: the one that opens first; None if none does.
+    """
+
+    margin: float
+    contact: int | None
+
+    @property
+    def holds(self) -> bool:
+        """Whether there is no tension."""
+        return self.margin >= -HELD
+
+
+@dataclass(frozen=True)
+class Displaced:
+    """An assembly whose mechanism has moved.
+
+    Parameters
+    ----------
+    blocks, contacts, guides
+        The assembly at rest.
+    states : sequence of Opening
+        What each joint does in the mechanism; none may slide.
+    moved : mapping of str to (complex, float)
+        Where the centroid of each block is now [m], and by how much it has turned [rad, anticlockwise]; a block that
+        is not named rests.
+    weight : float
+        The force that margins are shares of [N].
+    """
+
+    blocks: Sequence[Block]
+    contacts: Sequence[Contact]
+    guides: Sequence[Guide]
+    states: Sequence[Opening]
+    moved: Placed
+    weight: float
+
+    @cached_property
+    def frame(self) -> Frame:
+        """The blocks where they are."""
+        rest = Frame.of(self.blocks)
+        return Frame(rest.names, tuple(self.moved.get(b.name, (b.centroid, 0.0))[0] for b in self.blocks), rest.size)
+
+    def carry(self, name: str, point: complex) -> complex:
+        """Where a point of a body is now [m]."""
+        if name not in self.moved:
+            return point
+        q, psi = self.moved[name]
+        rest = next(block.centroid for block in self.blocks if block.name == name)
+        return complex(q + np.exp(1j * psi) * (point - rest))
+
+    def turn(self, name: str) -> complex:
+        """By how much a body has turned, as a factor."""
+        return complex(np.exp(1j * self.moved[name][1])) if name in self.moved else 1 + 0j
+
+    @cached_property
+    def bearings(self) -> Bearings:
+        """The joints that are left, where they are."""
+        found = []
+        for k, (contact, state) in enumerate(zip(self.contacts, self.states, strict=True)):
+            if state is Opening.SLIDES:
+                raise ValueError(f"the joint of {contact.a!r} and {contact.b!r} slides")
+            if state is Opening.LIFTED:
+                continue
+            at = {Opening.START: [0], Opening.END: [1]}.get(state, [0, 1])
+            # Of a hinge the face that the corner bears on; both bodies of a closed joint have turned alike.
+            face = contact.face_at(at[0]) if len(at) == 1 else contact.a
+            points = tuple(self.carry(contact.a, contact.ends[end]) for end in at)
+            normal = contact.normal * self.turn(face)
+            found.append(Bearing(k, contact.a, contact.b, points, normal, contact.friction))
+        held = [Guide(g.name, g.body, self.carry(g.body, g.at), g.along) for g in self.guides]
+        return Bearings.of(self.frame, found, held)
+
+    @cached_property
+    def _split(self) -> tuple[Reals, Reals]:
+        """Forces on the blocks that joints can balance, and those that none can: two bases, by columns."""
+        basis, values, _ = np.linalg.svd(self.bearings.rates.T)
+        rank = int(np.count_nonzero(values > RANK * values[0]))
+        return basis[:, :rank], basis[:, rank:]
+
+    def multiplier(self, dead: Reals, live: Reals) -> float:
+        """The multiplier of `live` that holds the mechanism here, by virtual work; the two as of `collapse`."""
+        free = self._split[1]
+        if free.shape[1] != 1:
+            raise NoAnswer(f"the mechanism can move in {free.shape[1]} independent ways where it is, not in one")
+        work = [float(scaled(forces, self.frame, self.weight) @ free[:, 0]) for forces in (dead, live)]
+        return -work[0] / work[1]
+
+    def admissible(self, forces: Reals) -> list[Admissible]:
+        """Whether joints carry forces on the blocks.
+
+        Parameters
+        ----------
+        forces : ndarray, shape (..., blocks, 3)
+            Forces [N] and moments about the displaced centroid [N m] on each block, those of inertia among them; one
+            case after the other.
+
+        Returns
+        -------
+        list of Admissible
+            One for each case.
+
+        Raises
+        ------
+        NoAnswer
+            If the forces do work on the mechanism: they are not in balance.
+        """
+        n = len(self.blocks)
+        cases = np.array([scaled(each, self.frame, self.weight) for each in forces.reshape(-1, n, 3)])
+        able, free = self._split
+        largest = np.maximum(np.abs(cases).max(axis=1), 1.0)
+        off = np.abs(cases @ free).max(axis=1, initial=0.0) / largest
+        if (off > BALANCED).any():
+            raise NoAnswer(f"forces on the displaced blocks are off their balance by {off.max():.2g} of the weight")
+        cases = cases @ able @ able.T
+        rays = self.bearings.rays()
+        if len(rays.rates) == able.shape[1]:  # statics alone says what they are
+            values = -np.linalg.lstsq(rays.rates.T, cases.T, rcond=None)[0].T[:, rays.one_sided]
+            if values.shape[1] == 0:
+                return [Admissible(1.0, None)] * len(cases)
+            at = values.argmin(axis=1)
+            owner = rays.contact[rays.one_sided]
+            return [Admissible(min(float(v[k]), 1.0), int(owner[k])) for v, k in zip(values, at, strict=True)]
+        # Each one-sided ray is the margin and what it has above it.
+        equal = np.column_stack([able.T @ rays.rates.T, able.T @ rays.rates[rays.one_sided].sum(axis=0)])
+        cost, low = np.append(np.zeros(len(rays.rates)), -1.0), np.append(rays.low, -np.inf)
+        high = np.append(np.full(len(rays.rates), np.inf), 1.0)
+        answers = []
+        for case in cases:
+            found = least(cost, equal, -able.T @ case, low, high)
+            if found is None:
+                raise NoAnswer("no forces in the joints balance those on the displaced blocks")
+            blame = np.where(rays.one_sided, found.at_lower[:-1], 0.0)
+            decides = int(rays.contact[blame.argmax()]) if blame.max(initial=0.0) > HELD else None
+            answers.append(Admissible(-found.value, decides))
+        return answers
+
+
+def first_violation(margin: Callable[[float], float], end: float) -> float | None:
+    """Where a margin first falls below zero, from rest to `end`; None if it does not.
+
+    Looked for in steps and then bisected, to 1e-9 of `end`: an excursion between two steps is not seen.
+    """
+    low = 0.0
+    for high in np.linspace(0.0, end, STEPS + 1):
+        if margin(float(high)) < -HELD:
+            break
+        low = float(high)
+    else:
+        return None
+    high = float(high)
+    while high - low > 1e-9 * abs(end):
+        middle = (low + high) / 2
+        low, high = (low, middle) if margin(middle) < -HELD else (middle, high)
+    return high

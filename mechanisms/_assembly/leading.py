@@ -1,0 +1,27 @@
+"""By which group to measure a mechanism."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mechanisms._assembly.mechanism import STILL, Linkage
+from rocking_cli.core import Direction
+
+
+def leading(found: Linkage, direction: Direction) -> int | None:
+    """The group by which to measure a mechanism: on the ground, turning the right way, the fastest; None if none turns.
+
+    Those that hinge on what rests come first, of them those that turn clockwise in the positive direction; of groups
+    that turn equally fast the first.
+    """
+    turns = -int(direction) * found.velocity[:, 2]
+    most = float(np.abs(turns).max(initial=0.0))
+    grounded = {g for h in found.hinges if None in (h.one, h.other) for g in (h.one, h.other) if g is not None}
+    able = [k for k in range(len(turns)) if abs(turns[k]) > STILL * most]
+    if not able:
+        return None
+
+    def merit(k: int) -> tuple[bool, bool, float]:
+        return k in grounded, turns[k] > 0, round(float(abs(turns[k]) / most), 9)
+
+    return max(able, key=merit)

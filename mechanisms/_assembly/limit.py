@@ -1,0 +1,182 @@
+"""The least horizontal acceleration that sets an assembly in motion, and how it then moves.
+
+The multiplier lambda is the greatest for which forces in the joints balance every block (static theorem); the prices
+of that linear programme are the velocities of a mechanism of the same multiplier (kinematic theorem). Joints bear no
+tension. With friction, flow is associated: a joint that slides also opens, which over-estimates lambda.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.faults import DoesNotStand, NothingMoves, listed
+from mechanisms._assembly.problem import NOTHING, STRONGEST, Problem
+from mechanisms._assembly.rays import moving
+from mechanisms._assembly.unique import kept_rays, mechanisms_of, velocity_space
+from rocking_cli.core import Direction, Reals
+
+NOISE = 1e-11  # of the fastest velocity: a rate that is rounding
+
+
+@dataclass(frozen=True)
+class Shared:
+    """One of several mechanisms of the same multiplier.
+
+    Parameters
+    ----------
+    multiplier : float
+        Of its own.
+    velocity : ndarray, shape (blocks, 3)
+        See `Collapse`.
+    moves : tuple of str
+        The blocks that move in it.
+    """
+
+    multiplier: float
+    velocity: Reals
+    moves: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Collapse:
+    """The weakest mechanism of an assembly.
+
+    Parameters
+    ----------
+    multiplier : float
+        The greatest multiplier that forces in the joints carry.
+    kinematic : float
+        The same from the work on the velocities.
+    velocity : ndarray, shape (blocks, 3)
+        vx, vy of the centroid [m/s] and omega, anticlockwise [rad/s]; the fastest block turns by 1 rad/s, and where
+        none turns the fastest moves by 1 m/s.
+    opening : ndarray, shape (contacts, 2)
+        How fast each joint opens at its start and its end [m/s].
+    sliding : ndarray, shape (contacts,)
+        How fast `b` slides from start to end [m/s].
+    normal : ndarray, shape (contacts, 2)
+        Normal forces at both ends [N] in one of the states that carry the multiplier.
+    shear : ndarray, shape (contacts,)
+        Force on `b` from start to end [N] in that state.
+    guide : ndarray, shape (guides,)
+        Force of the ground on each guide, along i times its direction [N].
+    unique : bool
+        Whether no other mechanism has this multiplier.
+    several : tuple of Shared
+        If not unique: mechanisms that have it, of which the others are mixtures.
+    problem : Problem
+        What was solved.
+    """
+
+    multiplier: float
+    kinematic: float
+    velocity: Reals
+    opening: Reals
+    sliding: Reals
+    normal: Reals
+    shear: Reals
+    guide: Reals
+    unique: bool
+    several: tuple[Shared, ...]
+    problem: Problem
+
+
+def collapse(
+    blocks: Sequence[Block],
+    contacts: Sequence[Contact],
+    guides: Sequence[Guide] = (),
+    direction: Direction = Direction.POSITIVE,
+    *,
+    dead: Reals | None = None,
+    live: Reals | None = None,
+    gravity: float = 9.80665,
+) -> Collapse:
+    """The weakest mechanism of an assembly, and the multiplier that starts it.
+
+    Parameters
+    ----------
+    blocks : sequence of Block
+        What can move.
+    contacts : sequence of Contact
+        Its joints.
+    guides : sequence of Guide
+        Its supports that hold both ways.
+    direction : Direction
+        Where it is thrown: positive to +x.
+    dead, live : ndarray, shape (blocks, 3), optional
+        Forces [N] and moments about the centroid [N m] on each block that are always there, and those per unit of the
+        multiplier; without, the weights, and the same to the side.
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    Collapse
+        With the velocities scaled, and one state of the forces.
+
+    Raises
+    ------
+    DoesNotStand
+        If no forces carry the dead forces alone, or nothing more than them.
+    NothingMoves
+        If they carry any multiplier.
+    NoAnswer
+        If the solver fails.
+    """
+    problem = Problem.of(blocks, contacts, guides, direction, dead=dead, live=live, gravity=gravity)
+    rays = problem.bearings.rays()
+    falls = problem.why_not(rays)
+    if falls:
+        raise DoesNotStand(f"it does not stand by itself: nothing holds {listed(falls)}", falls)
+    multiplier, forces, raw = problem.greatest(rays)
+    if multiplier >= STRONGEST * (1 - NOTHING):
+        raise NothingMoves("no acceleration sets it in motion", problem.frame.names)
+    if multiplier <= NOTHING:
+        falls = moving(problem.frame.names, raw, 1e-6)
+        verb = "moves" if len(falls) == 1 else "move"
+        raise DoesNotStand(f"it stands on an edge: with the least acceleration {listed(falls)} {verb}", falls)
+    kept = kept_rays(rays, problem.dead, problem.live, raw)
+    space = velocity_space(rays.rates[kept])
+    fields = mechanisms_of(rays, kept, space, raw)
+    several = tuple(_shared(problem, field) for field in fields) if len(fields) > 1 else ()
+    velocity = _sized(problem, fields[0])
+    rates = _rates(problem, velocity)
+    state = problem.weight * (forces @ rays.mix)
+    return Collapse(
+        multiplier,
+        _kinematic(problem, fields[0]),
+        velocity,
+        *problem.by_contact(rates)[:2],
+        *problem.by_contact(state),
+        len(fields) == 1,
+        several,
+        problem,
+    )
+
+
+def _kinematic(problem: Problem, field: Reals) -> float:
+    return -float(problem.dead @ field) / float(problem.live @ field)
+
+
+def _sized(problem: Problem, field: Reals) -> Reals:
+    """Velocities with units from those without, the fastest rotation 1."""
+    velocity = field.reshape(-1, 3) * np.array([problem.frame.size, problem.frame.size, 1.0])
+    turns = np.abs(velocity[:, 2]).max()
+    most = turns if turns > NOTHING * np.abs(field).max() else np.abs(velocity).max()
+    return np.asarray(velocity / most)
+
+
+def _rates(problem: Problem, velocity: Reals) -> Reals:
+    """How fast each joint opens and slides; what is rounding is nothing."""
+    rates: Reals = problem.bearings.rates @ (velocity * np.array([1.0, 1.0, problem.frame.size])).ravel()
+    return np.asarray(np.where(np.abs(rates) > NOISE * np.abs(velocity).max(), rates, 0.0))
+
+
+def _shared(problem: Problem, field: Reals) -> Shared:
+    live = float(problem.live @ field)
+    multiplier = _kinematic(problem, field) if abs(live) > NOTHING * np.abs(field).max() else np.nan
+    return Shared(multiplier, _sized(problem, field), moving(problem.frame.names, field, NOTHING))

@@ -1,0 +1,191 @@
+"""From velocities to a mechanism: which blocks move as one, which rest, and about which points they hinge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.limit import Collapse
+from mechanisms._assembly.parts import Parts
+from mechanisms._assembly.rays import Frame
+from mechanisms._assembly.unique import velocity_space
+from rocking_cli.core import Reals
+
+STILL = 1e-8  # of the fastest velocity: a rate that is none
+SAME_PLACE = 1e-6  # of the size of the whole: hinges that are one
+
+
+class Opening(Enum):
+    """What a joint does in a mechanism."""
+
+    CLOSED = "stays closed"
+    START = "hinges at its start"
+    END = "hinges at its end"
+    LIFTED = "opens at both ends"
+    SLIDES = "slides"
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """A point that two groups share, or a group and what rests.
+
+    Parameters
+    ----------
+    one, other : int or None
+        The two groups by their numbers, the one that bears the other first; None: what rests.
+    point : complex
+        Where it is at rest [m].
+    contact : int
+        The joint that opens about it.
+    """
+
+    one: int | None
+    other: int | None
+    point: complex
+    contact: int
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """A mechanism as a linkage of rigid groups.
+
+    Parameters
+    ----------
+    groups : tuple of tuple of str
+        Blocks that move as one.
+    rest : tuple of str
+        Blocks that do not move, and the ground bodies that joints name.
+    velocity : ndarray, shape (groups, 3)
+        Velocity of the point (0, 0) of each group [m/s], and its rotation, anticlockwise [rad/s].
+    hinges : tuple of Hinge
+        A point shared by k groups is k - 1 of them.
+    guides : tuple of Guide
+        Those of groups that move.
+    states : tuple of Opening
+        What each joint does.
+    freedom : int
+        In how many independent ways the linkage can move at first, its joints taken as two-sided; 1 if hinges, guides
+        and joints that slide are all that holds it.
+    """
+
+    groups: tuple[tuple[str, ...], ...]
+    rest: tuple[str, ...]
+    velocity: Reals
+    hinges: tuple[Hinge, ...]
+    guides: tuple[Guide, ...]
+    states: tuple[Opening, ...]
+    freedom: int
+
+    @property
+    def lifted(self) -> tuple[int, ...]:
+        """Joints that open at both ends."""
+        return tuple(k for k, state in enumerate(self.states) if state is Opening.LIFTED)
+
+    @property
+    def slides(self) -> tuple[int, ...]:
+        """Joints that slide: there is no rocking model of the mechanism."""
+        return tuple(k for k, state in enumerate(self.states) if state is Opening.SLIDES)
+
+
+def linkage(blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequence[Guide], found: Collapse) -> Linkage:
+    """The groups, hinges and guides of a mechanism.
+
+    Parameters
+    ----------
+    blocks, contacts, guides
+        The assembly.
+    found : Collapse
+        Its mechanism; where it is not unique, the first of the several.
+
+    Returns
+    -------
+    Linkage
+        Its groups in the order of their first blocks.
+    """
+    states = tuple(
+        _state(abs(o[0]), abs(o[1]), abs(s), c, STILL * np.abs(found.velocity).max())
+        for o, s, c in zip(found.opening, found.sliding, contacts, strict=True)
+    )
+    size = Frame.of(blocks).size
+    speed = np.abs(found.velocity * np.array([1.0, 1.0, size])).max(axis=1)
+    moves = {block.name: bool(v > STILL * speed.max()) for block, v in zip(blocks, speed, strict=True)}
+    parts = Parts([name for name, does in moves.items() if does])
+    for state, contact in zip(states, contacts, strict=True):
+        if state is Opening.CLOSED and moves.get(contact.a) and moves.get(contact.b):
+            parts.join(contact.a, contact.b)
+    groups = parts.all()
+    number = {name: k for k, group in enumerate(groups) for name in group}
+    ground = dict.fromkeys(name for c in contacts for name in (c.a, c.b) if name not in moves)
+    first = {group[0]: k for k, group in enumerate(groups)}
+    velocity = np.zeros((len(groups), 3))
+    for block, (vx, vy, omega) in zip(blocks, found.velocity, strict=True):
+        if block.name in first:
+            origin = complex(vx, vy) - 1j * omega * block.centroid
+            velocity[first[block.name]] = origin.real, origin.imag, omega
+    hinges = _hinges(contacts, states, number, SAME_PLACE * size)
+    held = tuple(guide for guide in guides if guide.body in number)
+    return Linkage(
+        tuple(groups),
+        (*(name for name, does in moves.items() if not does), *ground),
+        velocity,
+        hinges,
+        held,
+        states,
+        _freedom(groups, hinges, held, [(contacts[k], s) for k, s in enumerate(states)], number, size),
+    )
+
+
+def _state(start: float, end: float, slide: float, contact: Contact, still: float) -> Opening:
+    """What a joint does, by its rates; one with friction opens as it slides, by no more than that friction."""
+    dilates = (contact.friction or 0.0) * slide
+    if slide > still and min(start, end) <= dilates + still:
+        return Opening.SLIDES
+    if max(start, end) <= still:
+        return Opening.CLOSED
+    if min(start, end) > still:
+        return Opening.LIFTED
+    return Opening.START if start <= still else Opening.END
+
+
+def _hinges(
+    contacts: Sequence[Contact], states: Sequence[Opening], number: dict[str, int], near: float
+) -> tuple[Hinge, ...]:
+    """One hinge for each joint that opens about an end, but none that others at its place make already."""
+    places: list[tuple[complex, Parts]] = []
+    found = []
+    for k, (contact, state) in enumerate(zip(contacts, states, strict=True)):
+        if state not in (Opening.START, Opening.END):
+            continue
+        point = contact.start if state is Opening.START else contact.end
+        one, other = number.get(contact.a), number.get(contact.b)
+        if not any(abs(point - place) <= near for place, _ in places):
+            places.append((point, Parts([None, *range(len(number))])))
+        here = min(places, key=lambda place: abs(place[0] - point))[1]
+        if here.join(one, other):
+            found.append(Hinge(one, other, point, k))
+    return tuple(found)
+
+
+def _freedom(
+    groups: Sequence[tuple[str, ...]],
+    hinges: Sequence[Hinge],
+    guides: Sequence[Guide],
+    joints: Sequence[tuple[Contact, Opening]],
+    number: dict[str, int],
+    size: float,
+) -> int:
+    """Dimension of the velocities that keep hinges, guides and the direction in which joints slide."""
+    frame = Frame(tuple(str(k) for k in range(len(groups))), (0j,) * len(groups), size)
+    rows = [frame.rate(str(h.one), str(h.other), h.point, way) for h in hinges for way in (1 + 0j, 1j)]
+    rows += [frame.rate(None, str(number[g.body]), g.at, 1j * g.along / abs(g.along)) for g in guides]
+    for contact, state in joints:
+        if state is Opening.SLIDES:
+            a, b = (str(number.get(name)) for name in (contact.a, contact.b))
+            rows.append(frame.rate(a, b, contact.start, contact.normal))
+    if not rows:
+        return 3 * len(groups)
+    return int(velocity_space(np.array(rows)).shape[1])

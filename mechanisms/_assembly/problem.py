@@ -1,0 +1,86 @@
+"""An assembly as a linear programme: what its joints can exert, and what acts on its blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.faults import NothingMoves
+from mechanisms._assembly.programme import least
+from mechanisms._assembly.rays import Bearings, Frame, Rays, at_rest, moving, scaled
+from rocking_cli.core import Direction, Reals
+
+STRONGEST = 1e4  # multiplier beyond which nothing counts as moving
+NOTHING = 1e-9  # of the weight: a force that is none; of the multiplier: what is no more than none
+
+
+@dataclass(frozen=True)
+class Problem:
+    """An assembly and what acts on it, without units: moments over the size, forces over the weight."""
+
+    frame: Frame
+    bearings: Bearings
+    dead: Reals
+    live: Reals
+    weight: float
+
+    @classmethod
+    def of(
+        cls,
+        blocks: Sequence[Block],
+        contacts: Sequence[Contact],
+        guides: Sequence[Guide] = (),
+        direction: Direction = Direction.POSITIVE,
+        *,
+        dead: Reals | None = None,
+        live: Reals | None = None,
+        gravity: float = 9.80665,
+    ) -> Problem:
+        """The programme of blocks; see `collapse`."""
+        weights = np.array([block.mass for block in blocks]) * gravity
+        nothing = np.zeros_like(weights)
+        frame = Frame.of(blocks)
+        dead = np.column_stack([nothing, -weights, nothing]) if dead is None else dead
+        live = np.column_stack([int(direction) * weights, nothing, nothing]) if live is None else live
+        weight = float(max(np.abs(dead[:, :2]).sum(), np.abs(live[:, :2]).sum()))
+        if weight == 0:
+            raise NothingMoves("the blocks have no weight", frame.names)
+        bearings = Bearings.of(frame, at_rest(contacts), guides)
+        return cls(frame, bearings, scaled(dead, frame, weight), scaled(live, frame, weight), weight)
+
+    def greatest(self, rays: Rays) -> tuple[float, Reals, Reals]:
+        """The greatest multiplier, forces of the rays that carry it, and velocities that it does no work on."""
+        cost = np.append(np.zeros(len(rays.rates)), -1.0)
+        found = least(
+            cost,
+            np.column_stack([rays.rates.T, self.live]),
+            -self.dead,
+            np.append(rays.low, 0.0),
+            np.append(np.full(len(rays.rates), np.inf), STRONGEST),
+        )
+        if found is None:
+            return -np.inf, np.zeros(len(rays.rates)), np.zeros(len(self.dead))
+        return -found.value, found.x[:-1], -found.prices
+
+    def why_not(self, rays: Rays) -> tuple[str, ...]:
+        """The blocks that no forces hold at rest; none if it stands."""
+        n = len(self.dead)
+        extra = np.eye(n)
+        found = least(
+            np.append(np.zeros(len(rays.rates)), np.ones(2 * n)),
+            np.column_stack([rays.rates.T, extra, -extra]),
+            -self.dead,
+            np.append(rays.low, np.zeros(2 * n)),
+            np.full(len(rays.rates) + 2 * n, np.inf),
+        )
+        assert found is not None  # the extra forces balance anything
+        return moving(self.frame.names, found.prices, 1e-6) if found.value > NOTHING else ()
+
+    def by_contact(self, values: Reals) -> tuple[Reals, Reals, Reals]:
+        """What belongs to the two ends of every joint, to its shear, and to the guides."""
+        n = len(self.bearings.bearings)
+        joints = values[: 3 * n].reshape(n, 3)
+        return joints[:, :2], joints[:, 2], values[3 * n :]
