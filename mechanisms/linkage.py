@@ -12,17 +12,16 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from mechanisms import _faces as faces
 from mechanisms._cracks import EDGE, Crack, Cracked, active, cracked, weakest
+from mechanisms._membered import Membered
 from mechanisms._members import Member, Shape
 from mechanisms._sides import GROUND, Held, Side, mirrored
 from rocking_cli.core import (
-    Body,
     Direction,
     Extra,
     Guide,
     Hinge,
     Joint,
     LinkageMotion,
-    Mechanism,
     NoMotion,
     Outline,
     Reals,
@@ -52,7 +51,7 @@ EXAMPLE_SIDE = {
 }
 
 
-class Linkage(Mechanism):
+class Linkage(Membered):
     """Bodies and, for each direction, the joints that hold them."""
 
     mechanism: ClassVar[str] = "linkage"
@@ -89,7 +88,9 @@ class Linkage(Mechanism):
     @model_validator(mode="after")
     def _moves(self) -> Self:
         self._check_cracks()
-        self._check_masses()
+        if GROUND in self.members:
+            raise geometry_error(("bodies", GROUND), "is what joints call the ground: give it another name")
+        self._check_masses("bodies")
         sides = {direction: getattr(self, direction.label) for direction in Direction}
         for direction, side in sides.items():
             if isinstance(side, Side):
@@ -118,19 +119,6 @@ class Linkage(Mechanism):
             named = active(side, self.cracks or {})
             if len(named) > MOST_CRACKS:
                 raise geometry_error(direction.label, f"{', '.join(named)} are too many: one or two in a direction")
-
-    def _check_masses(self) -> None:
-        for name in self.members:
-            if name == GROUND:
-                raise geometry_error(("bodies", name), "is what joints call the ground: give it another name")
-        weighs = {name: each.weighs for name, each in self._members.items()}
-        if self.mass is None and any(weighs.values()) and not all(weighs.values()):
-            name = next(name for name, known in weighs.items() if not known)
-            raise geometry_error(
-                ("bodies", name), "has no mass, and others have: give the structure density and depth, or this its mass"
-            )
-        if self.mass is None and self.density is not None and not all(weighs.values()):
-            raise geometry_error("depth", "is missing: density needs the size out of plane")
 
     def _check_names(self, direction: Direction, side: Side) -> None:
         bodies = self._cracked.shapes
@@ -200,21 +188,6 @@ class Linkage(Mechanism):
         """The bodies with the masses that the file gives, or relative ones."""
         shapes = self._cracked.shapes
         return {name: shape.member(name, self.density, self.depth) for name, shape in shapes.items()}
-
-    @property
-    def has_mass(self) -> bool:
-        return self.mass is not None or all(each.weighs for each in self._members.values())
-
-    def total_mass(self) -> float | None:
-        """Its bodies have the masses of their density, or their own."""
-        return self.mass
-
-    def bodies(self) -> Sequence[Body]:
-        bodies = [each.body for each in self._members.values()]
-        if self.has_mass:
-            return bodies
-        total = sum(body.mass for body in bodies)
-        return [Body(b.name, b.mass / total, b.inertia / total, b.centroid, b.outline) for b in bodies]
 
     # Motion
 

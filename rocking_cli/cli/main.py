@@ -21,8 +21,8 @@ from rocking_cli.errors import CacheWarning, InputError, PluginWarning, RockingE
 from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
-    "draw", "equiv", "error", "record", "select", "respond", "margin", "verify", "survey", "design", "animate", "pulse",
-    "overturning", "spectrum", "equivalent", "fragility",
+    "draw", "equiv", "collapse", "error", "record", "select", "respond", "margin", "verify", "survey", "design",
+    "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
     "results", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
     "completion",
 )  # fmt: skip

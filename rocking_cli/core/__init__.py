@@ -8,6 +8,8 @@ from rocking_cli.core.bodies import annular_sector as annular_sector
 from rocking_cli.core.bodies import box as box
 from rocking_cli.core.bodies import polygon as polygon
 from rocking_cli.core.coefficients import Coefficients as Coefficients
+from rocking_cli.core.collapse import CollapseHinge as CollapseHinge
+from rocking_cli.core.collapse import CollapseMechanism as CollapseMechanism
 from rocking_cli.core.equivalence import Equivalence as Equivalence
 from rocking_cli.core.equivalence import EquivalentBlock as EquivalentBlock
 from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock

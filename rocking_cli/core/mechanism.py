@@ -19,13 +19,14 @@ from rocking_cli.core.attached import Attached, ConstantForce, Follow, PointMass
 from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
+from rocking_cli.core.collapse import CollapseMechanism
 from rocking_cli.core.crushing import Crushing, pressing
 from rocking_cli.core.extras import Extra
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.joints import Joint
-from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
+from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion
 from rocking_cli.core.loads import Load
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Outline, Sketch
@@ -370,6 +371,10 @@ class Mechanism(Described, ABC):
         """What a picture shows beside the bodies and their motion; optional, by default nothing."""
         return Sketch()
 
+    def _shapes(self) -> Sketch:
+        """What tells the shapes of its bodies, before anything hangs on them."""
+        return self.sketch()
+
     def joints(self, direction: Direction) -> Sequence[Joint]:
         """Where bodies bear on the ground and on one another, for the check of a history; by default unknown."""
         return ()
@@ -377,6 +382,19 @@ class Mechanism(Described, ABC):
     def alike(self) -> Mapping[str, int]:
         """Of bodies that stand for several which move alike: how many, by their names; by default none does."""
         return {}
+
+    def collapse(self, direction: Direction) -> CollapseMechanism | None:
+        """The weakest mechanism of a direction, of a structure that searched for it; by default none did."""
+        return None
+
+    def margins(
+        self, direction: Direction, phi: Reals, turning: Reals, rate: Reals, ground: Points
+    ) -> tuple[Reals, Sequence[str]] | None:
+        """How far the joints that do not move are from opening in states of motion, and which is nearest.
+
+        By default unknown. A margin below zero says that another mechanism would have begun.
+        """
+        return None
 
     def piece(self, body: str, at: complex) -> str:
         """The body that a point is on, of one that is in pieces where it cracked; by default none is."""
@@ -470,7 +488,7 @@ class Mechanism(Described, ABC):
         own: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if not self._is_laden:
             return own
-        carrier = Carrier.of(self.bodies(), self.sketch(), self.alike(), self.piece)
+        carrier = Carrier.of(self.bodies(), self._shapes(), self.alike(), self.piece)
         taken = [*(thing.name for _, thing in own), *([INTERLOCK] if self.interlock is not None else [])]
         found = [*own, *attach(carrier, self.loads or [], self.ties or [], taken)]
         if self.interlock is not None:

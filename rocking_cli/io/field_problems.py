@@ -13,7 +13,6 @@ from rocking_cli.errors import Problem
 from rocking_cli.io.yaml_file import Document, Place, spell
 from rocking_cli.text import cut, did_you_mean
 
-
 OF_KIND: Any = {
     "float_type": (), "int_type": (), "string_type": (), "literal_error": (), "list_type": (), "model_type": (),
     "dict_type": (), list: ("list_type",), dict: ("model_type", "dict_type"),

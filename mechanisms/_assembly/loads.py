@@ -1,0 +1,104 @@
+"""What acts on each block of an assembly: weights and inertia, of the blocks and of what hangs on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking_cli.core import Attached, Body, Direction, PointMass, Reals, RigidMotion, Spot
+from rocking_cli.core.attached import Follow, Path
+from rocking_cli.core.attachments import followed
+from rocking_cli.core.kinematics import Points
+
+
+@dataclass(frozen=True)
+class Going:
+    """How a mechanism goes in some states, shape (n,) each.
+
+    Parameters
+    ----------
+    turning : ndarray
+        phi.. [rad/s2].
+    rate : ndarray
+        phi. [rad/s].
+    ground : ndarray of complex
+        Ground acceleration u_g'' + i v_g'' [m/s2].
+    """
+
+    turning: Reals
+    rate: Reals
+    ground: Points
+
+
+def at_rest(
+    bodies: Sequence[Body], attached: Sequence[Attached], direction: Direction, gravity: float
+) -> tuple[Reals, Reals]:
+    """Forces and moments about the centroids always there, and those of 1 g sideways, shape (bodies, 3) each."""
+
+    def follow(spot: Spot) -> Path:
+        still = np.zeros(1, np.complex128)
+        return Path(still + spot.at, still, still)
+
+    still = Going(np.zeros(1), np.zeros(1), np.zeros(1, np.complex128))
+    resting = {body.name: _Resting() for body in bodies}
+    dead = _forces(bodies, resting, attached, direction, gravity, still, follow)[0]
+    pushed = Going(np.zeros(1), np.zeros(1), np.full(1, -int(direction) * gravity + 0j))
+    both = _forces(bodies, resting, attached, direction, gravity, pushed, follow)[0]
+    return dead, both - dead
+
+
+def under_way(
+    bodies: Sequence[Body], motions: Sequence[RigidMotion], attached: Sequence[Attached], direction: Direction,
+    gravity: float, going: Going,
+) -> Reals:  # fmt: skip
+    """Forces and moments about the displaced centroids, inertia among them, shape (n, bodies, 3)."""
+    by_name: Mapping[str, RigidMotion | _Resting] = {b.name: m for b, m in zip(bodies, motions, strict=True)}
+    follow = followed(bodies, motions, going.rate.shape)
+    return _forces(bodies, by_name, attached, direction, gravity, going, follow)
+
+
+class _Resting:
+    """A body that does not move."""
+
+    dpsi = ddpsi = 0.0
+
+    def carry(self, point: complex) -> tuple[complex, complex, complex]:
+        """A point of it."""
+        return point, 0j, 0j
+
+
+def _forces(
+    bodies: Sequence[Body], motions: Mapping[str, RigidMotion | _Resting], attached: Sequence[Attached],
+    direction: Direction, gravity: float, going: Going, follow: Follow,
+) -> Reals:  # fmt: skip
+    index = {body.name: k for k, body in enumerate(bodies)}
+    weight = going.ground + 1j * gravity
+    found = np.zeros((len(going.rate), len(bodies), 3))
+    centres = []
+    for k, body in enumerate(bodies):
+        motion = motions[body.name]
+        z, dz, ddz = motion.carry(body.centroid)
+        centres.append(z)
+        force = -body.mass * (dz * going.turning + ddz * going.rate**2 + weight)
+        found[:, k, 0], found[:, k, 1] = force.real, force.imag
+        found[:, k, 2] = -body.inertia * (motion.dpsi * going.turning + motion.ddpsi * going.rate**2)
+
+    def add(body: str | None, at: Points, force: Points) -> None:
+        if body is not None:
+            k = index[body]
+            found[:, k, 0] += force.real
+            found[:, k, 1] += force.imag
+            found[:, k, 2] += (np.conj(at - centres[k]) * force).imag
+
+    for thing in attached:
+        if isinstance(thing, PointMass):
+            z, dz, ddz = follow(thing.spot)
+            moved = dz * going.turning + ddz * going.rate**2
+            across = thing.mass * thing.horizontal * (moved.real + weight.real)
+            up = thing.mass * (thing.vertical * moved.imag + thing.weight * weight.imag)
+            add(thing.spot.body, z, -(across + 1j * up))
+        for push in thing.forces(direction, follow):
+            add(push.spot.body, follow(push.spot).z, push.force)
+    return found

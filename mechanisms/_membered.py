@@ -1,0 +1,46 @@
+"""What mechanisms have in common whose bodies are given one by one: their masses."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from mechanisms._members import Member
+from rocking_cli.core import Body, Mechanism, geometry_error
+
+
+class Membered(Mechanism):
+    """A mechanism of bodies that are given one by one."""
+
+    @property
+    @abstractmethod
+    def _members(self) -> Mapping[str, Member]:
+        """The bodies with the masses that the file gives, or relative ones."""
+
+    def _check_masses(self, field: str) -> None:
+        """Refuse bodies of which some have masses and others have not; `field` is where they are."""
+        weighs = {name: each.weighs for name, each in self._members.items()}
+        if self.mass is not None or all(weighs.values()):
+            return
+        if self.density is not None:
+            raise geometry_error("depth", "is missing: density needs the size out of plane")
+        if any(weighs.values()):
+            name = next(name for name, known in weighs.items() if not known)
+            why = "has no mass, and others have: give the structure density and depth, or this its mass"
+            raise geometry_error((field, name), why)
+
+    @property
+    def has_mass(self) -> bool:
+        return self.mass is not None or all(each.weighs for each in self._members.values())
+
+    def total_mass(self) -> float | None:
+        """Its bodies have the masses of their density, or their own."""
+        return self.mass
+
+    def bodies(self) -> Sequence[Body]:
+        bodies = [each.body for each in self._members.values()]
+        if self.has_mass:
+            return bodies
+        total = sum(body.mass for body in bodies)
+        return [replace(body, mass=body.mass / total, inertia=body.inertia / total) for body in bodies]

@@ -1,0 +1,467 @@
+"""An assembly of rigid blocks on the ground: its weakest mechanism in either direction, found and then rocked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Annotated, ClassVar, Self
+
+import numpy as np
+from pydantic import ConfigDict, Field, model_validator
+
+from mechanisms import _assembly as analysis
+from mechanisms._assembly.loads import Going, at_rest, under_way
+from mechanisms._membered import Membered
+from mechanisms._members import Member, Shape
+from mechanisms._polygons import fault_of
+from rocking_cli.core import (
+    CollapseHinge,
+    CollapseMechanism,
+    Direction,
+    Extra,
+    Guide,
+    Joint,
+    Line,
+    LinkageMotion,
+    NoMotion,
+    Pin,
+    Reals,
+    RigidMotion,
+    Sketch,
+    Vertex,
+    geometry_error,
+    point,
+    quantity,
+)
+from rocking_cli.core.fields import Described, Name
+from rocking_cli.core.kinematics import Points
+from rocking_cli.errors import MechanismError
+
+OTHERS = "others"
+
+Coefficient = Annotated[float, Field(ge=0, le=10)]
+EXAMPLE_BLOCKS = {
+    "left": {"polygon": [[0.0, 0.0], [0.8, 0.0], [0.8, 3.0], [0.0, 3.0]]},
+    "right": {"polygon": [[3.2, 0.0], [4.0, 0.0], [4.0, 3.0], [3.2, 3.0]]},
+    "lintel": {"polygon": [[0.0, 3.0], [4.0, 3.0], [4.0, 3.6], [0.0, 3.6]]},
+}
+EXAMPLE_GROUND = {"floor": {"polygon": [[-1.0, -0.5], [5.0, -0.5], [5.0, 0.0], [-1.0, 0.0]]}}
+
+
+class Ground(Described):
+    """What cannot move."""
+
+    polygon: list[Vertex] = quantity(
+        "corners [x, y] in order around it", unit="m", example=[[0.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0]],
+        min_length=3, max_length=10_000,
+    )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _is_a_polygon(self) -> Self:
+        if fault := fault_of(np.array(self.corners)):
+            raise geometry_error("polygon", fault)
+        return self
+
+    @property
+    def corners(self) -> tuple[complex, ...]:
+        """x + iy [m]."""
+        return tuple(complex(*vertex) for vertex in self.polygon)
+
+    def enlarged(self, factor: float) -> Ground:
+        """The same of a structure of another size."""
+        return self.model_copy(update={"polygon": [[factor * each for each in vertex] for vertex in self.polygon]})
+
+
+class Support(Described):
+    """What holds a point of a block sideways, both ways, such as a floor that a wall's top is tied to."""
+
+    slide: Name = Field(description="the block")
+    at: Vertex = point("the point of it")
+    along: Vertex = quantity("the direction in which it may move, [x, y]", example=[0.0, 1.0])
+
+    @model_validator(mode="after")
+    def _has_a_direction(self) -> Self:
+        if not any(self.along):
+            raise geometry_error("along", "is no direction: give [x, y], not both zero")
+        return self
+
+    def enlarged(self, factor: float) -> Support:
+        """The same of a structure of another size."""
+        return self.model_copy(update={"at": [factor * each for each in self.at]})
+
+
+class Leads(Described):
+    """The blocks whose rotation phi is."""
+
+    positive: Name | None = Field(None, description="in the positive direction")
+    negative: Name | None = Field(None, description="in the negative one")
+
+
+class Assembly(Membered):
+    """Rigid blocks that touch along joints without tension, on ground that does not move."""
+
+    mechanism: ClassVar[str] = "assembly"
+    title: ClassVar[str] = "assembly of rigid blocks, by its weakest mechanism"
+    source: ClassVar[str] = (
+        "Livesley (1978), limit analysis of rigid blocks; DeJong and Dimitrakopoulos (2014), Section 2"
+    )
+    verified: ClassVar[str] = "arches, portals and stacks by hand; static and kinematic multiplier; brute force"
+    caution: ClassVar[str] = (
+        "It rocks on the joints that open first, and only while no other opens: see `valid_to`. Where friction is "
+        "given, joints that slide also open (associated flow), which over-estimates lambda."
+    )
+
+    starter: ClassVar[tuple[str, ...]] = ("density", "depth")
+    model_config = ConfigDict(validate_by_name=True, validate_by_alias=True)
+
+    blocks: dict[Name, Shape] = Field(
+        description="what can move, by names: polygons, each with density and depth, or mass, centroid and inertia",
+        examples=[EXAMPLE_BLOCKS], min_length=1, max_length=500,
+    )  # fmt: skip
+    ground: dict[Name, Ground] = Field(
+        description="what cannot, by names: polygons", examples=[EXAMPLE_GROUND], min_length=1, max_length=100
+    )
+    supports: dict[Name, Support] | None = Field(
+        None, alias="joints", min_length=1, max_length=100,
+        description="what holds points sideways, by names: {slide: block, at: [x, y], along: [0, 1]}",
+    )  # fmt: skip
+    friction: float | None = quantity(
+        "coefficient of friction of every joint; left out, none slides", example=0.6, default=None, gt=0, le=10
+    )
+    friction_of: dict[Name, Coefficient] | None = Field(
+        None, description="that of single joints, 0 too: {left and lintel: 0.3}", min_length=1, max_length=1000
+    )
+    lead: Leads | None = Field(
+        None, description="the block whose rotation phi is; left out, the one on the ground that turns most"
+    )
+    gap: float | None = quantity(
+        "how far apart faces may be that touch; left out, 2 per mille of the smaller block", unit="m", default=None,
+        gt=0, le=10,
+    )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _holds_together(self) -> Self:
+        for name, shape in self.blocks.items():
+            if shape.polygon is None:
+                raise geometry_error(
+                    ("blocks", name, "polygon"), "is missing: blocks touch along the sides of polygons"
+                )
+        for name in self.ground:
+            if name in self.blocks:
+                raise geometry_error(("ground", name), "is a block too: give it another name")
+        self._check_masses("blocks")
+        for name, each in (self.supports or {}).items():
+            self._known(each.slide, ("joints", name, "slide"))
+        for direction in Direction:
+            lead = getattr(self.lead, direction.label, None)
+            if lead is not None:
+                self._known(lead, ("lead", direction.label))
+        self._contacts  # noqa: B018 - what overlaps, or touches nothing, is refused here
+        return self
+
+    def _known(self, block: str, where: tuple[str, ...]) -> None:
+        if block not in self.blocks:
+            raise geometry_error(where, f"there is no block {block!r}; there are {', '.join(self.blocks)}")
+
+    def _hold_together(self) -> None:
+        super()._hold_together()
+        try:
+            for direction in self.directions:
+                self._collapse(direction)
+        except analysis.DoesNotStand as error:
+            raise self._refused(("blocks", *error.blocks[:1]), str(error)) from None
+        except analysis.NothingMoves as error:
+            why = f"{error}: every joint is closed under any acceleration. Give friction, or a block that can turn"
+            raise self._refused(("blocks",), why) from None
+        except analysis.AssemblyFault as error:
+            raise MechanismError(str(error)) from None
+        for direction in self.directions:
+            found = self._collapse(direction)
+            if not found.unique:
+                ways = "; ".join(" and ".join(each.moves) for each in found.several)
+                raise self._refused(
+                    ("blocks",),
+                    f"in the {direction.label} direction several mechanisms start at {found.multiplier:.6g} g, in "
+                    f"which move: {ways}. Change a size or a density by a little, or tie what should not part",
+                )
+
+    @staticmethod
+    def _refused(field: tuple[str, ...], reason: str) -> Exception:
+        from rocking_cli.core.attachments import Refused, as_validation_error
+
+        return as_validation_error([Refused(field[:-1], field[-1], reason)], Assembly.mechanism)
+
+    def _check_stands(self) -> None:
+        """The limit analysis sees whether it stands."""
+
+    # What there is
+
+    @cached_property
+    def _members(self) -> Mapping[str, Member]:
+        return {name: shape.member(name, self.density, self.depth) for name, shape in self.blocks.items()}
+
+    def _shapes(self) -> Sketch:
+        return Sketch()  # its bodies have their outlines, and its hinges follow from what hangs on it
+
+    @cached_property
+    def _blocks(self) -> Sequence[analysis.Block]:
+        return [
+            analysis.Block(body.name, tuple(self.blocks[body.name].corners), body.mass, body.centroid)
+            for body in self.weighed()
+        ]
+
+    @cached_property
+    def _contacts(self) -> Sequence[analysis.Contact]:
+        blocks = [analysis.Block(name, tuple(shape.corners)) for name, shape in self.blocks.items()]
+        ground = [analysis.Block(name, each.corners) for name, each in self.ground.items()]
+        pairs: dict[tuple[str, str], float | None] = {}
+        for words, mu in (self.friction_of or {}).items():
+            one, _, other = words.partition(" and ")
+            pairs[one, other] = mu
+        more = {} if self.gap is None else {"gap": self.gap / max(_size(shape) for shape in self.blocks.values())}
+        try:
+            return analysis.contacts(blocks, ground, friction=self.friction, per_pair=pairs, **more)
+        except analysis.ContactFault as error:
+            names = [name for name in error.blocks if name in self.blocks]
+            asked = [words for words in self.friction_of or {} if set(words.split(" and ")) == set(error.blocks)]
+            where = ("friction_of", asked[0]) if asked else ("blocks", *names[:1])
+            raise geometry_error(where, str(error)) from None
+
+    @cached_property
+    def _guides(self) -> Sequence[analysis.Guide]:
+        return [
+            analysis.Guide(name, each.slide, complex(*each.at), complex(*each.along))
+            for name, each in (self.supports or {}).items()
+        ]
+
+    # The weakest mechanism
+
+    @cached_property
+    def _collapses(self) -> dict[Direction, analysis.Collapse]:
+        return {}
+
+    def _collapse(self, direction: Direction) -> analysis.Collapse:
+        if direction not in self._collapses:
+            dead, live = at_rest(self.weighed(), self.attached, direction, self.gravity)
+            self._collapses[direction] = analysis.collapse(
+                self._blocks, self._contacts, self._guides, direction, dead=dead, live=live, gravity=self.gravity
+            )
+        return self._collapses[direction]
+
+    @cached_property
+    def _found(self) -> dict[Direction, analysis.Linkage]:
+        return {}
+
+    def _groups(self, direction: Direction) -> analysis.Linkage:
+        if direction not in self._found:
+            try:
+                found = analysis.linkage(self._blocks, self._contacts, self._guides, self._collapse(direction))
+            except analysis.AssemblyFault as error:
+                raise MechanismError(f"in the {direction.label} direction {error}") from None
+            self._found[direction] = found
+        return self._found[direction]
+
+    def _joint(self, k: int) -> str:
+        contact = self._contacts[k]
+        return f"{contact.a} and {contact.b}"
+
+    def _lead(self, direction: Direction) -> str:
+        """The block whose rotation phi is: as told, or one of the leading group, on the ground if one is."""
+        told = getattr(self.lead, direction.label, None)
+        if told is not None:
+            return str(told)
+        found = self._groups(direction)
+        k = analysis.leading(found, direction)
+        group = found.groups[k if k is not None else 0]
+        hinged = {self._contacts[h.contact].b for h in found.hinges if None in (h.one, h.other)}
+        return next((name for name in group if name in hinged), group[0])
+
+    @cached_property
+    def _linkages(self) -> dict[Direction, LinkageMotion]:
+        return {}
+
+    def _linkage(self, direction: Direction) -> LinkageMotion:
+        if direction not in self._linkages:
+            if direction not in self.directions:
+                raise MechanismError(f"it cannot rock in the {direction.label} direction")
+            self._linkages[direction] = self._made(direction)
+        return self._linkages[direction]
+
+    def _made(self, direction: Direction) -> LinkageMotion:
+        found = self._groups(direction)
+        if found.slides:
+            where = ", ".join(self._joint(k) for k in found.slides)
+            raise MechanismError(
+                f"in the {direction.label} direction, at {self._collapse(direction).multiplier:.4g} g, it slides "
+                f"between {where}: there is no rocking model of that. `rocking collapse` shows it, and the friction it "
+                "would need"
+            )
+        pins = [
+            Pin(letter, tuple(name for name in (contact.a, contact.b) if name in self.blocks), at)
+            for letter, contact, at in self._hinges(direction)
+        ]
+        guides = [Guide(guide.name, (guide.body,), guide.at, guide.along) for guide in found.guides]
+        fixed = [(group[0], name) for group in found.groups for name in group[1:]]
+        centres = {name: each.body.centroid for name, each in self._members.items()}
+        rest = [name for name in found.rest if name in self.blocks]
+        lead = self._lead(direction)
+        try:
+            linkage = LinkageMotion(centres, [*pins, *guides], lead, direction, fixed, rest)
+        except NoMotion as error:
+            raise MechanismError(f"in the {direction.label} direction {error.reason}") from None
+        turns = float(linkage.motions(np.zeros(1))[lead].dpsi[0])
+        number = next(k for k, group in enumerate(found.groups) if lead in group)
+        if turns * found.velocity[number, 2] < 0:
+            raise MechanismError(
+                f"in the {direction.label} direction {lead} turns the other way as the rest goes {direction.label}: "
+                "let another block lead"
+            )
+        return linkage
+
+    def _hinges(self, direction: Direction) -> list[tuple[str, analysis.Contact, complex]]:
+        """Letter, joint and point of each hinge, from the left."""
+        found = sorted(self._groups(direction).hinges, key=lambda h: (round(h.point.real, 9), h.point.imag))
+        return [
+            (_letter(k) + direction.prime, self._contacts[hinge.contact], hinge.point) for k, hinge in enumerate(found)
+        ]
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        found = self._linkage(direction).motions(phi)
+        return [found[name] for name in self._members]
+
+    def limit(self, direction: Direction) -> float:
+        return self._linkage(direction).limit
+
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        if direction not in self.directions:
+            return ()
+        found = self._groups(direction)
+        joints = []
+        for letter, contact, at in self._hinges(direction):
+            end = 0 if abs(at - contact.start) <= abs(at - contact.end) else 1
+            face = contact.face_at(end)
+            names = tuple(name for name in (contact.a, contact.b) if name in self.blocks)
+            joints.append(Joint(letter, at, names, normal=contact.normal, face=face if face in self.blocks else None))
+        for guide in found.guides:
+            joints.append(Joint(guide.name, guide.at, (guide.body,), slide=guide.along / abs(guide.along)))
+        return joints
+
+    # What is said of it
+
+    def collapse(self, direction: Direction) -> CollapseMechanism:
+        """The weakest mechanism of a direction. Raises `MechanismError` where there is none."""
+        found = self._groups(direction)
+        state = self._collapse(direction)
+        friction = analysis.friction(state)
+        thrust = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
+        parts = {name: "+".join(group) for group in found.groups for name in group}
+        moves = not found.slides
+        valid = self._valid[direction] if moves else None
+        return CollapseMechanism(
+            lambda_=self.uplift(direction) if moves else state.multiplier,
+            lead=self._lead(direction) if moves else "",
+            hinges=[
+                CollapseHinge(letter, (parts.get(contact.a, contact.a), parts.get(contact.b, contact.b)), at)
+                for letter, contact, at in self._hinges(direction)
+            ],
+            groups=found.groups,
+            rest=[name for name in found.rest if name in self.blocks],
+            lifted=[self._joint(k) for k in found.lifted],
+            slides=[self._joint(k) for k in found.slides],
+            glued=[self._joint(k) for k in friction.glued],
+            friction_needed=friction.needed,
+            valid_to=valid[0] if valid else None,
+            opens=self._joint(valid[1]) if valid else "",
+            held_by=valid[2] if valid else None,
+            thrust=[(self._joint(each.contact), each.point, each.force) for each in thrust.passages],
+        )
+
+    def margins(
+        self, direction: Direction, phi: Reals, turning: Reals, rate: Reals, ground: Points
+    ) -> tuple[Reals, Sequence[str]]:
+        forces = under_way(
+            self.weighed(), self.motion(phi, direction), self.attached, direction, self.gravity,
+            Going(turning, rate, ground),
+        )  # fmt: skip
+        found = [
+            self._displaced(direction, float(at)).admissible(force[None])[0]
+            for at, force in zip(phi, forces, strict=True)
+        ]
+        names = [self._joint(each.contact) if each.contact is not None else "" for each in found]
+        return np.array([each.margin for each in found]), names
+
+    def _displaced(self, direction: Direction, phi: float) -> analysis.Displaced:
+        motions = self.motion(np.array([phi]), direction)
+        moved = {
+            body.name: (complex(motion.carry(body.centroid)[0][0]), float(motion.psi[0]))
+            for body, motion in zip(self.weighed(), motions, strict=True)
+        }
+        states = self._groups(direction).states
+        weight = self._collapse(direction).problem.weight
+        return analysis.Displaced(self._blocks, self._contacts, self._guides, states, moved, weight)
+
+    @cached_property
+    def _valid(self) -> Mapping[Direction, tuple[float, int, float] | None]:
+        """The rotation at which another joint opens as it is held displaced, which, and by what acceleration over g."""
+        return {direction: self._valid_to(direction) for direction in self.directions}
+
+    def _valid_to(self, direction: Direction) -> tuple[float, int, float] | None:
+        at: dict[float, tuple[analysis.Admissible, float]] = {}
+
+        def margin(phi: float) -> float:
+            here = np.array([phi])
+            held = self.coefficients(here, direction)
+            share = float(held.restoring(self.gravity)[0] / held.B[0])
+            going = Going(np.zeros(1), np.zeros(1), np.full(1, -int(direction) * share * self.gravity + 0j))
+            forces = under_way(
+                self.weighed(), self.motion(here, direction), self.attached, direction, self.gravity, going
+            )
+            at[phi] = self._displaced(direction, phi).admissible(forces)[0], share
+            return at[phi][0].margin
+
+        end = self.critical_rotation(direction)
+        first = analysis.first_violation(margin, end)
+        if first is None:
+            return None
+        margin(first)
+        found, share = at[first]
+        return first, found.contact if found.contact is not None else 0, share
+
+    def extras(self, direction: Direction) -> Sequence[Extra]:
+        found = self._valid[direction]
+        if found is None:
+            return ()
+        phi, k, share = found
+        return (
+            Extra("valid_to", phi, "rad", f"rotation at which, held there, the joint of {self._joint(k)} opens too"),
+            Extra("held_by", share, "g", "the acceleration that holds it there, G/B"),
+        )
+
+    def sketch(self) -> Sketch:
+        ground = []
+        for each in self.ground.values():
+            z = list(analysis.Block("", each.corners).outline)[::-1]  # clockwise: the ground is on the right
+            ground.append([*z, z[0]])
+        able = [direction for direction in self.directions if not self._groups(direction).slides]
+        return Sketch(
+            hinges={direction: self.joints(direction) for direction in able},
+            lines=[line for direction in self.directions if (line := self._thrust_line(direction)) is not None],
+            ground=ground,
+        )
+
+    def _thrust_line(self, direction: Direction) -> Line | None:
+        friction = analysis.friction(self._collapse(direction))
+        found = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
+        if not found.chain:
+            return None
+        name = f"a line of thrust at uplift, {self._collapse(direction).multiplier:.3g} g"
+        return Line(name, [each.point for each in found.passages], direction)
+
+
+def _letter(k: int) -> str:
+    return chr(65 + k) if k < 26 else f"{chr(65 + k // 26 - 1)}{chr(65 + k % 26)}"
+
+
+def _size(shape: Shape) -> float:
+    z = np.array(shape.corners)
+    return float(np.ptp(z.real) + np.ptp(z.imag))

@@ -1,0 +1,96 @@
+"""The weakest mechanism of an assembly, as people and programs read it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rocking_cli.core import CollapseMechanism, Direction, Mechanism
+from rocking_cli.views.view import Table, View, heading, number
+
+
+def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> View:
+    """Lambda, hinges, groups, thrust and friction of each direction."""
+    parts: list[Table | str] = [heading(mechanism)]
+    for direction, each in found.items():
+        parts += [_hinges(direction, each), *_sentences(mechanism, direction, each)]
+        if each.thrust:
+            parts.append(_thrust(direction, each))
+    parts.append(
+        "The forces are those of one state with the least friction: where parts rest there are others. lambda is the "
+        "greatest acceleration that forces without tension carry, and that at which the mechanism shown begins."
+    )
+    return View(lambda: {"directions": {d.label: data(each) for d, each in found.items()}}, parts)
+
+
+def _hinges(direction: Direction, found: CollapseMechanism) -> Table:
+    rows = [
+        [each.letter, " and ".join(each.between), number(each.at.real), number(each.at.imag)] for each in found.hinges
+    ]
+    title = f"{direction.label.capitalize()} direction: lambda = {number(found.lambda_)} g"
+    return Table(title, ["hinge", "between", "x [m]", "y [m]"], rows, numbers=(2, 3))
+
+
+def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechanism) -> list[str]:
+    moves = "; ".join("+".join(group) for group in found.groups)
+    said = [f"What moves, each as one: {moves}." + (f" At rest: {', '.join(found.rest)}." if found.rest else "")]
+    if found.lead:
+        said.append(f"phi is the rotation of {found.lead}.")
+    if found.lifted:
+        said.append(f"Open at both ends: {', '.join(found.lifted)}.")
+    if found.slides:
+        said.append(
+            f"It slides between {', '.join(found.slides)}: lambda says when, and there is no rocking model of it. Flow "
+            "is associated, which over-estimates lambda where joints that slide open."
+        )
+    if found.friction_needed is not None:
+        given = mechanism.friction
+        held = "" if given is None else f"; {given:g} is given"
+        said.append(f"It needs a friction of {number(found.friction_needed, 4)} in every joint{held}.")
+    elif found.glued:
+        said.append(
+            f"No friction will do: {', '.join(found.glued)} would carry shear without pressing. Give friction, 0 for a "
+            "joint that bears no shear."
+        )
+    if found.valid_to is not None and found.held_by is not None:
+        said.append(
+            f"Held displaced by G/B it is this mechanism up to {number(found.valid_to)} rad, at "
+            f"{number(found.held_by, 4)} g: there the joint of {found.opens} opens too."
+        )
+    elif not found.slides:
+        said.append("Held displaced by G/B it is this mechanism up to its critical rotation.")
+    return said
+
+
+def _thrust(direction: Direction, found: CollapseMechanism) -> Table:
+    rows = [
+        [where, number(at.real), number(at.imag), number(force.real / 1e3, 4), number(force.imag / 1e3, 4)]
+        for where, at, force in found.thrust
+    ]
+    heads = ["joint", "x [m]", "y [m]", "Fx [kN]", "Fy [kN]"]
+    return Table(f"Forces as it starts, {direction.label}", heads, rows, numbers=(1, 2, 3, 4))
+
+
+def data(found: CollapseMechanism) -> dict[str, Any]:
+    """A direction as plain data."""
+    return {
+        "lambda": found.lambda_,
+        "hinges": [
+            {"name": each.letter, "between": list(each.between), "at": [each.at.real, each.at.imag]}
+            for each in found.hinges
+        ],
+        "groups": [list(group) for group in found.groups],
+        "rest": list(found.rest),
+        "lifted": list(found.lifted),
+        "slides": list(found.slides),
+        "glued": list(found.glued),
+        "lead": found.lead or None,
+        "friction_needed": found.friction_needed,
+        "valid_to": found.valid_to,
+        "opens": found.opens or None,
+        "held_by": found.held_by,
+        "thrust": [
+            {"joint": where, "at": [at.real, at.imag], "force": [force.real, force.imag]}
+            for where, at, force in found.thrust
+        ],
+    }
