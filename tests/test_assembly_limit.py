@@ -54,7 +54,7 @@ def ring(n, edges=8, exact=True):
     blocks = []
     for k, (a, b) in enumerate(pairwise(angles)):
         turns = np.exp(1j * np.linspace(a, b, edges + 1))
-        corners = tuple([*((R + T / 2) * turns).tolist(), *((R - T / 2) * turns[::-1]).tolist()])
+        corners = (*((R + T / 2) * turns).tolist(), *((R - T / 2) * turns[::-1]).tolist())
         body = annular_sector("", 1.0, R - T / 2, R + T / 2, a, b)
         if not exact:
             z = np.array(corners)
@@ -103,7 +103,7 @@ def unbalanced(blocks, joints, found, direction=POSITIVE, guides=()):
     return max(np.abs(total).max() for total in sums.values()) / sum(block.mass * g for block in blocks)
 
 
-# --- where blocks touch ------------------------------------------------------------------------------------------------
+# --- where blocks touch ----------------------------------------------------------------------------------------------
 
 
 def only(blocks, ground=FLOOR, **options):
@@ -221,7 +221,7 @@ def test_an_arch_drawn_to_millimetres_keeps_its_joints(shaken):
     assert collapse(drawn, found).multiplier == approx(exact, rel=5e-3)
 
 
-# --- the multiplier ----------------------------------------------------------------------------------------------------
+# --- the multiplier --------------------------------------------------------------------------------------------------
 
 
 def solved(blocks, ground=FLOOR, direction=POSITIVE, guides=(), **options):
@@ -313,7 +313,7 @@ def test_what_nothing_can_move_is_said():
     assert issubclass(NothingMoves, AssemblyFault)
 
 
-# --- mechanisms that share a multiplier --------------------------------------------------------------------------------
+# --- mechanisms that share a multiplier ------------------------------------------------------------------------------
 
 
 def tied(more=0.0):
@@ -371,7 +371,7 @@ def test_a_vertex_that_is_degenerate_is_still_one_mechanism():
     assert len(made.hinges) == 6  # one more than needed, which the motion satisfies
 
 
-# --- the arch ----------------------------------------------------------------------------------------------------------
+# --- the arch --------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("n", [7, 12, 31])
@@ -469,7 +469,7 @@ def test_forces_of_a_wall_are_no_line():
     assert [passage.force.imag for passage in line.passages] in (approx([g, 2 * g]), approx([2 * g, g]))
 
 
-# --- states and supports -----------------------------------------------------------------------------------------------
+# --- states and supports ---------------------------------------------------------------------------------------------
 
 
 def test_joints_that_carry_shear_without_a_normal_force_are_named():
@@ -497,6 +497,18 @@ def test_what_moves_by_chance_is_one_of_several():
     assert turns.multiplier == approx(2.0, rel=1e-9)
     assert np.isnan(slides.multiplier)
     assert np.abs(slides.velocity) == approx(np.array([[1.0, 0, 0]]), abs=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_the_unit_of_the_live_forces_decides_nothing(unit):
+    tower = [rectangle("tower", 0, 0, 1, 4)]
+    live = np.array([[unit, 0, 0]])
+    found = collapse(tower, contacts(tower, FLOOR), live=live)
+    assert found.multiplier == approx(g / unit, rel=1e-9)
+    assert found.kinematic == approx(g / unit, rel=1e-9)
+    assert friction(found).needed == approx(0.25, rel=1e-5)
+    with pytest.raises(NothingMoves, match="always there"):
+        collapse(tower, contacts(tower, FLOOR), live=0 * live)
 
 
 def test_a_block_that_is_lifted_by_glue_at_its_foot_is_named():
@@ -562,7 +574,7 @@ def test_a_resting_block_is_ground_to_what_moves_on_it():
     assert made.states[0 if joints[0].a == "low" else 1] is Opening.END
 
 
-# --- random assemblies -------------------------------------------------------------------------------------------------
+# --- random assemblies -----------------------------------------------------------------------------------------------
 
 
 def cut(rng, x0, y0, x1, y1, depth):
@@ -678,7 +690,7 @@ def test_neither_scale_nor_mirror_nor_order_changes_anything():
         assert backwards.unique == found.unique
 
 
-# --- displaced ---------------------------------------------------------------------------------------------------------
+# --- displaced -------------------------------------------------------------------------------------------------------
 
 
 def displaced_arch(phi):

@@ -148,8 +148,8 @@ def collapse(
     rates = _rates(problem, velocity)
     state = problem.weight * (forces @ rays.mix)
     return Collapse(
-        multiplier,
-        _kinematic(problem, fields[0]),
+        multiplier / problem.strength,
+        _kinematic(problem, fields[0]) / problem.strength,
         velocity,
         *problem.by_contact(rates)[:2],
         *problem.by_contact(state),
@@ -184,5 +184,5 @@ def _rates(problem: Problem, velocity: Reals) -> Reals:
 
 
 def _shared(problem: Problem, field: Reals) -> Shared:
-    multiplier = _kinematic(problem, field) if _worked_on(problem, field) else np.nan
+    multiplier = _kinematic(problem, field) / problem.strength if _worked_on(problem, field) else np.nan
     return Shared(multiplier, _sized(problem, field), moving(problem.frame.names, field, NOTHING))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Bools, Rays
 from rocking_cli.core import Reals
@@ -58,7 +59,7 @@ def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
             ),
         )
         if found is None:
-            break
+            raise NoAnswer("no forces belong to the mechanism that was found: the joints are too short, or too many")
         more = asked & (found.x[:n] > CARRIES)
         if not more.any():
             break
