@@ -113,20 +113,21 @@ def _pieces(one: Points, other: Points, tolerance: float) -> list[Piece]:
 
 def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
     """Pieces that lie on one line as one, from the first end to the last: what is rigid bears at both."""
-    joined: list[Piece] = []
-    for piece in sorted(pieces, key=lambda p: -abs(p[1] - p[0])):
-        for k, other in enumerate(joined):
+    joined: dict[int, Piece] = {}
+    # The longest first, because it says best where the line lies; the order they come out in is that of the edges.
+    for n, piece in sorted(enumerate(pieces), key=lambda p: -abs(p[1][1] - p[1][0])):
+        for k, other in joined.items():
             along = (other[1] - other[0]) / abs(other[1] - other[0])
-            away = [(z - other[0]) * along.conjugate() for z in (*piece, *other)]
-            ways = (piece[1] - piece[0]).real * along.real + (piece[1] - piece[0]).imag * along.imag
-            if ways > 0 and max(abs(z.imag) for z in away) <= tolerance:
-                places = sorted(zip((z.real for z in away), range(4), strict=True))
-                ends = [*piece, *other]
-                joined[k] = ends[places[0][1]], ends[places[-1][1]]
+            ends = [*piece, *other]
+            places = [(z - other[0]) * along.conjugate() for z in ends]
+            same_way = ((piece[1] - piece[0]) * along.conjugate()).real > 0
+            if same_way and max(abs(z.imag) for z in places) <= tolerance:
+                order = np.argsort([z.real for z in places])
+                joined[k] = ends[order[0]], ends[order[-1]]
                 break
         else:
-            joined.append(piece)
-    return joined
+            joined[n] = piece
+    return [joined[n] for n in sorted(joined)]
 
 
 def _faces(joint: Contact, one: Points, other: Points, tolerance: float) -> tuple[str, str]:

@@ -44,7 +44,7 @@ class Friction:
 
 def friction(found: Collapse) -> Friction:
     """The friction that a mechanism needs, by bisection of its programme with less and less in every joint."""
-    problem, multiplier = found.problem, found.multiplier
+    problem, multiplier = found.problem, found.multiplier * found.problem.strength
 
     def carries(mu: float) -> Reals | None:
         rays = problem.bearings.rays(mu)

@@ -21,7 +21,7 @@ def leading(found: Linkage, direction: Direction) -> int | None:
     if not able:
         return None
 
-    def merit(k: int) -> tuple[bool, bool, float]:
-        return k in grounded, turns[k] > 0, round(float(abs(turns[k]) / most), 9)
-
-    return max(able, key=merit)
+    best = max((k in grounded, bool(turns[k] > 0)) for k in able)
+    able = [k for k in able if (k in grounded, bool(turns[k] > 0)) == best]
+    fastest = max(abs(turns[k]) for k in able)
+    return next(k for k in able if abs(turns[k]) >= fastest * (1 - STILL))

@@ -29,7 +29,7 @@ class Shared:
     Parameters
     ----------
     multiplier : float
-        Of its own.
+        Of its own; not a number if the live forces do no work on it, so that it moves by chance.
     velocity : ndarray, shape (blocks, 3)
         See `Collapse`.
     moves : tuple of str
@@ -142,13 +142,14 @@ def collapse(
     kept = kept_rays(rays, problem.dead, problem.live, raw)
     space = velocity_space(rays.rates[kept])
     fields = mechanisms_of(rays, kept, space, raw)
+    fields.sort(key=lambda field: not _worked_on(problem, field))  # those that the multiplier starts first
     several = tuple(_shared(problem, field) for field in fields) if len(fields) > 1 else ()
     velocity = _sized(problem, fields[0])
     rates = _rates(problem, velocity)
     state = problem.weight * (forces @ rays.mix)
     return Collapse(
-        multiplier,
-        _kinematic(problem, fields[0]),
+        multiplier / problem.strength,
+        _kinematic(problem, fields[0]) / problem.strength,
         velocity,
         *problem.by_contact(rates)[:2],
         *problem.by_contact(state),
@@ -162,6 +163,11 @@ def _kinematic(problem: Problem, field: Reals) -> float:
     return -float(problem.dead @ field) / float(problem.live @ field)
 
 
+def _worked_on(problem: Problem, field: Reals) -> bool:
+    """Whether the live forces do work on a mechanism; else it moves without any."""
+    return abs(float(problem.live @ field)) > NOTHING * float(np.abs(field).max())
+
+
 def _sized(problem: Problem, field: Reals) -> Reals:
     """Velocities with units from those without, the fastest rotation 1."""
     velocity = field.reshape(-1, 3) * np.array([problem.frame.size, problem.frame.size, 1.0])
@@ -172,11 +178,11 @@ def _sized(problem: Problem, field: Reals) -> Reals:
 
 def _rates(problem: Problem, velocity: Reals) -> Reals:
     """How fast each joint opens and slides; what is rounding is nothing."""
-    rates: Reals = problem.bearings.rates @ (velocity * np.array([1.0, 1.0, problem.frame.size])).ravel()
-    return np.asarray(np.where(np.abs(rates) > NOISE * np.abs(velocity).max(), rates, 0.0))
+    field = (velocity * np.array([1.0, 1.0, problem.frame.size])).ravel()
+    rates: Reals = problem.bearings.rates @ field
+    return np.asarray(np.where(np.abs(rates) > NOISE * np.abs(field).max(), rates, 0.0))
 
 
 def _shared(problem: Problem, field: Reals) -> Shared:
-    live = float(problem.live @ field)
-    multiplier = _kinematic(problem, field) if abs(live) > NOTHING * np.abs(field).max() else np.nan
+    multiplier = _kinematic(problem, field) / problem.strength if _worked_on(problem, field) else np.nan
     return Shared(multiplier, _sized(problem, field), moving(problem.frame.names, field, NOTHING))

@@ -68,8 +68,8 @@ class Linkage:
     states : tuple of Opening
         What each joint does.
     freedom : int
-        In how many independent ways the linkage can move at first, its joints taken as two-sided; 1 if hinges, guides
-        and joints that slide are all that holds it.
+        In how many independent ways its hinges and guides let it move at first: 1 if they alone say how. More where
+        joints slide, or where parts that no longer touch would have to move as if they did.
     """
 
     groups: tuple[tuple[str, ...], ...]
@@ -106,13 +106,14 @@ def linkage(blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequen
     Linkage
         Its groups in the order of their first blocks.
     """
-    states = tuple(
-        _state(abs(o[0]), abs(o[1]), abs(s), c, STILL * np.abs(found.velocity).max())
-        for o, s, c in zip(found.opening, found.sliding, contacts, strict=True)
-    )
     size = Frame.of(blocks).size
     speed = np.abs(found.velocity * np.array([1.0, 1.0, size])).max(axis=1)
-    moves = {block.name: bool(v > STILL * speed.max()) for block, v in zip(blocks, speed, strict=True)}
+    still = STILL * float(speed.max())
+    states = tuple(
+        _state(abs(o[0]), abs(o[1]), abs(s), c, still)
+        for o, s, c in zip(found.opening, found.sliding, contacts, strict=True)
+    )
+    moves = {block.name: bool(v > still) for block, v in zip(blocks, speed, strict=True)}
     parts = Parts([name for name, does in moves.items() if does])
     for state, contact in zip(states, contacts, strict=True):
         if state is Opening.CLOSED and moves.get(contact.a) and moves.get(contact.b):
@@ -135,7 +136,7 @@ def linkage(blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequen
         hinges,
         held,
         states,
-        _freedom(groups, hinges, held, [(contacts[k], s) for k, s in enumerate(states)], number, size),
+        _freedom(groups, hinges, held, number, size),
     )
 
 
@@ -174,18 +175,13 @@ def _freedom(
     groups: Sequence[tuple[str, ...]],
     hinges: Sequence[Hinge],
     guides: Sequence[Guide],
-    joints: Sequence[tuple[Contact, Opening]],
     number: dict[str, int],
     size: float,
 ) -> int:
-    """Dimension of the velocities that keep hinges, guides and the direction in which joints slide."""
+    """Dimension of the velocities that keep hinges and guides."""
     frame = Frame(tuple(str(k) for k in range(len(groups))), (0j,) * len(groups), size)
     rows = [frame.rate(str(h.one), str(h.other), h.point, way) for h in hinges for way in (1 + 0j, 1j)]
     rows += [frame.rate(None, str(number[g.body]), g.at, 1j * g.along / abs(g.along)) for g in guides]
-    for contact, state in joints:
-        if state is Opening.SLIDES:
-            a, b = (str(number.get(name)) for name in (contact.a, contact.b))
-            rows.append(frame.rate(a, b, contact.start, contact.normal))
     if not rows:
         return 3 * len(groups)
     return int(velocity_space(np.array(rows)).shape[1])

@@ -19,13 +19,17 @@ NOTHING = 1e-9  # of the weight: a force that is none; of the multiplier: what i
 
 @dataclass(frozen=True)
 class Problem:
-    """An assembly and what acts on it, without units: moments over the size, forces over the weight."""
+    """An assembly and what acts on it, without units: moments over the size, forces over the weight.
+
+    The live forces have a sum of 1, so that their unit, which may be any, decides nothing; `strength` is what it was.
+    """
 
     frame: Frame
     bearings: Bearings
     dead: Reals
     live: Reals
     weight: float
+    strength: float
 
     @classmethod
     def of(
@@ -45,14 +49,18 @@ class Problem:
         frame = Frame.of(blocks)
         dead = np.column_stack([nothing, -weights, nothing]) if dead is None else dead
         live = np.column_stack([int(direction) * weights, nothing, nothing]) if live is None else live
-        weight = float(max(np.abs(dead[:, :2]).sum(), np.abs(live[:, :2]).sum()))
+        weight = float(np.abs(dead[:, :2]).sum())
         if weight == 0:
             raise NothingMoves("the blocks have no weight", frame.names)
+        pull = scaled(live, frame, weight)
+        strength = float(np.abs(pull).sum())
+        if strength == 0:
+            raise NothingMoves("nothing acts on the blocks but what is always there", frame.names)
         bearings = Bearings.of(frame, at_rest(contacts), guides)
-        return cls(frame, bearings, scaled(dead, frame, weight), scaled(live, frame, weight), weight)
+        return cls(frame, bearings, scaled(dead, frame, weight), pull / strength, weight, strength)
 
     def greatest(self, rays: Rays) -> tuple[float, Reals, Reals]:
-        """The greatest multiplier, forces of the rays that carry it, and velocities that it does no work on."""
+        """The greatest multiplier of `live`, forces of the rays that carry it, and velocities they do no work on."""
         cost = np.append(np.zeros(len(rays.rates)), -1.0)
         found = least(
             cost,

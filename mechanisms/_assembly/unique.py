@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Bools, Rays
 from rocking_cli.core import Reals
@@ -58,7 +59,7 @@ def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
             ),
         )
         if found is None:
-            break
+            raise NoAnswer("no forces belong to the mechanism that was found: the joints are too short, or too many")
         more = asked & (found.x[:n] > CARRIES)
         if not more.any():
             break
@@ -86,7 +87,15 @@ def mechanisms_of(rays: Rays, kept: Bools, space: Reals, raw: Reals) -> list[Rea
 
 
 def _extremes(opening: Reals, space: Reals) -> list[Reals]:
-    """Extreme rays of the cone of z with opening z >= 0: one joint or one block alone at a time decides which."""
+    """Extreme rays of the cone of z with opening z >= 0, and last what moves both ways and opens nothing.
+
+    One velocity of one block at a time decides which ray is looked for.
+    """
+    neutral = velocity_space(opening)
+    both_ways = [_clean(space @ z) for z in neutral.T]
+    if neutral.shape[1]:
+        across = velocity_space(neutral.T)
+        opening, space = opening @ across, space @ across
     n, d = opening.shape
     equal = np.column_stack([opening, -np.eye(n)])
     total = np.append(np.zeros(d), np.ones(n))
@@ -107,7 +116,7 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
             found.append(field)
         if len(found) == MOST:
             break
-    return found
+    return found + both_ways
 
 
 def _clean(field: Reals) -> Reals:
