@@ -18,6 +18,7 @@ from rocking_cli.core.extras import Extra as Extra
 from rocking_cli.core.fields import Vertex as Vertex
 from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length
+from rocking_cli.core.fields import point as point
 from rocking_cli.core.fields import quantity as quantity
 from rocking_cli.core.joints import Joint as Joint
 from rocking_cli.core.kinematics import Direction as Direction
