@@ -47,6 +47,8 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
         return of_the_readme(what)
     if kind == "mechanism":
         return make_reference.mechanism(Registry()[what])
+    if kind == "core":
+        return make_reference.helpers(what)
     if kind == "names":
         return make_reference.public_names(what)
     return {"options": make_reference.command_line}[kind]()

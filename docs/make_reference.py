@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from inspect import cleandoc, getdoc, isclass, signature
+from enum import Enum
+from inspect import Parameter, cleandoc, getdoc, isclass, signature
 from textwrap import dedent, indent
 from typing import Any
 
 import click
 
 import rocking_cli
+from rocking_cli import core
 from rocking_cli.cli.main import main
 from rocking_cli.views.mechanisms import fields
 
@@ -84,6 +86,48 @@ def public_names(names: str) -> str:
         first = " ".join((getdoc(each) or "").split("\n\n")[0].split())
         rows.append(f"| `{name}{called}` | {plain(first).replace('|', chr(92) + '|')} |")
     return "\n".join(rows)
+
+
+def helpers(names: str) -> str:
+    """What `rocking_cli.core` gives to authors of plugins: what each is called with, and the first sentence on it.
+
+    With a dot, a method that `Mechanism` has: `.bodies`.
+    """
+    lines = []
+    for name in names.split():
+        each = getattr(core.Mechanism if name.startswith(".") else core, name.lstrip("."))
+        first = " ".join((getdoc(each) or "").split("\n\n")[0].split())
+        lines.append(f"- `{called(name.lstrip('.'), each)}`: {plain(first)}")
+    return "\n".join(lines)
+
+
+def called(name: str, each: Any) -> str:
+    """How a function or a class is called, with the kinds of its arguments and what they are by default."""
+    if isclass(each) and issubclass(each, Enum):
+        return ", ".join(f"{name}.{member}" for member in each.__members__)
+    is_called = callable(each) and not getattr(each, "_is_protocol", False)  # a property is not
+    if not is_called or (isclass(each) and issubclass(each, core.Mechanism | Exception)):
+        return name
+    found = signature(each)
+    taken = [argument(one) for one in found.parameters.values() if one.name != "self"]
+    for k, one in enumerate(found.parameters.values()):
+        if one.kind is Parameter.KEYWORD_ONLY:
+            taken.insert(k, "*")
+            break
+    returned = "" if isclass(each) else f" -> {kind(found.return_annotation)}"
+    return f"{name}({', '.join(taken)}){returned}"
+
+
+def argument(one: Parameter) -> str:
+    """An argument as it is written where a function is defined."""
+    stars = {Parameter.VAR_POSITIONAL: "*", Parameter.VAR_KEYWORD: "**"}.get(one.kind, "")
+    without = "" if one.default is Parameter.empty else f" = {one.default!r}".replace("<factory>", "...")
+    return f"{stars}{one.name}: {kind(one.annotation)}{without}"
+
+
+def kind(annotation: Any) -> str:
+    """What an argument is, as its author wrote it."""
+    return annotation if isinstance(annotation, str) else getattr(annotation, "__forward_arg__", str(annotation))
 
 
 def docstrings(names: str) -> str:

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from pydantic import Field, ValidationError, model_validator
 
-from rocking_cli.cli.new import template
 from rocking_cli.core import (
     Body,
     Direction,
@@ -33,6 +32,7 @@ from rocking_cli.errors import MechanismError, PluginError
 from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.testing import CHECKS, MechanismContract, contract
+from rocking_cli.views.template import template
 from tests.conftest import EXAMPLES
 
 BUILT_IN = {

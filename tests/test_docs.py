@@ -7,15 +7,18 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from enum import Enum
 from importlib import import_module
-from types import SimpleNamespace
+from inspect import getdoc, isclass, signature
+from types import ModuleType, SimpleNamespace
 
 import pytest
 
 import rocking_cli
-from rocking_cli import Registry
+from rocking_cli import Registry, core
 from rocking_cli.cli.main import COMMANDS
 from rocking_cli.core import Angle, Length, Line, box
+from rocking_cli.core.mechanism import ANSWERS
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.testing import contract
 from rocking_cli.views.mechanisms import fields
@@ -219,6 +222,49 @@ def test_the_guide_gives_the_signatures_of_what_a_sketch_shows():
     for kind in (Length, Angle, Line):
         fields = [f"{each.name}{'=None' if each.default is None else ''}" for each in dataclasses.fields(kind)]
         assert f"`{kind.__name__}({', '.join(fields)})`" in " ".join(text_of("plugins.md").split())
+
+
+HELPERS = {name: each for name, each in vars(core).items() if name[0] != "_" and not isinstance(each, ModuleType)}
+
+
+def helpers_of_the_guide():
+    """The section on helpers, and what it says of each by its name: how it is called, and the sentence on it."""
+    section = text_of("plugins.md").partition("## Every helper\n")[2].partition("\n## ")[0]
+    listed = re.findall(r"^- `(\w+)(.*?)`: (.+)$", section, re.M)
+    assert len({name for name, *_ in listed}) == len(listed)
+    return section, {name: (called, said) for name, called, said in listed}
+
+
+def as_written(found):
+    """A signature as its author wrote it."""
+    text = re.sub(r"ForwardRef\('([^']*)'[^)]*\)", r"\1", str(found)).removesuffix(" -> None")
+    text = re.sub(r"(: |-> )'([^']*)'", r"\1\2", text).replace("<factory>", "...")
+    return re.sub(r"^\(self(, )?", "(", text)
+
+
+def test_every_helper_of_the_core_is_in_the_guide_to_plugins():
+    """One that is missing: put its name into a `<!-- core: ... -->` of docs/plugins.md and run `make docs`."""
+    section, listed = helpers_of_the_guide()
+    kinds = {name for name in HELPERS if re.search(rf"`{name}` is\s", section)}
+    assert kinds == {"Reals", "Outline", "Vertex"}  # what arguments are: they are not called
+    assert set(HELPERS) - kinds - set(listed) == set()
+    methods = {name for name in listed if hasattr(core.Mechanism, name)}
+    assert set(listed) - set(HELPERS) - methods == set()
+    assert set(ANSWERS) - methods == set()
+
+
+def test_the_guide_to_plugins_gives_the_signature_of_every_helper():
+    _, listed = helpers_of_the_guide()
+    bare = {name for name, (called, _) in listed.items() if not called}
+    assert bare == {"Attached", "Mechanism", "NoEquivalentBlock", "bends", "smooth", "has_mass", "directions"}
+    for name, (called, said) in listed.items():
+        each = HELPERS.get(name) or getattr(core.Mechanism, name)
+        first = " ".join(getdoc(each).split("\n\n")[0].split())
+        assert re.sub(r"\\(?=\W|_)", "", said) == first, name
+        if isclass(each) and issubclass(each, Enum):
+            assert f"{name}{called}" == ", ".join(f"{name}.{member.name}" for member in each)
+        elif name not in bare:
+            assert called == as_written(signature(each)), name
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

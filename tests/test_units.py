@@ -14,10 +14,10 @@ from mechanisms.block import Block
 from mechanisms.rigid_body import RigidBody
 from mechanisms.wall import Wall
 from rocking_cli import Registry
-from rocking_cli.cli.new import template
 from rocking_cli.core.size import doubtful_size, extent
 from rocking_cli.structure import parse_structure
 from rocking_cli.units import KINDS, UnitError, kind_of, read, units_of
+from rocking_cli.views.template import template
 from tests.conftest import PROJECT
 from tests.test_cli import run
 

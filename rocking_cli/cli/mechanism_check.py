@@ -73,8 +73,8 @@ def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
 
 
 def _first(name: str, registry: Registry) -> Mechanism:
-    from rocking_cli.cli.new import template
     from rocking_cli.structure import parse_structure
+    from rocking_cli.views.template import template
 
     return parse_structure(template(registry[name]), f"rocking new {name}", name, registry)
 

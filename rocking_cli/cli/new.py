@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from difflib import get_close_matches
 from importlib.resources import files
-from typing import Any
 
 import click
 
@@ -16,18 +15,28 @@ STUDY = "study"
 """Not a mechanism: a study file is printed for it. A mechanism that a package calls so works, and is not printed."""
 SITE = "site"
 """Nor is this: a site file for `rocking verify`."""
-LONG = 40  # characters of a field and its value, above which the comment stands
-UNITS = "A bare number is in the unit in brackets; 800 mm or 12 ft are read too."
 
 
-@click.command(short_help="Print a commented structure file, study or site, that works as it is.")
+@click.command(short_help="Print a structure file, study or site that works as it is, or write a plugin.")
 @click.argument("name", shell_complete=complete.mechanisms(STUDY, SITE, *STARTERS))
+@click.option("--plugin", is_flag=True, help="Write a package with a mechanism of your own instead; NAME is its name.")
+@click.option(
+    "-o",
+    "--out",
+    type=click.Path(),
+    metavar="FOLDER",
+    shell_complete=complete.files,
+    help="Where to write the package: a new folder.  [default: rocking-NAME, in this folder]",
+)
 @options.as_json
-def command(name: str, as_json: bool) -> None:
+def command(name: str, plugin: bool, out: str | None, as_json: bool) -> None:
     """Print a commented structure file that works as it is: of the mechanism NAME, or of what people have.
 
     These are facade, parapet, gable, pinnacle, corner, bell_cell, column_with_tendon and statue. `study` is a fragility
     study, of block.yaml beside it, and `site` a site for `rocking verify`.
+
+    `--plugin` writes a package for a mechanism of your own, called NAME: a commented one that works, to change into
+    yours, with its tests, a structure file and its picture. `pip install` makes it a mechanism like all others.
 
     \b
     Example:
@@ -35,7 +44,15 @@ def command(name: str, as_json: bool) -> None:
       rocking new facade > facade.yaml
       rocking new study > study.yaml
       rocking new site > site.yaml
+      rocking new --plugin leaning_pier
     """
+    if plugin:
+        from rocking_cli.cli.new_plugin import write
+
+        write(name, out, printed=(STUDY, SITE, *STARTERS), as_json=as_json)
+        return
+    if out is not None:
+        raise click.UsageError("--out goes with --plugin: a file is printed, for > FILE to take.")
     if name == STUDY:
         from rocking_cli.cli.new_study import TEMPLATE
 
@@ -50,6 +67,7 @@ def command(name: str, as_json: bool) -> None:
     from rocking_cli.core.registry import Registry
     from rocking_cli.errors import InputError, Problem, RockingError
     from rocking_cli.structure import parse_structure
+    from rocking_cli.views.template import template
 
     registry = Registry()
     if name in STARTERS and name not in registry:
@@ -75,51 +93,3 @@ def _print(made: dict[str, str], *, as_json: bool) -> None:
         terminal.print_json(made)
     else:
         terminal.result(made["yaml"].rstrip("\n"))
-
-
-def template(cls: Any) -> str:
-    """A commented YAML file for a mechanism: its examples, with fields that may be left out commented out.
-
-    A field that the file needs and of which there is no example stands there without a value, and the file says so.
-
-    Parameters
-    ----------
-    cls : type of Mechanism
-        The mechanism; its class attribute `starter` names the optional fields that its file needs.
-
-    Returns
-    -------
-    str
-    """
-    from rocking_cli.views.mechanisms import fields
-
-    lines = [f"# {cls.title}", f"# {cls.source}", f"# {UNITS}", f"mechanism: {cls.mechanism}"]
-    missing = []
-    for row in fields(cls):
-        unit = f" [{row['unit']}]" if row["unit"] else ""
-        symbol = f", {row['symbol']}" if row["symbol"] else ""
-        limits = f" ({row['bounds']})" if row["bounds"] else ""
-        used = row["required"] or row["field"] in cls.starter
-        example = _yaml(row["example"] if row["example"] is not None else row["default"])
-        if row["field"] == "name":
-            example = f"my {cls.mechanism.replace('_', ' ')}"
-        elif row["field"] == "restitution":
-            example = "0.9"
-        elif used and row["example"] is None and row["default"] is None:
-            missing.append(row["field"])
-            example = ""
-        entry = f"{'' if used else '# '}{row['field']}: {example}"
-        fill_in = "fill in: " if row["field"] in missing else ""
-        comment = f"# {fill_in}{row['description']}{symbol}{unit}{limits}"
-        lines += [f"{entry:<32}  {comment}"] if len(entry) <= LONG else [comment, entry]
-    if missing:
-        lines.insert(2, f"# Fill in {', '.join(missing)}: the mechanism gives no example.")
-    return "\n".join(lines) + "\n"
-
-
-def _yaml(value: Any) -> str:
-    if isinstance(value, list):
-        return f"[{', '.join(_yaml(item) for item in value)}]"
-    if isinstance(value, dict):
-        return f"{{{', '.join(f'{key}: {_yaml(item)}' for key, item in value.items())}}}"
-    return str(value)

@@ -9,7 +9,7 @@ import secrets
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any, BinaryIO
 
@@ -87,6 +87,66 @@ def folder(name: str) -> Path:
         reason = getattr(error, "strerror", None) or error
         raise InputError(Problem(f"cannot be a folder to write into: {reason}", name)) from None
     return path
+
+
+def check_new_folder(path: Path) -> None:
+    """Refuse, before any work, a place where no new folder can be made: `InputError` says why.
+
+    A folder that is there and empty is as good as a new one.
+    """
+    shown, elsewhere = str(path), "move it away, or name another folder"
+    if path.is_dir():
+        if not os.access(path, os.R_OK | os.W_OK):
+            raise InputError(Problem("this folder cannot be written to", shown))
+        if any(path.iterdir()):
+            raise InputError(Problem("this folder is there already and is not empty", shown, hint=elsewhere))
+    elif os.path.lexists(path):
+        raise InputError(Problem("there is a file of this name already", shown, hint=elsewhere))
+    elif not path.parent.is_dir():
+        raise InputError(Problem(f"the folder {path.parent} does not exist", shown, hint="create it first"))
+    elif not os.access(path.parent, os.W_OK):
+        raise InputError(Problem(f"the folder {path.parent} cannot be written to", shown))
+
+
+def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
+    """Write a new folder through a temporary one, so that no half-written one is ever seen.
+
+    Parameters
+    ----------
+    path : Path
+        Where to: nothing is there, or an empty folder.
+    files : mapping of str to bytes
+        Content by the place in it, with `/` between folders.
+
+    Raises
+    ------
+    InputError
+        If there can be no such folder; nothing is then left behind.
+    Refused
+        If the system refuses: a full disk. The same holds.
+    """
+    check_new_folder(path)
+    filled = path.is_dir()  # it may be where somebody is: it stays, and what is new is moved into it
+    made = (path if filled else path.parent) / f".{path.name[:40]}.{secrets.token_hex(8)}"
+    moved: list[Path] = []
+    try:
+        for name, content in files.items():
+            file = made / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+        if not filled:
+            os.rename(made, path)  # noqa: PTH104
+            return
+        for each in sorted(made.iterdir()):
+            os.rename(each, path / each.name)  # noqa: PTH104
+            moved.append(path / each.name)
+        made.rmdir()
+    except BaseException as error:
+        for each in [made, *moved]:
+            shutil.rmtree(each, ignore_errors=True) if each.is_dir() else each.unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            raise _cannot(path, error) from error
+        raise
 
 
 def check_writable(path: Path) -> None:
