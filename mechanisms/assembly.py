@@ -379,16 +379,18 @@ class Assembly(Membered):
     def margins(
         self, direction: Direction, phi: Reals, turning: Reals, rate: Reals, ground: Points
     ) -> tuple[Reals, Sequence[str]]:
-        forces = under_way(
-            self.weighed(), self.motion(phi, direction), self.attached, direction, self.gravity,
-            Going(turning, rate, ground),
-        )  # fmt: skip
-        found = [
-            self._displaced(direction, float(at)).admissible(force[None])[0]
-            for at, force in zip(phi, forces, strict=True)
-        ]
-        names = [self._joint(each.contact) if each.contact is not None else "" for each in found]
-        return np.array([each.margin for each in found]), names
+        motions, going = self.motion(phi, direction), Going(turning, rate, ground)
+        forces = under_way(self.weighed(), motions, self.attached, direction, self.gravity, going)
+        margins, names = np.full(len(phi), np.nan), [""] * len(phi)
+        for k, at in enumerate(phi):
+            try:
+                found = self._displaced(direction, float(at)).admissible(forces[k][None])[0]
+            except analysis.NoAnswer:
+                continue  # of so many moments one may be missing
+            margins[k] = found.margin
+            if found.contact is not None:
+                names[k] = self._joint(found.contact)
+        return margins, names
 
     def _displaced(self, direction: Direction, phi: float) -> analysis.Displaced:
         motions = self.motion(np.array([phi]), direction)

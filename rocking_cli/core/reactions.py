@@ -86,8 +86,7 @@ def reactions(
     """
     ground = np.broadcast_to(np.asarray(ground, np.complex128), phi.shape)
     weight = ground + 1j * mechanism.gravity
-    at = mechanism.coefficients(phi, direction)
-    turning = -(at.J * rate**2 + weight.imag * at.G + at.Q + direction * at.B * ground.real) / at.I  # Eq. 8
+    turning = acceleration(mechanism, direction, phi, rate, ground)
     moving = _Moving(mechanism, direction, phi)
 
     for body, motion in zip(mechanism.weighed(), moving.motions, strict=True):
@@ -105,6 +104,16 @@ def reactions(
         for push in thing.forces(direction, moving.follow):
             moving.demand(push.spot.body, moving.follow(push.spot).z, -push.force)
     return moving.at_joints() or moving.over_the_whole()
+
+
+def acceleration(
+    mechanism: Mechanism, direction: Direction, phi: Reals, rate: Reals, ground: Points | complex = 0j
+) -> Reals:
+    """phi.. in any number of states of motion [rad/s2]; the arguments are those of `reactions`."""
+    ground = np.broadcast_to(np.asarray(ground, np.complex128), phi.shape)
+    at = mechanism.coefficients(phi, direction)
+    weight = mechanism.gravity + ground.imag
+    return np.asarray(-(at.J * rate**2 + weight * at.G + at.Q + direction * at.B * ground.real) / at.I)  # Eq. 8
 
 
 def at_uplift(mechanism: Mechanism, direction: Direction) -> Reactions:

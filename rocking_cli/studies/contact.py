@@ -6,8 +6,8 @@ that is so: at every sample while the structure rocks, at its first uplift and o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.reactions import Reactions, at_uplift, impulses, reactions
+from rocking_cli.core.reactions import Reactions, acceleration, at_uplift, impulses, reactions
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
@@ -25,6 +25,8 @@ Places = NDArray[np.intp]
 BEARS = 0.01  # of N as rocking starts: with less a joint bears nothing that friction could be asked of
 IDLE = 1e-9  # of the largest force as rocking starts: a joint with less, such as of a beam without mass, bears nothing
 NEAR_PEAK = 0.9  # of the largest demand: how long it lasts is how long there is more than that
+LOOKS = 300  # moments of each direction at which it is seen whether another joint would open
+OPEN = 1e-6  # of the weight: a tension that is more than rounding
 BLOCK = 25_000  # states at a time: their matrices never stand in memory all at once
 NONE = float("nan")
 DEMAND, PULL, USED = range(3)
@@ -87,6 +89,11 @@ class Contact:
         Of a structure whose strength is given.
     times, demand : ndarray, shape (n,)
         The friction needed over time; 0 at rest. At an impact there are two values at one time.
+    opens : float or None
+        When first a joint that the mechanism keeps closed would have opened [s]; NaN: never at the moments that were
+        looked at; None: not known, as of all structures that did not search for their mechanism.
+    opens_joint : str
+        Which.
     """
 
     friction_needed: float
@@ -105,12 +112,15 @@ class Contact:
     crushing: Crushing | None
     times: Reals
     demand: Reals
+    opens: float | None = None
+    opens_joint: str = ""
 
     @property
     def holds(self) -> bool:
         """Whether the history holds as far as is known: no joint opens, slides or crushes."""
         crushes = self.crushing is not None and self.crushing.used > 1
-        return bool(np.isnan(self.lost) and np.isnan(self.slides)) and not crushes
+        stays = self.opens is None or bool(np.isnan(self.opens))
+        return bool(np.isnan(self.lost) and np.isnan(self.slides)) and stays and not crushes
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +158,39 @@ class Contacts:
                 found = self._forces(direction, states, part)
                 most[:, part], joint[:, part] = self._worst(direction, found)
                 shear = max(shear, float(np.abs(_base(found)).max()))
-        return self._summed_up(history, states, most, joint, shear)
+        asked, opened = self._summed_up(history, states, most, joint, shear), self._opened(states)
+        return asked if opened is None else replace(asked, opens=opened[0], opens_joint=opened[1])
+
+    def _opened(self, states: _States) -> tuple[float, str] | None:
+        """When first, of moments spread over the history, another joint would have opened, and which it is."""
+        moments: list[tuple[float, str]] = []
+        for direction in self.mechanism.directions:
+            mine = np.flatnonzero(states.rocks & (states.sign == direction))
+            some = mine[np.unique(np.linspace(0, mine.size - 1, min(LOOKS, mine.size)).astype(np.intp))]
+            found = self._margins(direction, states, some)
+            if found is None:
+                return None
+            open_ = np.flatnonzero(found[0] < -OPEN)
+            if not open_.size:
+                continue
+            k, name = int(open_[0]), found[1][int(open_[0])]
+            # Between the last moment looked at and this one it is looked for by halves.
+            low, high = (int(np.searchsorted(mine, some[max(k - 1, 0)])), int(np.searchsorted(mine, some[k])))
+            while high - low > 1:
+                middle = (low + high) // 2
+                closer = self._margins(direction, states, mine[middle : middle + 1])
+                if closer is not None and closer[0][0] < -OPEN:
+                    high, name = middle, closer[1][0]
+                else:
+                    low = middle
+            moments.append((float(states.time[mine[high]]), name))
+        return min(moments, default=(NONE, ""))
+
+    def _margins(self, direction: Direction, states: _States, part: Places) -> tuple[Reals, Sequence[str]] | None:
+        """How far the joints that stay closed are from opening."""
+        phi, rate, ground = states.phi[part], states.rate[part], states.ground[part]
+        turning = acceleration(self.mechanism, direction, phi, rate, ground)
+        return self.mechanism.margins(direction, phi, turning, rate, ground)
 
     def base_shear(self, history: History, motion: GroundMotion | None) -> Reals:
         """The horizontal force of the ground on the structure at each sample, to the right [N]; NaN at rest."""

@@ -31,6 +31,7 @@ def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
         "strength": None
         if crushing is None
         else {"used": crushing.used, "joint": crushing.joint, "time": crushing.time},
+        **({} if found.opens is None else {"opens": found.opens, "opens_joint": found.opens_joint or None}),
         "sums": _sums(found, mechanism),
         "per_unit_mass": not mechanism.has_mass,
     }
@@ -68,6 +69,11 @@ def contact_words(found: Contact, mechanism: Mechanism) -> str:
         said.append(f"Its impacts need {number(found.impact_friction, 3)}, and much more with a lower restitution.")
     if not isnan(found.lost):
         said.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s: {BEYOND}.")
+    if found.opens is not None and not isnan(found.opens):
+        said.append(
+            f"From {number(found.opens, 4)} s on another joint would have opened, that of {found.opens_joint}: "
+            f"{BEYOND}."
+        )
     if found.crushing is not None:
         at = f"{_where(found.crushing.joint)} at {number(found.crushing.time, 4)} s"
         if found.crushing.used > 1:
