@@ -123,20 +123,23 @@ class Assembly(Membered):
     )
     supports: dict[Name, Support] | None = Field(
         None, alias="joints", min_length=1, max_length=100,
+        examples=[{"C": {"slide": "lintel", "at": [4.0, 3.6], "along": [0.0, 1.0]}}],
         description="what holds points sideways, by names: {slide: block, at: [x, y], along: [0, 1]}",
     )  # fmt: skip
     friction: float | None = quantity(
         "coefficient of friction of every joint; left out, none slides", example=0.6, default=None, gt=0, le=10
     )
     friction_of: dict[Name, Coefficient] | None = Field(
-        None, description="that of single joints, 0 too: {left and lintel: 0.3}", min_length=1, max_length=1000
+        None, description="that of single joints, 0 too", min_length=1, max_length=1000,
+        examples=[{"left and lintel": 0.3}],
     )
     lead: Leads | None = Field(
-        None, description="the block whose rotation phi is; left out, the one on the ground that turns most"
+        None, description="the block whose rotation phi is; left out, the one on the ground that turns most",
+        examples=[{"positive": "left", "negative": "right"}],
     )
     gap: float | None = quantity(
-        "how far apart faces may be that touch; left out, 2 per mille of the smaller block", unit="m", default=None,
-        gt=0, le=10,
+        "how far apart faces may be that touch; left out, 2 per mille of the smaller block", unit="m", example=0.005,
+        default=None, gt=0, le=10,
     )  # fmt: skip
 
     @model_validator(mode="after")

@@ -81,6 +81,7 @@ class Linkage(Membered):
     cracks: dict[Name, Crack] | None = Field(
         None,
         description="cuts whose place is where lambda is least: {body, along: [[x, y], [x, y]], cut: horizontal}",
+        examples=[{"K": {"body": "lower", "along": [[0.0, 0.2], [0.0, 1.3]], "cut": "horizontal"}}],
         min_length=1,
         max_length=4,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import subprocess
 import sys
 
@@ -142,10 +143,11 @@ class TestMechanisms:
     @pytest.mark.parametrize("name", list(Registry()))
     def test_one_shows_every_field(self, name):
         data = run_json("mechanisms", name)
-        assert {row["field"] for row in data["fields"]} == set(Registry()[name].model_fields)
+        known = {each.alias or field for field, each in Registry()[name].model_fields.items()}
+        assert {row["field"] for row in data["fields"]} == known
         assert data["source"] and data["package"]
         shown = "".join(run("mechanisms", name).stdout.split())
-        assert all(field in shown for field in Registry()[name].model_fields)
+        assert all(field in shown for field in known)
 
     def test_an_unknown_one_gets_a_guess(self):
         assert "did you mean arch?" in run("mechanisms", "ach", code=2).stderr
@@ -156,6 +158,23 @@ class TestMechanisms:
         file.write_text(run("new", name).stdout, encoding="utf-8")
         assert run_json("equiv", file)["mechanism"] == name
         assert run_json("new", name)["yaml"] == file.read_text(encoding="utf-8")
+
+    @pytest.mark.parametrize(("name", "field"), [("linkage", "bodies"), ("linkage", "positive"), ("assembly", "blocks")])
+    def test_mappings_of_mappings_are_on_lines_of_their_own(self, name, field):
+        lines = run("new", name).stdout.split("\n")
+        place = lines.index(f"{field}:")
+        assert lines[place + 1].startswith("  ") and len(lines[place + 1]) < 100
+
+    @pytest.mark.parametrize("name", ["linkage", "assembly"])
+    def test_what_is_commented_out_works_too(self, name, tmp_path):
+        """`joints`, `cracks` and the like, which run over several lines."""
+        text = run("new", name).stdout
+        for field in ("cracks", "joints", "lead", "gap"):
+            text = re.sub(rf"^# {field}:.*(\n#   .*)*", lambda found: found[0].replace("# ", "", 1).replace("\n# ", "\n"),
+                          text, flags=re.M)  # fmt: skip
+        file = tmp_path / "new.yaml"
+        file.write_text(text, encoding="utf-8")
+        assert run_json("equiv", file)["mechanism"] == name
 
 
 class TestEquiv:
