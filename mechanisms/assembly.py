@@ -221,9 +221,8 @@ class Assembly(Membered):
         for words, mu in (self.friction_of or {}).items():
             one, _, other = words.partition(" and ")
             pairs[one, other] = mu
-        more = {} if self.gap is None else {"gap": self.gap / max(_size(shape) for shape in self.blocks.values())}
         try:
-            return analysis.contacts(blocks, ground, friction=self.friction, per_pair=pairs, **more)
+            return analysis.contacts(blocks, ground, friction=self.friction, per_pair=pairs, within=self.gap)
         except analysis.ContactFault as error:
             names = [name for name in error.blocks if name in self.blocks]
             asked = [words for words in self.friction_of or {} if set(words.split(" and ")) == set(error.blocks)]
@@ -465,8 +464,3 @@ class Assembly(Membered):
 
 def _letter(k: int) -> str:
     return chr(65 + k) if k < 26 else f"{chr(65 + k // 26 - 1)}{chr(65 + k % 26)}"
-
-
-def _size(shape: Shape) -> float:
-    z = np.array(shape.corners)
-    return float(np.ptp(z.real) + np.ptp(z.imag))

@@ -209,13 +209,17 @@ def _strained(
 
 
 def _landing(mechanism: Mechanism, direction: Direction) -> float:
-    """The velocity over the rate at which the feet land that the other direction turns about [m]; NaN if unknown."""
+    """The velocity over the rate at which the feet land that the other direction turns about [m]; NaN if unknown.
+
+    Unknown, too, where these do not move: what turns about the ground in one direction may rest in the other.
+    """
     hinges = mechanism.sketch().hinges.get(direction.opposite, ())
     feet = [Spot(hinge.bodies[0], hinge.point) for hinge in hinges if len(hinge.bodies) == 1 and not hinge.slide]
     if not feet:
         return float("nan")
     follow = mechanism.followed(np.zeros(1), direction)
-    return max(abs(complex(follow(foot).dz[0])) for foot in feet)
+    fastest = max(abs(complex(follow(foot).dz[0])) for foot in feet)
+    return fastest if fastest > 0 else float("nan")
 
 
 def top(mechanism: Mechanism) -> tuple[str, Spot]:
