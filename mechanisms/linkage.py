@@ -95,7 +95,8 @@ class Linkage(Membered):
         sides = {direction: getattr(self, direction.label) for direction in Direction}
         for direction, side in sides.items():
             if isinstance(side, Side):
-                self._check_names(direction, self._cracked.sides[direction])
+                if direction in self.directions:
+                    self._check_names(direction, self._cracked.sides[direction])
             elif side == "mirror" and not isinstance(sides[direction.opposite], Side):
                 raise geometry_error(direction.label, "is the mirror of the other direction, which gives no joints")
             elif side == "none" and self.one_sided != direction.opposite.label:
