@@ -373,6 +373,9 @@ class TestStandardStreams:
     def test_files_that_are_made_of_it_have_a_name_of_their_own(self):
         piped("draw", "-", given=Path(BLOCK).read_text(encoding="utf-8"))
         assert Path("rocking.png").exists()
+        Path("rocking.png").unlink()
+        run("draw", "")  # of a variable of a script that is not set
+        assert Path("rocking.png").exists()
 
     def test_what_is_wrong_with_it_is_said_and_it_is_one_thing(self):
         assert "standard input:2:" in piped("equiv", "-", given="mechanism: block\nwidht: 3\n", code=2).stderr
