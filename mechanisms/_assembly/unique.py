@@ -72,6 +72,8 @@ def velocity_space(rates: Reals) -> Reals:
     """Columns that span the velocities without any of some rates."""
     if len(rates) == 0:
         return np.eye(rates.shape[1])
+    if len(rates) > rates.shape[1]:
+        rates = np.asarray(np.linalg.qr(rates, mode="r"))  # the same squares of lengths in fewer rows
     _, values, ways = np.linalg.svd(rates)
     rank = int(np.count_nonzero(values > RANK * values[0]))
     return np.asarray(ways[rank:].T)
