@@ -142,7 +142,14 @@ def collapse(
     kept = kept_rays(rays, problem.dead, problem.live, raw)
     space = velocity_space(rays.rates[kept])
     fields = mechanisms_of(rays, kept, space, raw)
-    fields.sort(key=lambda field: not _worked_on(problem, field))  # those that the multiplier starts first
+    names = problem.frame.names
+    # Those that the multiplier starts first; and by the blocks that move, because the search finds them in any order.
+    fields.sort(
+        key=lambda field: (
+            not _worked_on(problem, field),
+            [names.index(name) for name in moving(names, field, NOTHING)],
+        )
+    )
     several = tuple(_shared(problem, field) for field in fields) if len(fields) > 1 else ()
     velocity = _sized(problem, fields[0])
     rates = _rates(problem, velocity)
