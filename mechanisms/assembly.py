@@ -32,6 +32,7 @@ from rocking_cli.core import (
     geometry_error,
     point,
     quantity,
+    rotation,
 )
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.kinematics import Points
@@ -326,6 +327,8 @@ class Assembly(Membered):
         ]
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        if direction not in self.directions:  # it leans, and rests
+            return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
         found = self._linkage(direction).motions(phi)
         return [found[name] for name in self._members]
 

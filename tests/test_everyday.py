@@ -258,7 +258,7 @@ class TestCompletion:
         ("words", "found"),
         [
             (("resp",), {"respond"}),
-            (("mechanisms", "a"), {"arch", "asymmetric_frame"}),
+            (("mechanisms", "a"), {"arch", "assembly", "asymmetric_frame"}),
             (("new", "s"), {"site", "spanning_wall", "statue", "study", "symmetric_frame"}),
             (("pulse", "--shape", "ric"), {"ricker", "ricker_antisymmetric"}),
             (("respond", "--pulse", "s"), {"sine:"}),

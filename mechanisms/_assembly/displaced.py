@@ -50,7 +50,7 @@ class Admissible:
         return self.margin >= -HELD
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Displaced:
     """An assembly whose mechanism has moved.
 

@@ -23,7 +23,7 @@ from rocking_cli.core import Direction, Reals
 NOISE = 1e-11  # of the fastest velocity: a rate that is rounding
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shared:
     """One of several mechanisms of the same multiplier.
 
@@ -42,7 +42,7 @@ class Shared:
     moves: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Collapse:
     """The weakest mechanism of an assembly.
 
