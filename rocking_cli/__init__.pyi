@@ -20,6 +20,7 @@ from rocking_cli.api.motions import respond_around as respond_around
 from rocking_cli.api.selection import select as select
 from rocking_cli.api.survey import design as design
 from rocking_cli.api.survey import survey as survey
+from rocking_cli.api.verbs import collapse as collapse
 from rocking_cli.api.verbs import draw as draw
 from rocking_cli.api.verbs import equiv as equiv
 from rocking_cli.api.verbs import equivalent as equivalent
