@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from enum import Enum
 from inspect import Parameter, cleandoc, getdoc, isclass, signature
-from textwrap import dedent, indent
 from pathlib import Path
+from textwrap import dedent, indent
 from typing import Any
 
 import click

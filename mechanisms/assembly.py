@@ -131,11 +131,15 @@ class Assembly(Membered):
         "coefficient of friction of every joint; left out, none slides", example=0.6, default=None, gt=0, le=10
     )
     friction_of: dict[Name, Coefficient] | None = Field(
-        None, description="that of single joints, 0 too", min_length=1, max_length=1000,
+        None,
+        description="that of single joints, 0 too",
+        min_length=1,
+        max_length=1000,
         examples=[{"left and lintel": 0.3}],
     )
     lead: Leads | None = Field(
-        None, description="the block whose rotation phi is; left out, the one on the ground that turns most",
+        None,
+        description="the block whose rotation phi is; left out, the one on the ground that turns most",
         examples=[{"positive": "left", "negative": "right"}],
     )
     gap: float | None = quantity(

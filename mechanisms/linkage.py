@@ -331,6 +331,8 @@ class Linkage(Membered):
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
         found = []
+        if direction in self._held and not self._linkages[direction].determinate:
+            return ()  # how a joint too many shares the forces is not known
         for each in self._held[direction].joints if direction in self._held else ():
             names, face = each.bodies, self._face(each.bodies, each.at)
             letter = f"{each.name}{direction.prime}" if getattr(self, direction.label) == "mirror" else each.name
