@@ -335,7 +335,7 @@ class Linkage(Membered):
             return ()  # how a joint too many shares the forces is not known
         for each in self._held[direction].joints if direction in self._held else ():
             names, face = each.bodies, self._face(each.bodies, each.at)
-            letter = f"{each.name}{direction.prime}" if getattr(self, direction.label) == "mirror" else each.name
+            letter = self._letter(each.name, direction)
             if isinstance(each, Guide):
                 if len(names) > 1:
                     return ()  # its line turns: the forces there are not looked at
@@ -345,11 +345,19 @@ class Linkage(Membered):
             if len(names) == 1:
                 found.append(Joint(letter, each.at, names, normal=normal))
                 continue
+            if still := self._linkages[direction].resting.intersection(names):  # what it bears on is the ground here
+                moves = next(name for name in names if name not in still)
+                found.append(Joint(letter, each.at, (moves,), normal=normal if moves == names[1] else -normal))
+                continue
             flat = names[face.inside] if face is not None and face.inside is not None else None
             if normal.imag < 0:  # the second bears the first
                 names, normal = names[::-1], -normal
             found.append(Joint(letter, each.at, names, normal=normal, face=flat or names[0]))
         return found
+
+    def _letter(self, name: str, direction: Direction) -> str:
+        """What a joint is called; of a mirror image with a prime."""
+        return f"{name}{direction.prime}" if getattr(self, direction.label) == "mirror" else name
 
     def sketch(self) -> Sketch:
         return Sketch(
@@ -370,7 +378,7 @@ class Linkage(Membered):
 
     def _pictured(self, direction: Direction) -> Sequence[Hinge]:
         return self.joints(direction) or [
-            Hinge(each.name, each.at, each.bodies)
+            Hinge(self._letter(each.name, direction), each.at, each.bodies)
             for each in self._held[direction].joints
             if not isinstance(each, Guide)
         ]

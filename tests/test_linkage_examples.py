@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import runpy
 
 import numpy as np
@@ -13,6 +14,7 @@ from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import build_model
 from rocking_cli.testing import contract
 from tests.conftest import EXAMPLES
+from tests.test_cli import run_json
 
 POSITIVE, NEGATIVE = Direction.POSITIVE, Direction.NEGATIVE
 LINKAGES = sorted(path.stem for path in (EXAMPLES / "linkages").glob("*.yaml"))
@@ -118,3 +120,23 @@ def test_the_portal_turns_as_a_frame_and_the_wall_at_its_upper_joint():
         assert portal.collapse(s).friction_needed < 0.3 and portal.collapse(s).valid_to is None
         assert sorted(map(sorted, wall.collapse(s).groups)) == [["base", "middle"], ["top"]]
     assert wall.uplift(POSITIVE) > 1.1 * wall.uplift(NEGATIVE)
+
+
+def test_what_bears_on_a_body_at_rest_bears_on_the_ground():
+    """The shear of the facade through its crack: mass times acceleration of what turns, the thrust and the tie."""
+    (joint,) = structure("masonry/cracked_facade").joints(POSITIVE)
+    assert joint.bodies == ("facade 2",) and joint.normal == pytest.approx(1j)
+    for s in Direction:
+        (joint,) = structure("linkages/pinnacle_on_buttress").joints(s)
+        assert joint.bodies == ("pinnacle",) and joint.normal == pytest.approx(1j)
+    found = run_json("respond", EXAMPLES / "masonry" / "cracked_facade.yaml", "--record", EXAMPLES / "accel.csv")
+    assert '"base_shear": 0.0' not in json.dumps(found)
+
+
+def test_a_point_that_a_joint_holds_does_not_move_by_rounding():
+    from rocking_cli.studies.movements import Watched
+
+    moves = Watched(structure("masonry/wall_of_three"))
+    (held,) = [spot for name, spot in moves.points.items() if name == "floor"]
+    found = moves._displacement(held, np.linspace(0, 0.1, 11), POSITIVE)
+    assert (found.real == 0).all() and (found.imag[1:] > 0).all()

@@ -276,6 +276,11 @@ class LinkageMotion:
         return found
 
     @property
+    def resting(self) -> set[str]:
+        """The bodies that are fixed to the ground."""
+        return {name for name, link in self._link_of.items() if link is None}
+
+    @property
     def determinate(self) -> bool:
         """Whether statics alone says what its joints bear: no joint is one too many."""
         forces = sum(2 if isinstance(joint, Pin) else 1 for joint in self.joints)
