@@ -195,8 +195,9 @@ def collapse(structure: Structure) -> MappingAnswer[Direction, CollapseMechanism
     --------
     A block of 1 m x 4 m on the ground:
 
-    >>> block = {"polygon": [[0, 0], [1, 0], [1, 4], [0, 4]]}
-    >>> ground = {"polygon": [[-1, -1], [2, -1], [2, 0], [-1, 0]]}
+    >>> import rocking_cli as rk
+    >>> block = {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 4.0], [0.0, 4.0]]}
+    >>> ground = {"polygon": [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]]}
     >>> answer = rk.collapse(rk.Assembly(blocks={"block": block}, ground={"ground": ground}))
     >>> round(answer[rk.Direction.POSITIVE].lambda_, 12)
     0.25
