@@ -273,8 +273,8 @@ def helpers_of_the_guide():
 
 def as_written(found):
     """A signature as its author wrote it."""
-    text = re.sub(r"ForwardRef\('([^']*)'[^)]*\)", r"\1", str(found)).removesuffix(" -> None")
-    text = re.sub(r"(: |-> )'([^']*)'", r"\1\2", text).replace("<factory>", "...")
+    text = re.sub(r"ForwardRef\('([^']*)'[^)]*\)", r"\1", str(found))
+    text = re.sub(r"(: |-> )'([^']*)'", r"\1\2", text).replace("<factory>", "...").removesuffix(" -> None")
     return re.sub(r"^\(self(, )?", "(", text)
 
 
