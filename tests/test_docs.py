@@ -22,6 +22,7 @@ from rocking_cli.core import Angle, Length, Line, box
 from rocking_cli.core.mechanism import ANSWERS
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.testing import contract
+from rocking_cli.views.collapse import data
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
 
@@ -311,3 +312,26 @@ def test_links_lead_somewhere_in_the_repository_too(page):
     for link in re.findall(r"\]\(([^)#\s]+)", text):
         if not link.startswith("https:"):
             assert (page.parent / link).exists(), link
+
+
+@pytest.mark.parametrize("name", ["linkage", "assembly"])
+def test_what_is_refused_is_said_in_the_words_of_the_code(name):
+    """Each message of the table, between the names that it stands with."""
+    section = text_of(f"mechanisms/{name}.md").partition("## What is refused, and what to do\n")[2]
+    messages = [row.split("|")[1].strip() for row in section.split("\n") if row.startswith("| ")][1:]
+    files = [*PROJECT.glob("mechanisms/**/*.py"), *PROJECT.glob("rocking_cli/core/*.py")]
+    code = " ".join(" ".join(file.read_text(encoding="utf-8").split()) for file in files)
+    code = re.sub(r'" f?"', "", code)
+    assert len(messages) > 8
+    for message in messages:
+        parts = re.split(r"\b[A-Z]\b(?:, [A-Z]\b)*|\.\.\.|[;:] |touches", f" {message} ")
+        for words in (each.strip(" ,") for each in parts):
+            assert words in code, (message, words)
+
+
+def test_the_json_of_collapse_is_what_the_page_says():
+    section = text_of("commands.md").partition("## `rocking collapse [FILE]`\n")[2].partition("\n## ")[0]
+    said = set(re.findall(r'"(\w+)"', section)) - {"directions", "positive", "negative", "name", "between", "at"}
+    found = data(rocking_cli.load_structure(PROJECT / "examples" / "assembly.yaml").collapse(core.Direction.POSITIVE))
+    assert said - {"joint", "force"} == set(found)
+    assert set(found["thrust"][0]) == {"joint", "at", "force"} and set(found["hinges"][0]) == {"name", "between", "at"}
