@@ -315,7 +315,14 @@ class Assembly(Membered):
         try:
             linkage = LinkageMotion(centres, [*pins, *guides], lead, direction, fixed, rest)
         except NoMotion as error:
-            raise MechanismError(f"in the {direction.label} direction {error.reason}") from None
+            why = error.reason
+            if found.lifted:
+                joints = [self._joint(k) for k in found.lifted]
+                why = (
+                    f"{' and '.join(joints)} open at both ends and hold by shear all the same, as joints without "
+                    f"friction never slide: give friction, or `friction_of: {{{joints[0]}: 0}}`"
+                )
+            raise MechanismError(f"in the {direction.label} direction {why}") from None
         turns = float(linkage.motions(np.zeros(1))[lead].dpsi[0])
         number = next(k for k, group in enumerate(found.groups) if lead in group)
         if turns * found.velocity[number, 2] < 0:

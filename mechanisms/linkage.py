@@ -155,7 +155,12 @@ class Linkage(Membered):
             for part in (np.imag, lambda dz: direction * np.real(dz))
         )
         if lifted < 0 and driven < 0:
-            raise geometry_error(where, f"{self._held[direction].lead} turns the wrong way: let another body lead")
+            lead = self._held[direction].lead
+            able = [name for name, motion in motions.items() if motion.dpsi[0] * motions[lead].dpsi[0] < 0]
+            way = "clockwise" if direction > 0 else "anticlockwise"
+            other = f"let another body lead, of {', '.join(able)}"
+            why = other if able else f"nothing in it turns {way} as it is thrown"
+            raise geometry_error(where, f"{lead} turns the wrong way: {why}")
         self._check_opens(direction, motions)
 
     def _check_opens(self, direction: Direction, motions: Mapping[str, RigidMotion]) -> None:

@@ -71,7 +71,8 @@ A_LITTLE = 0.25  # of the critical rotation, in which nothing may go through the
 FLUSH = 1e-8  # of the size of the structure: how near to the ground counts as on it
 A_BIT = 0.01  # of the weight: what is hung on a structure to see whether it takes it
 A_MASS = 1000.0  # kg
-HUNG = ("loads", "ties", "interlock", "one_sided", "rebound")  # fields that every mechanism takes
+SIDED = ("one_sided", "rebound")
+HUNG = ("loads", "ties", "interlock", *SIDED)  # fields that every mechanism takes
 GIVEN = 0.625  # a coefficient of restitution that no structure has by itself
 
 
@@ -148,7 +149,7 @@ def bodies_have_mass(structure: Mechanism) -> None:
 def gives_a_motion_for_each_body(structure: Mechanism) -> None:
     """The motion over n rotations has n places for each body, and each is the same if asked for by itself."""
     bodies = structure.bodies()
-    for direction in Direction:
+    for direction in structure.directions:
         phi = np.linspace(0.0, 0.5, 7) * structure.limit(direction)
         together = structure.motion(phi, direction)
         _demand(len(together) == len(bodies), f"{len(together)} motions for {len(bodies)} bodies")
@@ -173,7 +174,7 @@ def gives_a_motion_for_each_body(structure: Mechanism) -> None:
 def moves_from_rest(structure: Mechanism) -> None:
     """At phi = 0 every body is where it rests, in both directions."""
     size = _size(structure)
-    for direction in Direction:
+    for direction in structure.directions:
         for body, motion in zip(structure.bodies(), structure.motion(np.zeros(1), direction), strict=True):
             place, turn = complex(motion.carry(body.centroid)[0][0]), float(motion.psi[0])
             _demand(
@@ -186,7 +187,7 @@ def moves_from_rest(structure: Mechanism) -> None:
 def moves_without_jumps(structure: Mechanism) -> None:
     """No body jumps from one place, or from one velocity, to another, up to the kinematic limit."""
     size = _size(structure)
-    for direction in Direction:
+    for direction in structure.directions:
         x = np.linspace(0.0, 1.0, CELLS + 1)
         phi = FURTHEST * structure.limit(direction) * x * (2 - x)  # finer near the limit, where a linkage locks
         for body, motion in zip(structure.bodies(), structure.motion(phi, direction), strict=True):
@@ -202,7 +203,7 @@ def moves_without_jumps(structure: Mechanism) -> None:
 
 def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
     """First and second derivatives agree with difference quotients of what they derive."""
-    for direction in Direction:
+    for direction in structure.directions:
         top = _top(structure, direction)
         step = min(STEP, SHARE * top)
         phi = np.linspace(0.02, 1.0, 9) * top
@@ -226,7 +227,7 @@ def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
 
 def energies_agree_with_coefficients(structure: Mechanism) -> None:
     """G is V'/g and J is I'/2, by difference quotients."""
-    for direction in Direction:
+    for direction in structure.directions:
         phi_cr = _phi_cr(structure, direction)
         step = min(STEP, SHARE * phi_cr)
         phi = np.linspace(0.05, 0.95, 7) * phi_cr
@@ -242,7 +243,7 @@ def energies_agree_with_coefficients(structure: Mechanism) -> None:
 
 def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
     """I, J, G, B, their derivatives, V and both energies are what the masses and motions of the bodies make them."""
-    for direction in Direction:
+    for direction in structure.directions:
         phi = np.linspace(0.0, 1.0, 33) * _top(structure, direction)
         says, makes = structure.coefficients(phi, direction), _of_bodies(structure, phi, direction)
         moment = (np.abs(makes.G) + np.abs(makes.B)).max()
@@ -264,7 +265,7 @@ def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
 
 def stands_and_can_overturn(structure: Mechanism) -> None:
     """It resists at rest, balances before its kinematic limit, and falls beyond; what is tied may only resist."""
-    for direction in Direction:
+    for direction in structure.directions:
         if not _overturns(structure, direction):
             _demand(structure.uplift(direction) > 0, f"it does not stand in the {direction.label} direction")
             continue
@@ -289,7 +290,7 @@ def stands_and_can_overturn(structure: Mechanism) -> None:
 
 def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
     """The uplift and the critical rotation it gives are those that its bodies and their motion give."""
-    for direction in Direction:
+    for direction in structure.directions:
         here = f"in the {direction.label} direction"
         at = partial(_of_bodies, structure, direction=direction)
         _agree(f"uplift {here}", structure.uplift(direction), equilibrium.uplift_acceleration(at, structure.gravity))
@@ -300,15 +301,15 @@ def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
 
 def restitution_is_that_of_the_bodies(structure: Mechanism) -> None:
     """Restitution is that of the kinematics of its bodies, or what the user gives."""
-    if structure.one_sided is not None:
-        structure = structure.model_copy(update={"one_sided": None, "rebound": None})
+    if not structure.rocks_both_ways:
+        return  # what is left says nothing of an impact
     bodies, rest = structure.weighed(), np.zeros(1)
     masses = [thing for thing in structure.attached if isinstance(thing, PointMass)]
     bare = structure.model_copy(update={"restitution": None})
     given = structure.model_copy(update={"restitution": GIVEN})
     both = {"positive_to_negative": GIVEN, "negative_to_positive": GIVEN**2}
     each = structure.model_copy(update={"restitution": both})
-    for direction in Direction:
+    for direction in structure.directions:
         motions = structure.motion(rest, direction), structure.motion(rest, direction.opposite)
         own = kinematic_restitution(bodies, *motions, masses)
         of = f"of an impact that ends motion in the {direction.label} direction"
@@ -326,7 +327,7 @@ def a_copy_is_the_same_structure(structure: Mechanism) -> None:
     _demand(type(copy) is type(structure), f"a copy is a {type(copy).__name__}")
     _demand(changed == ["gravity"] and copy.gravity == gravity, f"a copy with another gravity changes {changed}")
     # A force in N, and the strength of a pivot, are not what they were over the weight.
-    for direction in Direction if not structure.attached and structure.crushing is None else ():
+    for direction in structure.directions if not structure.attached and structure.crushing is None else ():
         _agree(
             f"uplift of a copy in the {direction.label} direction", copy.uplift(direction), structure.uplift(direction)
         )
@@ -339,7 +340,7 @@ def has_an_equivalent_block(structure: Mechanism) -> None:
     except NoEquivalentBlock as error:
         _demand(structure.bends, str(error))
         return
-    for direction in Direction:
+    for direction in structure.directions:
         for key, value in equivalence[direction].as_dict().items():
             here = f"{key} of the equivalent block in the {direction.label} direction is {value}"
             _demand(bool(np.isfinite(value)) and (value > 0 or key == "eta"), here)
@@ -347,8 +348,10 @@ def has_an_equivalent_block(structure: Mechanism) -> None:
 
 def an_impact_gains_no_energy(structure: Mechanism) -> None:
     """An impact with the restitution of the kinematics gains no energy."""
+    if not structure.rocks_both_ways:
+        return
     rest = np.zeros(1)
-    for direction in Direction:
+    for direction in structure.directions:
         eta = structure.restitution_from_kinematics(direction)
         before, after = (_of_bodies(structure, rest, side).I[0] for side in (direction, direction.opposite))
         _demand(
@@ -383,7 +386,7 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
         work = ((z - spot.at) * np.conj(force)).real
         return share["weight"] * mass * (z - spot.at).imag, prestress * longer + stiffness * longer**2 / 2 - work
 
-    for direction in Direction:
+    for direction in structure.directions:
         top = _top(bare, direction)
         step = min(STEP, SHARE * top)
         phi = np.linspace(0.02, 1.0, 9) * top
@@ -406,6 +409,8 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
             _near(what, phi, getattr(says, name), getattr(own, name) + added, 1e-6 * big, "of bodies and load")
         turned = _quotient([each.Q for each in _around(laden, phi, direction, step)], step).real
         _near(f"dQ, {direction.label} direction,", phi, says.dQ, turned, 1e-6 * bare.gravity * moment, "the quotient")
+        if not bare.rocks_both_ways:
+            continue
         old, new = (complex(bare.followed(np.zeros(1), side)(spot).dz[0]) for side in (direction, direction.opposite))
         before, after = bare.restitution_from_kinematics(direction), laden.restitution_from_kinematics(direction)
         base = float(bare.coefficients(np.zeros(1), direction.opposite).I[0])
@@ -419,7 +424,7 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
 
 def may_lean_on_side_walls(structure: Mechanism) -> None:
     """It may rock to one side only, unless it refuses that, with the uplift and critical rotation of that side."""
-    for direction in Direction:
+    for direction in structure.directions:
         sided = _with(structure, one_sided=direction.label, rebound=GIVEN, restitution=None)
         if sided is None:
             return
@@ -471,7 +476,7 @@ def hinges_hold_together(structure: Mechanism) -> None:
 
 def joints_hold_what_moves(structure: Mechanism) -> None:
     """The joints, where there are any, join what never parts there, and leave the bodies one motion."""
-    for direction in Direction:
+    for direction in structure.directions:
         joints = structure.joints(direction)
         names = [body.name for body in structure.bodies()]
         for joint in joints:
@@ -513,7 +518,7 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
     size = abs(drawn.extent[1] - drawn.extent[0])
     flush = FLUSH * size
     bodies, level = structure.bodies(), not sketch.ground
-    for direction in Direction:
+    for direction in structure.directions:
         phi = np.linspace(0.0, A_LITTLE, 9) * _phi_cr(structure, direction)
         motions = structure.motion(phi, direction)
         as_one = _moving_as_one(motions, size)
@@ -594,10 +599,15 @@ def _demand(holds: object, otherwise: str) -> None:
         raise AssertionError(otherwise)
 
 
-def _alone(check: Callable[[Mechanism], object], structure: Mechanism) -> None:
+def _alone(check: Callable[[Mechanism], object], structure: Mechanism) -> object:
     """Hold a structure to a check without what users hang on it, which may leave it no critical rotation."""
     hung = [key for key in HUNG if getattr(structure, key, None) is not None]
-    check(structure.model_copy(update=dict.fromkeys(hung)) if hung else structure)
+    if not hung:
+        return check(structure)
+    alone = _with(structure, **dict.fromkeys(hung))
+    if alone is None:  # it cannot rock the other way
+        alone = structure.model_copy(update=dict.fromkeys([key for key in hung if key not in SIDED]))
+    return check(alone)
 
 
 def _with(structure: Mechanism, **fields: object) -> Mechanism | None:
@@ -682,7 +692,7 @@ def _size(structure: Mechanism) -> float:
     """How far a centroid moves with phi at rest, the most of any [m]: of the size of the levers."""
     return max(
         abs(complex(motion.carry(body.centroid)[1][0]))
-        for direction in Direction
+        for direction in structure.directions
         for body, motion in zip(structure.bodies(), structure.motion(np.zeros(1), direction), strict=True)
     )
 
