@@ -93,8 +93,10 @@ class Linkage(Membered):
         self._check_masses("bodies")
         sides = {direction: getattr(self, direction.label) for direction in Direction}
         for direction, side in sides.items():
-            if isinstance(side, Side):
+            if isinstance(side, Side) and direction in self.directions:
                 self._check_names(direction, self._cracked.sides[direction])
+            elif side == "mirror" and direction not in self.directions:
+                continue
             elif side == "mirror" and not isinstance(sides[direction.opposite], Side):
                 raise geometry_error(direction.label, "is the mirror of the other direction, which gives no joints")
             elif side == "none" and self.one_sided != direction.opposite.label:
