@@ -32,6 +32,7 @@ from rocking_cli.core import (
     geometry_error,
     point,
     quantity,
+    rotation,
 )
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
@@ -372,6 +373,8 @@ class Assembly(Membered):
         ]
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        if direction not in self.directions:  # it leans, and rests
+            return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
         found = self._linkage(direction).motions(phi)
         return [found[name] for name in self._members]
 
@@ -425,28 +428,27 @@ class Assembly(Membered):
     def margins(
         self, direction: Direction, phi: Reals, turning: Reals, rate: Reals, ground: Points
     ) -> tuple[Reals, Sequence[str]]:
-        motions, going = self.motion(phi, direction), Going(turning, rate, ground)
-        forces = under_way(self.weighed(), motions, self.attached, direction, self.gravity, going)
-        margins, names = np.full(len(phi), np.nan), [""] * len(phi)
-        for k, at in enumerate(phi):
-            try:
-                found = self._displaced(direction, float(at)).admissible(forces[k][None])[0]
-            except analysis.NoAnswer:
-                continue  # of so many moments one may be missing
-            margins[k] = found.margin
-            if found.contact is not None:
-                names[k] = self._joint(found.contact)
-        return margins, names
+        found = self._admissible(direction, phi, Going(turning, rate, ground))
+        margins = np.array([np.nan if each is None else each.margin for each in found])
+        contacts = [None if each is None else each.contact for each in found]
+        return margins, ["" if k is None else self._joint(k) for k in contacts]
 
-    def _displaced(self, direction: Direction, phi: float) -> analysis.Displaced:
-        motions = self.motion(np.array([phi]), direction)
-        moved = {
-            body.name: (complex(motion.carry(body.centroid)[0][0]), float(motion.psi[0]))
-            for body, motion in zip(self.weighed(), motions, strict=True)
-        }
-        states = self._groups(direction).states
-        weight = self._collapse(direction).problem.weight
-        return analysis.Displaced(self._blocks, self._contacts, self._guides, states, moved, weight)
+    def _admissible(self, direction: Direction, phi: Reals, going: Going) -> list[analysis.Admissible | None]:
+        """Whether the joints carry the forces of each state; None of one that the solver has no answer for."""
+        bodies, motions = self.weighed(), self.motion(phi, direction)
+        forces = under_way(bodies, motions, self.attached, direction, self.gravity, going)
+        places = {body.name: motion.carry(body.centroid)[0] for body, motion in zip(bodies, motions, strict=True)}
+        turns = {body.name: motion.psi for body, motion in zip(bodies, motions, strict=True)}
+        states, weight = self._groups(direction).states, self._collapse(direction).problem.weight
+        found: list[analysis.Admissible | None] = []
+        for k, each in enumerate(forces):
+            moved = {name: (complex(places[name][k]), float(turns[name][k])) for name in places}
+            here = analysis.Displaced(self._blocks, self._contacts, self._guides, states, moved, weight)
+            try:
+                found += here.admissible(each[None])
+            except analysis.NoAnswer:
+                found.append(None)
+        return found
 
     @cached_property
     def _valid(self) -> Mapping[Direction, tuple[float, int, float] | None]:
@@ -454,28 +456,24 @@ class Assembly(Membered):
         return {direction: self._valid_to(direction) for direction in self.directions}
 
     def _valid_to(self, direction: Direction) -> tuple[float, int, float] | None:
-        at: dict[float, tuple[analysis.Admissible, float]] = {}
-
-        def margin(phi: float) -> float:
+        def held(phi: float) -> tuple[analysis.Admissible, float]:
             here = np.array([phi])
-            held = self.coefficients(here, direction)
-            share = float(held.restoring(self.gravity)[0] / held.B[0])
-            going = Going(np.zeros(1), np.zeros(1), np.full(1, -int(direction) * share * self.gravity + 0j))
-            forces = under_way(
-                self.weighed(), self.motion(here, direction), self.attached, direction, self.gravity, going
-            )
-            at[phi] = self._displaced(direction, phi).admissible(forces)[0], share
-            return at[phi][0].margin
+            there = self.coefficients(here, direction)
+            share = float(there.restoring(self.gravity)[0] / there.B[0])
+            push = np.full(1, -int(direction) * share * self.gravity + 0j)
+            found = self._admissible(direction, here, Going(np.zeros(1), np.zeros(1), push))[0]
+            if found is None:
+                raise MechanismError(f"the forces in its joints at {phi:.4g} rad could not be found")
+            return found, share
 
         try:
             end = self.critical_rotation(direction)
         except NoCriticalRotation:
             end = self.limit(direction) * (1 - 1e-6)  # a tie holds it; at the very end it may lock
-        first = analysis.first_violation(margin, end)
+        first = analysis.first_violation(lambda phi: held(phi)[0].margin, end)
         if first is None:
             return None
-        margin(first)
-        found, share = at[first]
+        found, share = held(first)
         return first, found.contact if found.contact is not None else 0, share
 
     @cached_property

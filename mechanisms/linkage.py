@@ -28,6 +28,7 @@ from rocking_cli.core import (
     RigidMotion,
     Sketch,
     geometry_error,
+    rotation,
 )
 from rocking_cli.core.fields import Name
 from rocking_cli.core.ties import Place, Tie
@@ -93,10 +94,8 @@ class Linkage(Membered):
         self._check_masses("bodies")
         sides = {direction: getattr(self, direction.label) for direction in Direction}
         for direction, side in sides.items():
-            if isinstance(side, Side) and direction in self.directions:
+            if direction in self._sides:
                 self._check_names(direction, self._cracked.sides[direction])
-            elif side == "mirror" and direction not in self.directions:
-                continue
             elif side == "mirror" and not isinstance(sides[direction.opposite], Side):
                 raise geometry_error(direction.label, "is the mirror of the other direction, which gives no joints")
             elif side == "none" and self.one_sided != direction.opposite.label:
@@ -302,6 +301,8 @@ class Linkage(Membered):
         return self._linkages[direction]
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        if direction not in self.directions:  # it leans, and rests
+            return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
         found = self._linkage(direction).motions(phi)
         return [found[name] for name in self._members]
 
@@ -351,7 +352,18 @@ class Linkage(Membered):
         return Sketch(
             outlines={name: each.outlines for name, each in self._members.items() if each.outlines},
             hinges={direction: self._pictured(direction) for direction in self.directions},
+            ground=self._under_what_rests(),
         )
+
+    def _under_what_rests(self) -> Sequence[Sequence[complex]]:
+        """The ground under bodies that are fixed to it; of others it is drawn under their pivots."""
+        names = {name for held in self._held.values() for name in held.ground}
+        points = [z for name in names for shape in self._members[name].outlines for z in shape]
+        if not points:
+            return []
+        x, y = [z.real for z in points], min(z.imag for z in points)
+        room = max(max(x) - min(x), 0.1 * abs(self._middle - min(x)))
+        return [(complex(min(x) - room, y), complex(max(x) + room, y))]
 
     def _pictured(self, direction: Direction) -> Sequence[Hinge]:
         return self.joints(direction) or [

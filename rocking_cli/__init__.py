@@ -23,6 +23,7 @@ __version__ = "0.1.0"
 _HOME = {
     "api.answer": ["Answer", "MappingAnswer"],
     "api.verbs": [
+        "collapse",
         "draw",
         "equiv",
         "equivalent",

@@ -1,10 +1,12 @@
 """Written by `make stub`: do not edit."""
 
 from mechanisms.arch import Arch as Arch
+from mechanisms.assembly import Assembly as Assembly
 from mechanisms.asymmetric_frame import AsymmetricFrame as AsymmetricFrame
 from mechanisms.block import Block as Block
 from mechanisms.cone import Cone as Cone
 from mechanisms.curve import Curve as Curve
+from mechanisms.linkage import Linkage as Linkage
 from mechanisms.point_mass import PointMass as PointMass
 from mechanisms.rigid_body import RigidBody as RigidBody
 from mechanisms.spanning_wall import SpanningWall as SpanningWall
@@ -18,6 +20,7 @@ from rocking_cli.api.motions import respond_around as respond_around
 from rocking_cli.api.selection import select as select
 from rocking_cli.api.survey import design as design
 from rocking_cli.api.survey import survey as survey
+from rocking_cli.api.verbs import collapse as collapse
 from rocking_cli.api.verbs import draw as draw
 from rocking_cli.api.verbs import equiv as equiv
 from rocking_cli.api.verbs import equivalent as equivalent

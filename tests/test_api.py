@@ -120,7 +120,10 @@ def test_every_structure_under_every_motion_with_every_factor(wall):
     assert frame.loc[10, ["structure", "motion", "scale"]].tolist() == ["wall", "accel.csv", -1.0]
 
 
+BLOCK = {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 4.0], [0.0, 4.0]]}
+GROUND = {"polygon": [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]]}
 ANSWERS = {
+    "collapse": lambda: rk.collapse(rk.Assembly(blocks={"block": BLOCK}, ground={"ground": GROUND})),
     "equiv": lambda: rk.equiv(rk.Block(width=0.7, height=2.8)),
     "draw": lambda: rk.draw(rk.Block(width=0.7, height=2.8), at=0.5),
     "record": lambda: rk.record("sine:0.6g:0.5s"),

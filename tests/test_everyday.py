@@ -258,7 +258,7 @@ class TestCompletion:
         ("words", "found"),
         [
             (("resp",), {"respond"}),
-            (("mechanisms", "a"), {"arch", "asymmetric_frame"}),
+            (("mechanisms", "a"), {"arch", "assembly", "asymmetric_frame"}),
             (("new", "s"), {"site", "spanning_wall", "statue", "study", "symmetric_frame"}),
             (("pulse", "--shape", "ric"), {"ricker", "ricker_antisymmetric"}),
             (("respond", "--pulse", "s"), {"sine:"}),
@@ -372,6 +372,9 @@ class TestStandardStreams:
 
     def test_files_that_are_made_of_it_have_a_name_of_their_own(self):
         piped("draw", "-", given=Path(BLOCK).read_text(encoding="utf-8"))
+        assert Path("rocking.png").exists()
+        Path("rocking.png").unlink()
+        run("draw", "")  # of a variable of a script that is not set
         assert Path("rocking.png").exists()
 
     def test_what_is_wrong_with_it_is_said_and_it_is_one_thing(self):

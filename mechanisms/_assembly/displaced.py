@@ -18,10 +18,10 @@ from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.mechanism import Opening
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Bearing, Bearings, Frame, scaled
+from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals
 
 BALANCED = 1e-6  # of the weight: forces that joints need not carry may be no more, or they are not in balance
-RANK = 1e-10  # of the largest singular value
 HELD = 1e-9  # of the weight: a tension that counts as none
 STEPS = 64  # in which a first violation is looked for
 
@@ -50,7 +50,7 @@ class Admissible:
         return self.margin >= -HELD
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Displaced:
     """An assembly whose mechanism has moved.
 
@@ -113,9 +113,8 @@ class Displaced:
     @cached_property
     def _split(self) -> tuple[Reals, Reals]:
         """Forces on the blocks that joints can balance, and those that none can: two bases, by columns."""
-        basis, values, _ = np.linalg.svd(self.bearings.rates.T)
-        rank = int(np.count_nonzero(values > RANK * values[0]))
-        return basis[:, :rank], basis[:, rank:]
+        free = velocity_space(self.bearings.rates)
+        return velocity_space(free.T), free
 
     def multiplier(self, dead: Reals, live: Reals) -> float:
         """The multiplier of `live` that holds the mechanism here, by virtual work; the two as of `collapse`."""

@@ -21,7 +21,7 @@ SAME = 1e-9  # of the multiplier: what is left as it is
 FINE = 1e-6  # of the coefficient of friction
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Friction:
     """The least friction of all joints that leaves a multiplier as it is.
 

@@ -2,7 +2,8 @@
 
 The multiplier lambda is the greatest for which forces in the joints balance every block (static theorem); the prices
 of that linear programme are the velocities of a mechanism of the same multiplier (kinematic theorem). Joints bear no
-tension. With friction, flow is associated: a joint that slides also opens, which over-estimates lambda.
+tension. With friction, flow is associated: a joint that slides also opens, which over-estimates lambda. Between parts
+that never slide elsewhere the least friction can so jam a joint; `friction` then needs more than any joint has.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from rocking_cli.core import Direction, Reals
 NOISE = 1e-11  # of the fastest velocity: a rate that is rounding
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shared:
     """One of several mechanisms of the same multiplier.
 
@@ -41,7 +42,7 @@ class Shared:
     moves: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Collapse:
     """The weakest mechanism of an assembly.
 
@@ -137,12 +138,18 @@ def collapse(
         raise NothingMoves("no acceleration sets it in motion", problem.frame.names)
     if multiplier <= NOTHING:
         falls = moving(problem.frame.names, raw, 1e-6)
-        verb = "moves" if len(falls) == 1 else "move"
-        raise DoesNotStand(f"it stands on an edge: with the least acceleration {listed(falls)} {verb}", falls)
+        raise DoesNotStand(f"it barely stands: the least acceleration sets {listed(falls)} in motion", falls)
     kept = kept_rays(rays, problem.dead, problem.live, raw)
     space = velocity_space(rays.rates[kept])
     fields = mechanisms_of(rays, kept, space, raw)
-    fields.sort(key=lambda field: not _worked_on(problem, field))  # those that the multiplier starts first
+    names = problem.frame.names
+    # Those that the multiplier starts first; and by the blocks that move, because the search finds them in any order.
+    fields.sort(
+        key=lambda field: (
+            not _worked_on(problem, field),
+            [names.index(name) for name in moving(names, field, NOTHING)],
+        )
+    )
     several = tuple(_shared(problem, field) for field in fields) if len(fields) > 1 else ()
     velocity = _sized(problem, fields[0])
     rates = _rates(problem, velocity)

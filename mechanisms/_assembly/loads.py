@@ -13,7 +13,7 @@ from rocking_cli.core.attachments import followed
 from rocking_cli.core.kinematics import Points
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Going:
     """How a mechanism goes in some states, shape (n,) each.
 

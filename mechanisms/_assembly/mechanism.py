@@ -49,7 +49,7 @@ class Hinge:
     contact: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Linkage:
     """A mechanism as a linkage of rigid groups.
 

@@ -17,7 +17,7 @@ STRONGEST = 1e4  # multiplier beyond which nothing counts as moving
 NOTHING = 1e-9  # of the weight: a force that is none; of the multiplier: what is no more than none
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
     """An assembly and what acts on it, without units: moments over the size, forces over the weight.
 

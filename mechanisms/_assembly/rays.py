@@ -36,7 +36,7 @@ class Bearing:
     friction: float | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Frame:
     """The blocks in the order of the unknowns, where their centroids are [m], and the size of the whole [m]."""
 
@@ -62,7 +62,7 @@ class Frame:
         return row.ravel()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bearings:
     """The forces of all joints and guides, by points: rows of `rates` are their velocities.
 
@@ -122,7 +122,7 @@ class Bearings:
         return Rays(mix @ self.rates, mix, one_sided, owner[np.abs(mix).argmax(axis=1)])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rays:
     """What each joint can exert, as multiples of rays.
 

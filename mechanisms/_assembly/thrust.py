@@ -32,7 +32,7 @@ class Passage:
     force: complex
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Thrust:
     """The forces in all joints that carry a normal force.
 

@@ -72,6 +72,8 @@ def velocity_space(rates: Reals) -> Reals:
     """Columns that span the velocities without any of some rates."""
     if len(rates) == 0:
         return np.eye(rates.shape[1])
+    if len(rates) > rates.shape[1]:
+        rates = np.asarray(np.linalg.qr(rates, mode="r"))  # the same squares of lengths in fewer rows
     _, values, ways = np.linalg.svd(rates)
     rank = int(np.count_nonzero(values > RANK * values[0]))
     return np.asarray(ways[rank:].T)
@@ -106,11 +108,7 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
         best = least(np.append(row, np.zeros(n)), np.vstack([equal, total]), np.append(np.zeros(n), 1.0), low, high)
         if best is None:
             continue
-        # The joints that do not open at this vertex say it without the solver's noise.
-        closed = opening[best.x[d:] <= 1e-9]
-        exact = velocity_space(closed) if len(closed) else np.eye(d)
-        z = exact[:, 0] * np.sign(exact[:, 0] @ best.x[:d]) if exact.shape[1] == 1 else best.x[:d]
-        field = _clean(space @ z)
+        field = _clean(space @ best.x[:d])
         field /= np.linalg.norm(field)
         if all(np.abs(field - other).max() > 1e-6 for other in found):
             found.append(field)

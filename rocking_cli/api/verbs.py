@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking_cli.api.answer import Answer, MappingAnswer
-from rocking_cli.core import Equivalence, Mechanism
+from rocking_cli.core import CollapseMechanism, Direction, Equivalence, Mechanism
 from rocking_cli.dynamics import history as histories
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL, TAIL, History
@@ -169,6 +169,52 @@ def draw(structure: Structure, *, at: float | None = None) -> Answer[Picture]:
         return {"length": said}
 
     return Answer("drawing", found, view(found), columns, figure)
+
+
+def collapse(structure: Structure) -> MappingAnswer[Direction, CollapseMechanism]:
+    """The weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        An assembly, or its YAML file.
+
+    Returns
+    -------
+    MappingAnswer of Direction to CollapseMechanism
+        Its lambda, hinges, groups that move as one, a line of thrust, the friction it needs, and how far it is valid.
+
+    Raises
+    ------
+    InputError
+        If the structure is no assembly, or its file cannot be used.
+    MechanismError
+        If it has no mechanism.
+
+    Examples
+    --------
+    A block of 1 m x 4 m on the ground:
+
+    >>> import rocking_cli as rk
+    >>> block = {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 4.0], [0.0, 4.0]]}
+    >>> ground = {"polygon": [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]]}
+    >>> answer = rk.collapse(rk.Assembly(blocks={"block": block}, ground={"ground": ground}))
+    >>> round(answer[rk.Direction.POSITIVE].lambda_, 12)
+    0.25
+    """
+    from rocking_cli.studies.collapse import collapses
+    from rocking_cli.views.collapse import table, view
+
+    mechanism = _structure(structure).mechanism
+    found = collapses(mechanism)
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.structure import draw_structure
+        from rocking_cli.studies.picture import picture
+
+        return draw_structure(picture(mechanism), heading(mechanism))
+
+    return MappingAnswer("weakest mechanism", found, view(mechanism, found), lambda: table(found), figure)
 
 
 def record(motion: Motion, *, scale: float = 1.0) -> Answer[Measures]:

@@ -25,24 +25,15 @@ def command(file: str | None, plot: Path | None, as_json: bool) -> None:
       rocking collapse portal.yaml --plot portal.png
     """
     from rocking_cli.cli import structures
-    from rocking_cli.errors import InputError, MechanismError, Problem
     from rocking_cli.io.files import check_writable, keep_apart
+    from rocking_cli.studies.collapse import collapses
     from rocking_cli.views.collapse import view
 
     keep_apart([("--plot", plot)], [file])
     if plot is not None:
         check_writable(plot)
     mechanism = structures.load([file] if file else [])[0]
-    found = {}
-    for direction in mechanism.directions:
-        try:
-            each = mechanism.collapse(direction)
-        except MechanismError as error:
-            raise MechanismError(f"{mechanism.name}: {error}") from error
-        if each is None:
-            hint = "`rocking new assembly` prints one; `rocking equiv` has the uplift of any structure"
-            raise InputError(Problem(f"{mechanism.name} is no assembly of blocks: its mechanism is given", hint=hint))
-        found[direction] = each
+    found = collapses(mechanism)
     if plot is not None:
         from rocking_cli.cli.pictures import write_picture
         from rocking_cli.plotting.structure import draw_structure

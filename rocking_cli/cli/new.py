@@ -17,7 +17,7 @@ SITE = "site"
 """Nor is this: a site file for `rocking verify`."""
 
 
-@click.command(short_help="Print a structure file, study or site that works as it is, or write a plugin.")
+@click.command(short_help="A structure file, study or site that works, or a plugin.")
 @click.argument("name", shell_complete=complete.mechanisms(STUDY, SITE, *STARTERS))
 @click.option("--plugin", is_flag=True, help="Write a package with a mechanism of your own instead; NAME is its name.")
 @click.option(

@@ -104,7 +104,7 @@ def prepared(files: Sequence[str]) -> Prepared:
 
 def stem(file: str | None) -> str:
     """What to call files that are made of a structure where nobody says."""
-    return "rocking" if file in (None, STANDARD_INPUT) else Path(str(file)).stem
+    return "rocking" if file in (None, "", STANDARD_INPUT) else Path(str(file)).stem
 
 
 def _read(file: str) -> Mechanism:

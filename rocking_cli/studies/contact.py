@@ -135,7 +135,7 @@ class Contacts:
 
     mechanism: Mechanism
 
-    def check(self, history: History, motion: GroundMotion | None) -> Contact:
+    def check(self, history: History, motion: GroundMotion | None, *, closed: bool = True) -> Contact:
         """Hold a history against what its contacts can do.
 
         Parameters
@@ -144,6 +144,8 @@ class Contacts:
             Of the nonlinear model.
         motion : GroundMotion or None
             The ground motion it is the response to.
+        closed : bool
+            Whether to look at the joints that the mechanism keeps closed too, which takes longest.
         """
         states = _states(self.mechanism, history, motion)
         # For each state the largest of all joints, and which: friction needed, pull, and force over strength.
@@ -158,7 +160,8 @@ class Contacts:
                 found = self._forces(direction, states, part)
                 most[:, part], joint[:, part] = self._worst(direction, found)
                 shear = max(shear, float(np.abs(_base(found)).max()))
-        asked, opened = self._summed_up(history, states, most, joint, shear), self._opened(states)
+        asked = self._summed_up(history, states, most, joint, shear)
+        opened = self._opened(states) if closed else None
         return asked if opened is None else replace(asked, opens=opened[0], opens_joint=opened[1])
 
     def _opened(self, states: _States) -> tuple[float, str] | None:

@@ -71,6 +71,19 @@ def _thrust(direction: Direction, found: CollapseMechanism) -> Table:
     return Table(f"Forces as it starts, {direction.label}", heads, rows, numbers=(1, 2, 3, 4))
 
 
+def table(found: Mapping[Direction, CollapseMechanism]) -> dict[str, list[Any]]:
+    """A row for each hinge."""
+    rows = [(d.label, each.lambda_, hinge) for d, each in found.items() for hinge in each.hinges]
+    return {
+        "direction": [row[0] for row in rows],
+        "lambda": [row[1] for row in rows],
+        "hinge": [row[2].letter for row in rows],
+        "between": [" and ".join(row[2].between) for row in rows],
+        "x [m]": [row[2].at.real for row in rows],
+        "y [m]": [row[2].at.imag for row in rows],
+    }
+
+
 def data(found: CollapseMechanism) -> dict[str, Any]:
     """A direction as plain data."""
     return {

@@ -97,7 +97,7 @@ def _slide_times(unit: Unit, found: Outcomes) -> tuple[NDArray[np.float64], NDAr
         except SolverError:
             lost[k] = True
         else:
-            times[k] = checks[model, own].check(history, motion).slides
+            times[k] = checks[model, own].check(history, motion, closed=False).slides
     return times, lost
 
 
