@@ -25,7 +25,8 @@ RUNS = ("run", "draw")  # the kinds of parts that are made by a command, with an
 
 def pages() -> list[Path]:
     """The README and all pages, the tutorial first: it writes the file that others use."""
-    found = [*DOCS.glob("*.md"), *DOCS.glob("mechanisms/*.md"), *DOCS.glob("walls/*.md"), PROJECT / "README.md"]
+    folders = ("", "mechanisms/", "walls/", "masonry/")
+    found = [*(page for folder in folders for page in DOCS.glob(f"{folder}*.md")), PROJECT / "README.md"]
     return sorted(found, key=lambda page: (page.name != "tutorial.md", page))
 
 
@@ -47,6 +48,8 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
         return of_the_readme(what)
     if kind == "mechanism":
         return make_reference.mechanism(Registry()[what])
+    if kind == "blocks":
+        return make_reference.equivalent_blocks(what)
     if kind == "core":
         return make_reference.helpers(what)
     if kind == "names":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 from inspect import Parameter, cleandoc, getdoc, isclass, signature
+from pathlib import Path
 from textwrap import dedent, indent
 from typing import Any
 
@@ -13,6 +14,8 @@ import rocking_cli
 from rocking_cli import core
 from rocking_cli.cli.main import main
 from rocking_cli.views.mechanisms import fields
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
 
 def command_line() -> str:
@@ -128,6 +131,23 @@ def argument(one: Parameter) -> str:
 def kind(annotation: Any) -> str:
     """What an argument is, as its author wrote it."""
     return annotation if isinstance(annotation, str) else getattr(annotation, "__forward_arg__", str(annotation))
+
+
+def equivalent_blocks(names: str) -> str:
+    """What is equivalent to some structures of the examples, a line for each direction that differs."""
+    rows = ["| structure | direction | lambda | phi\\_cr \\[rad] | p \\[rad/s] | eta |", "|---|---|---|---|---|---|"]
+    for name in names.split():
+        structure = rocking_cli.load_structure(EXAMPLES / f"{name}.yaml")
+        blocks = core.equivalent_block(structure)
+        for direction in structure.directions:
+            block = blocks[direction]
+            values = (block.lambda_, block.phi_cr, block.p, block.eta)
+            row = f" | {' | '.join(f'{value:.4g}' for value in values)} |"
+            if direction is not structure.directions[0] and rows[-1].endswith(row):
+                rows[-1] = f"| {structure.name} | both{row}"
+            else:
+                rows.append(f"| {structure.name} | {direction.label}{row}")
+    return "\n".join(rows)
 
 
 def docstrings(names: str) -> str:

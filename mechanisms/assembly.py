@@ -125,20 +125,27 @@ class Assembly(Membered):
     )
     supports: dict[Name, Support] | None = Field(
         None, alias="joints", min_length=1, max_length=100,
+        examples=[{"C": {"slide": "lintel", "at": [4.0, 3.6], "along": [0.0, 1.0]}}],
         description="what holds points sideways, by names: {slide: block, at: [x, y], along: [0, 1]}",
     )  # fmt: skip
     friction: float | None = quantity(
         "coefficient of friction of every joint; left out, none slides", example=0.6, default=None, gt=0, le=10
     )
     friction_of: dict[Name, Coefficient] | None = Field(
-        None, description="that of single joints, 0 too: {left and lintel: 0.3}", min_length=1, max_length=1000
+        None,
+        description="that of single joints, 0 too",
+        min_length=1,
+        max_length=1000,
+        examples=[{"left and lintel": 0.3}],
     )
     lead: Leads | None = Field(
-        None, description="the block whose rotation phi is; left out, the one on the ground that turns most"
+        None,
+        description="the block whose rotation phi is; left out, the one on the ground that turns most",
+        examples=[{"positive": "left", "negative": "right"}],
     )
     gap: float | None = quantity(
-        "how far apart faces may be that touch; left out, 2 per mille of the smaller block", unit="m", default=None,
-        gt=0, le=10,
+        "how far apart faces may be that touch; left out, 2 per mille of the smaller block", unit="m", example=0.005,
+        default=None, gt=0, le=10,
     )  # fmt: skip
 
     @model_validator(mode="after")
@@ -246,9 +253,8 @@ class Assembly(Membered):
         blocks = [analysis.Block(name, tuple(shape.corners)) for name, shape in self.blocks.items()]
         ground = [analysis.Block(name, each.corners) for name, each in self.ground.items()]
         pairs: dict[tuple[str, str], float | None] = {self._pair(words): mu for words, mu in self._frictions.items()}
-        more = {} if self.gap is None else {"gap": self.gap / max(_size(shape) for shape in self.blocks.values())}
         try:
-            return analysis.contacts(blocks, ground, friction=self.friction, per_pair=pairs, **more)
+            return analysis.contacts(blocks, ground, friction=self.friction, per_pair=pairs, within=self.gap)
         except analysis.ContactFault as error:
             names = [name for name in error.blocks if name in self.blocks]
             asked = [words for words in self._frictions if set(self._pair(words)) == set(error.blocks)]
@@ -526,8 +532,3 @@ class Assembly(Membered):
 
 def _letter(k: int) -> str:
     return chr(65 + k) if k < 26 else f"{chr(65 + k // 26 - 1)}{chr(65 + k % 26)}"
-
-
-def _size(shape: Shape) -> float:
-    z = np.array(shape.corners)
-    return float(np.ptp(z.real) + np.ptp(z.imag))

@@ -82,6 +82,7 @@ class Linkage(Membered):
     cracks: dict[Name, Crack] | None = Field(
         None,
         description="cuts whose place is where lambda is least: {body, along: [[x, y], [x, y]], cut: horizontal}",
+        examples=[{"K": {"body": "lower", "along": [[0.0, 0.2], [0.0, 1.3]], "cut": "horizontal"}}],
         min_length=1,
         max_length=4,
     )
@@ -330,9 +331,11 @@ class Linkage(Membered):
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
         found = []
+        if direction in self._held and not self._linkages[direction].determinate:
+            return ()  # how a joint too many shares the forces is not known
         for each in self._held[direction].joints if direction in self._held else ():
             names, face = each.bodies, self._face(each.bodies, each.at)
-            letter = f"{each.name}{direction.prime}" if getattr(self, direction.label) == "mirror" else each.name
+            letter = self._letter(each.name, direction)
             if isinstance(each, Guide):
                 if len(names) > 1:
                     return ()  # its line turns: the forces there are not looked at
@@ -342,11 +345,19 @@ class Linkage(Membered):
             if len(names) == 1:
                 found.append(Joint(letter, each.at, names, normal=normal))
                 continue
+            if still := self._linkages[direction].resting.intersection(names):  # what it bears on is the ground here
+                moves = next(name for name in names if name not in still)
+                found.append(Joint(letter, each.at, (moves,), normal=normal if moves == names[1] else -normal))
+                continue
             flat = names[face.inside] if face is not None and face.inside is not None else None
             if normal.imag < 0:  # the second bears the first
                 names, normal = names[::-1], -normal
             found.append(Joint(letter, each.at, names, normal=normal, face=flat or names[0]))
         return found
+
+    def _letter(self, name: str, direction: Direction) -> str:
+        """What a joint is called; of a mirror image with a prime."""
+        return f"{name}{direction.prime}" if getattr(self, direction.label) == "mirror" else name
 
     def sketch(self) -> Sketch:
         return Sketch(
@@ -367,7 +378,7 @@ class Linkage(Membered):
 
     def _pictured(self, direction: Direction) -> Sequence[Hinge]:
         return self.joints(direction) or [
-            Hinge(each.name, each.at, each.bodies)
+            Hinge(self._letter(each.name, direction), each.at, each.bodies)
             for each in self._held[direction].joints
             if not isinstance(each, Guide)
         ]

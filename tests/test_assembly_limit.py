@@ -156,6 +156,16 @@ def test_a_wider_gap_is_none_and_its_size_is_the_callers():
         contacts([rectangle("large", -9, 0, 4, 8), small], FLOOR)
 
 
+def test_a_gap_in_metres_is_that_of_small_blocks_beside_large_ones():
+    """A voussoir between piers of ten times its size, 4 mm off one of them."""
+    blocks = [
+        rectangle("left", 0, 0, 2, 8), rectangle("key", 2.004, 7, 2.804, 8), rectangle("right", 2.804, 0, 4.8, 8)
+    ]  # fmt: skip
+    assert len(contacts(blocks, FLOOR)) == 3
+    assert len(contacts(blocks, FLOOR, within=0.005)) == 4
+    assert len(contacts(blocks, FLOOR, within=0.003)) == 3
+
+
 def test_a_corner_on_an_edge_is_no_joint_and_corners_that_meet_are_none():
     with pytest.raises(ContactFault, match="a corner on an edge is no joint") as caught:
         contacts([Block("diamond", (0j, 1 + 1j, 2j, -1 + 1j), 2.0, 1j)], FLOOR)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import subprocess
 import sys
 
@@ -157,6 +158,25 @@ class TestMechanisms:
         file.write_text(run("new", name).stdout, encoding="utf-8")
         assert run_json("equiv", file)["mechanism"] == name
         assert run_json("new", name)["yaml"] == file.read_text(encoding="utf-8")
+
+    @pytest.mark.parametrize(
+        ("name", "field"), [("linkage", "bodies"), ("linkage", "positive"), ("assembly", "blocks")]
+    )
+    def test_mappings_of_mappings_are_on_lines_of_their_own(self, name, field):
+        lines = run("new", name).stdout.split("\n")
+        place = lines.index(f"{field}:")
+        assert lines[place + 1].startswith("  ") and len(lines[place + 1]) < 100
+
+    @pytest.mark.parametrize("name", ["linkage", "assembly"])
+    def test_what_is_commented_out_works_too(self, name, tmp_path):
+        text = run("new", name).stdout
+        for field in ("cracks", "lead", "gap"):
+            commented = re.search(rf"^# {field}:.*(\n#   .*)*", text, re.M)
+            if commented:
+                text = text.replace(commented[0], commented[0].removeprefix("# ").replace("\n# ", "\n"))
+        file = tmp_path / "new.yaml"
+        file.write_text(text, encoding="utf-8")
+        assert run_json("equiv", file)["mechanism"] == name
 
 
 class TestEquiv:

@@ -36,8 +36,8 @@ from rocking_cli.views.template import template
 from tests.conftest import EXAMPLES
 
 BUILT_IN = {
-    "arch", "asymmetric_frame", "block", "cone", "curve", "point_mass", "rigid_body", "spanning_wall",
-    "symmetric_frame", "wall",
+    "arch", "assembly", "asymmetric_frame", "block", "cone", "curve", "linkage", "point_mass", "rigid_body",
+    "spanning_wall", "symmetric_frame", "wall",
 }  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from importlib import import_module
 from inspect import getdoc, isclass, signature
 from types import ModuleType, SimpleNamespace
 
+import numpy as np
 import pytest
 
 import rocking_cli
@@ -21,12 +22,14 @@ from rocking_cli.core import Angle, Length, Line, box
 from rocking_cli.core.mechanism import ANSWERS
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.testing import contract
+from rocking_cli.views.collapse import data
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
 
 DOCS = PROJECT / "docs"
 OWN = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md"]
-PAGES = sorted([*OWN, *DOCS.glob("*.md"), *DOCS.glob("mechanisms/*.md"), *DOCS.glob("walls/*.md")])
+FOLDERS = ("", "mechanisms/", "walls/", "masonry/")
+PAGES = sorted([*OWN, *(page for folder in FOLDERS for page in DOCS.glob(f"{folder}*.md"))])
 MECHANISMS = [name for name in Registry() if Registry().package_of(name).startswith("rocking-cli ")]
 
 
@@ -90,8 +93,8 @@ def test_the_pictures_are_small():
 def test_every_kind_of_picture_is_in_the_gallery(made):
     drawing = {what.split()[1] for kind, what in made.parts.asked(text_of("gallery.md"))}
     assert drawing == {
-        "draw", "error", "record", "respond", "animate", "margin", "overturning", "equivalent", "spectrum", "fragility",
-        "figure", "report", "select",
+        "draw", "collapse", "error", "record", "respond", "animate", "margin", "overturning", "equivalent", "spectrum",
+        "fragility", "figure", "report", "select",
     }  # fmt: skip
 
 
@@ -199,6 +202,40 @@ def test_the_hollow_body_of_the_guide_holds_the_contract():
     assert (body.mass, body.centroid, body.inertia) == pytest.approx((1.0, centroid, inertia), rel=1e-12)
 
 
+def test_the_braced_parapet_of_the_guide_holds_the_contract():
+    """The brace keeps its length and its top on the back of the parapet, which turns: by hand."""
+    section = text_of("plugins.md").partition("## Bodies that move one another\n")[2].partition("\n## ")[0]
+    code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
+    names = {"__name__": "parapet"}
+    exec(code, names)
+    made = names["BracedParapet"]
+    given = {"thickness": 0.3, "height": 1.5, "reach": 0.8, "rest": 1.1}
+    parapet = made(brace_mass=0.1, **given)
+    assert [each for each in contract(parapet) if not each.passed] == []
+    phi = 0.1
+    for s in core.Direction:
+        turn, pivot = np.exp(-1j * s * phi), s * 0.15
+        wall = pivot + (-0.15 - pivot) * turn  # the lower end of its back, whose direction is 1j turn
+        foot = -0.95 - wall
+        along = (foot * (1j * turn).conjugate()).real
+        up = along + np.sqrt(along**2 + 0.8**2 + 1.1**2 - abs(foot) ** 2)
+        top = wall + 1j * turn * up
+        brace = parapet.motion(np.array([phi]), s)[1]
+        assert brace.carry(complex(-0.15, 1.1))[0] == pytest.approx(top, rel=1e-12)
+        assert made(brace_mass=0.0, **given).uplift(s) == pytest.approx(0.2, rel=1e-12)
+    with pytest.raises(rocking_cli.InputError, match="higher than the parapet"):
+        made(brace_mass=0.1, **{**given, "rest": 2.0})
+
+
+def test_the_ladder_of_the_linkages_is_refused_as_its_page_says(tmp_path):
+    section = text_of("linkages.md").partition("## One that is refused\n")[2]
+    text = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    "))
+    (said,) = re.findall(r"`(strut turns.*?)`", " ".join(section.split()))
+    (tmp_path / "ladder.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(rocking_cli.InputError, match=re.escape(said)):
+        rocking_cli.load_structure(tmp_path / "ladder.yaml")
+
+
 def test_the_measure_of_the_guide_is_what_it_says():
     section = text_of("plugins.md").partition("## A measure of intensity\n")[2].partition("\n## ")[0]
     code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
@@ -237,8 +274,8 @@ def helpers_of_the_guide():
 
 def as_written(found):
     """A signature as its author wrote it."""
-    text = re.sub(r"ForwardRef\('([^']*)'[^)]*\)", r"\1", str(found)).removesuffix(" -> None")
-    text = re.sub(r"(: |-> )'([^']*)'", r"\1\2", text).replace("<factory>", "...")
+    text = re.sub(r"ForwardRef\('([^']*)'[^)]*\)", r"\1", str(found))
+    text = re.sub(r"(: |-> )'([^']*)'", r"\1\2", text).replace("<factory>", "...").removesuffix(" -> None")
     return re.sub(r"^\(self(, )?", "(", text)
 
 
@@ -256,7 +293,9 @@ def test_every_helper_of_the_core_is_in_the_guide_to_plugins():
 def test_the_guide_to_plugins_gives_the_signature_of_every_helper():
     _, listed = helpers_of_the_guide()
     bare = {name for name, (called, _) in listed.items() if not called}
-    assert bare == {"Attached", "Mechanism", "NoEquivalentBlock", "bends", "smooth", "has_mass", "directions"}
+    assert bare == {
+        "Attached", "Mechanism", "NoEquivalentBlock", "NoMotion", "bends", "smooth", "has_mass", "directions"
+    }  # fmt: skip
     for name, (called, said) in listed.items():
         each = HELPERS.get(name) or getattr(core.Mechanism, name)
         first = " ".join(getdoc(each).split("\n\n")[0].split())
@@ -273,3 +312,26 @@ def test_links_lead_somewhere_in_the_repository_too(page):
     for link in re.findall(r"\]\(([^)#\s]+)", text):
         if not link.startswith("https:"):
             assert (page.parent / link).exists(), link
+
+
+@pytest.mark.parametrize("name", ["linkage", "assembly"])
+def test_what_is_refused_is_said_in_the_words_of_the_code(name):
+    """Each message of the table, between the names that it stands with."""
+    section = text_of(f"mechanisms/{name}.md").partition("## What is refused, and what to do\n")[2]
+    messages = [row.split("|")[1].strip() for row in section.split("\n") if row.startswith("| ")][1:]
+    files = [*PROJECT.glob("mechanisms/**/*.py"), *PROJECT.glob("rocking_cli/core/*.py")]
+    code = " ".join(" ".join(file.read_text(encoding="utf-8").split()) for file in files)
+    code = re.sub(r'" f?"', "", code)
+    assert len(messages) > 8
+    for message in messages:
+        parts = re.split(r"\b[A-Z]\b(?:, [A-Z]\b)*|\.\.\.|[;:] |touches", f" {message} ")
+        for words in (each.strip(" ,") for each in parts):
+            assert words in code, (message, words)
+
+
+def test_the_json_of_collapse_is_what_the_page_says():
+    section = text_of("commands.md").partition("## `rocking collapse [FILE]`\n")[2].partition("\n## ")[0]
+    said = set(re.findall(r'"(\w+)"', section)) - {"directions", "positive", "negative", "name", "between", "at"}
+    found = data(rocking_cli.load_structure(PROJECT / "examples" / "assembly.yaml").collapse(core.Direction.POSITIVE))
+    assert said - {"joint", "force"} == set(found)
+    assert set(found["thrust"][0]) == {"joint", "at", "force"} and set(found["hinges"][0]) == {"name", "between", "at"}

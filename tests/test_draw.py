@@ -274,6 +274,17 @@ class TestWhatIsMeasured:
             assert of[Direction.NEGATIVE] == [f"{each}'" if each else "" for each in of[Direction.POSITIVE]]
 
 
+def test_only_hinges_of_one_link_are_joined_by_a_line():
+    def chains(file):
+        shown = picture(load_structure(EXAMPLES / file))
+        return shown.chains([pin for pin in shown.pins if pin.direction is Direction.POSITIVE])
+
+    assert chains("frame.yaml") == chains("arch.yaml") == [[0, 1, 2, 3]]
+    # Three columns, foot and head each, and the beam from head to head; what a hinge is called says nothing.
+    assert chains("linkages/portico.yaml") == [[0, 1], [2, 3], [4, 5], [1, 3], [3, 5]]
+    assert chains("masonry/portal.yaml") == [[0, 1], [2, 3], [0, 2]]
+
+
 class TestLineOfThrust:
     def test_it_balances_every_part_of_the_ring(self):
         """Independent: the ring cut into slices, their weights and inertia summed, and the moment about the line."""

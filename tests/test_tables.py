@@ -14,8 +14,8 @@ from tests.conftest import EXAMPLES
 FILES = sorted(path.name for path in EXAMPLES.glob("*.yaml"))
 every_direction = pytest.mark.parametrize("direction", list(Direction))
 # The wall with its hinge high up is a short link that turns fast, and the second derivative of a curve given by points
-# has jumps, which no cubic follows across.
-LOOSER = {"spanning_wall.yaml": 1e-10, "curve.yaml": 1e-7}
+# has jumps, which no cubic follows across. The motion of an assembly is found by Newton, to the last digits but a few.
+LOOSER = {"spanning_wall.yaml": 1e-10, "curve.yaml": 1e-7, "assembly.yaml": 1e-11}
 
 
 def interpolate(cells, width, q):

@@ -28,6 +28,7 @@ def contacts(
     ground: Sequence[Block],
     *,
     gap: float = GAP,
+    within: float | None = None,
     friction: float | None = None,
     per_pair: Mapping[tuple[str, str], float | None] | None = None,
 ) -> list[Contact]:
@@ -41,6 +42,8 @@ def contacts(
         What cannot; parts of the ground may overlap each other.
     gap : float
         How far edges that touch may be apart, over width and height together of the smaller block.
+    within : float, optional
+        The same for all blocks [m], instead.
     friction : float, optional
         Coefficient of friction of every joint; None: none slides.
     per_pair : mapping, optional
@@ -65,10 +68,11 @@ def contacts(
     outlines = [body.outline for body in bodies]
     sizes = [size_of(z) if k < len(blocks) else np.inf for k, z in enumerate(outlines)]
     found: list[Contact] = []
-    for i, j in _near(outlines, gap * max(sizes[: len(blocks)], default=0.0)):
+    margin = gap * max(sizes[: len(blocks)], default=0.0) if within is None else within
+    for i, j in _near(outlines, margin):
         if i >= len(blocks):
             continue  # ground on ground
-        tolerance = gap * min(sizes[i], sizes[j])
+        tolerance = gap * min(sizes[i], sizes[j]) if within is None else within
         if overlap(outlines[i], outlines[j], tolerance):
             raise ContactFault(f"{listed([names[i], names[j]])} overlap", (names[i], names[j]))
         for start, end in _merged(_pieces(outlines[i], outlines[j], tolerance), tolerance):

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion, rotation
-from rocking_cli.core.loops import LinkageJoint, Loops
+from rocking_cli.core.loops import LinkageJoint, Loops, Pin
 
 NULL = 1e-9  # of the largest singular value: directions in which the joints hold nothing
 CLOSED = 1e-10  # of the size: how far a joint may gape
@@ -274,6 +274,17 @@ class LinkageMotion:
                 if by < LEAST:
                     break
         return found
+
+    @property
+    def resting(self) -> set[str]:
+        """The bodies that are fixed to the ground."""
+        return {name for name, link in self._link_of.items() if link is None}
+
+    @property
+    def determinate(self) -> bool:
+        """Whether statics alone says what its joints bear: no joint is one too many."""
+        forces = sum(2 if isinstance(joint, Pin) else 1 for joint in self.joints)
+        return forces == 3 * self._loops.count - 1
 
     @property
     def limit(self) -> float:

@@ -246,7 +246,7 @@ def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labe
 def _draw_pins(
     axes: Axes, picture: Picture, rotation: float, pins: Sequence[Pin], panel: Panel, labels: Labels
 ) -> Sequence[Pin]:
-    """Mark hinges and pivots, joined by a line where all have a letter."""
+    """Mark hinges and pivots, those of one link joined by a line where all have a letter."""
     if not pins:
         return pins
     _, every = picture.placed(rotation)
@@ -263,8 +263,10 @@ def _draw_pins(
             axes.plot(guide.real, guide.imag, color=style.EARTH, linewidth=style.BOLD, zorder=3)
             labels.keep_off(guide)
     if len(pins) > 2 and all(pin.letter for pin in pins):
-        axes.plot(z.real, z.imag, color=style.INK, linewidth=style.THIN, linestyle=(0, (6, 2, 1, 2)), zorder=3)
-        labels.keep_off(z)
+        line = np.array([each for chain in picture.chains(pins) for each in (*z[chain], np.nan)][:-1], np.complex128)
+        axes.plot(line.real, line.imag, color=style.INK, linewidth=style.THIN, linestyle=(0, (6, 2, 1, 2)), zorder=3)
+        for chain in picture.chains(pins):
+            labels.keep_off(z[chain])
     axes.plot(
         z.real, z.imag, linestyle="none", marker="o", markersize=4.5, zorder=5,
         color="white", markeredgecolor=style.INK, markeredgewidth=style.MEDIUM,

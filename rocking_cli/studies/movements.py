@@ -17,6 +17,7 @@ from rocking_cli.dynamics.history import History
 
 Reals = NDArray[np.float64]
 BETWEEN = 257  # rotations from rest to a peak at which the largest values on the way are looked for
+ROUNDING = 1e-13  # of how far a point is from the origin: a displacement that is none
 LEVEL = 1e-9  # of the height of a structure: corners that are so much lower are as high
 
 
@@ -150,7 +151,10 @@ class Watched:
         return TiePeak(tie.name, float(force[np.abs(force).argmax()]), float(elongation[counts.argmax()]))
 
     def _displacement(self, spot: Spot, phi: Reals, direction: Direction) -> NDArray[np.complex128]:
-        return np.asarray(self.mechanism.followed(phi, direction)(spot).z - spot.at)
+        moved = np.asarray(self.mechanism.followed(phi, direction)(spot).z - spot.at)
+        least = ROUNDING * abs(spot.at)  # what is held by a joint stays to the last digits but a few
+        x, y = (np.where(np.abs(each) <= least, 0.0, each) for each in (moved.real, moved.imag))
+        return np.asarray(x + 1j * y)
 
     def _signed(self, phi: Reals, of: Callable[[Reals, Direction], NDArray[np.complex128]]) -> NDArray[np.complex128]:
         found = np.full(phi.shape, complex(np.nan, np.nan))
@@ -209,13 +213,17 @@ def _strained(
 
 
 def _landing(mechanism: Mechanism, direction: Direction) -> float:
-    """The velocity over the rate at which the feet land that the other direction turns about [m]; NaN if unknown."""
+    """The velocity over the rate at which the feet land that the other direction turns about [m]; NaN if unknown.
+
+    Unknown, too, where these do not move: what turns about the ground in one direction may rest in the other.
+    """
     hinges = mechanism.sketch().hinges.get(direction.opposite, ())
     feet = [Spot(hinge.bodies[0], hinge.point) for hinge in hinges if len(hinge.bodies) == 1 and not hinge.slide]
     if not feet:
         return float("nan")
     follow = mechanism.followed(np.zeros(1), direction)
-    return max(abs(complex(follow(foot).dz[0])) for foot in feet)
+    fastest = max(abs(complex(follow(foot).dz[0])) for foot in feet)
+    return fastest if fastest > 0 else float("nan")
 
 
 def top(mechanism: Mechanism) -> tuple[str, Spot]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any
 
 import numpy as np
@@ -243,6 +243,29 @@ class Picture:
                 found.append(here)
             of_body[body] = alike[0] if alike else len(found) - 1
         return tuple(of_body[part.body] for part in self.parts)
+
+    def chains(self, pins: Sequence[Pin]) -> list[list[int]]:
+        """Pins of one direction that are joined by links, by their places: in their order first, then what is left."""
+        held = [self._links_at(pin) for pin in pins]
+        found: list[list[int]] = []
+        for k in range(1, len(pins)):
+            if held[k - 1] & held[k]:
+                if found and found[-1][-1] == k - 1:
+                    found[-1].append(k)
+                else:
+                    found.append([k - 1, k])
+        for link in sorted(set().union(*held)):
+            on = [k for k, links in enumerate(held) if link in links]
+            found += [[one, other] for one, other in pairwise(on) if other - one > 1]
+        return found
+
+    def _links_at(self, pin: Pin) -> set[int]:
+        """The links that move and have a hinge in common."""
+        hinges = self.sketch.hinges.get(pin.direction, ())
+        here = [hinge.bodies for hinge in hinges if (hinge.letter, hinge.point) == (pin.letter, pin.point)]
+        names = {name for bodies in here for name in bodies}
+        links = {part.name: link for part, link in zip(self.parts, self.links[pin.direction], strict=True)}
+        return {link for name in names if (link := links.get(name)) is not None}
 
     @property
     def furthest(self) -> float:

@@ -31,7 +31,8 @@ def template(cls: Any) -> str:
         symbol = f", {row['symbol']}" if row["symbol"] else ""
         limits = f" ({row['bounds']})" if row["bounds"] else ""
         used = row["required"] or row["field"] in cls.starter
-        example = _yaml(row["example"] if row["example"] is not None else row["default"])
+        value = row["example"] if row["example"] is not None else row["default"]
+        example = _yaml(value)
         if row["field"] == "name":
             example = f"my {cls.mechanism.replace('_', ' ')}"
         elif row["field"] == "restitution":
@@ -42,10 +43,25 @@ def template(cls: Any) -> str:
         entry = f"{'' if used else '# '}{row['field']}: {example}"
         fill_in = "fill in: " if row["field"] in missing else ""
         comment = f"# {fill_in}{row['description']}{symbol}{unit}{limits}"
+        if _is_deep(value):
+            lines += [comment, *(f"{'' if used else '# '}{line}" for line in _block(row["field"], value))]
+            continue
         lines += [f"{entry:<32}  {comment}"] if len(entry) <= LONG else [comment, entry]
     if missing:
         lines.insert(2, f"# Fill in {', '.join(missing)}: the mechanism gives no example.")
     return "\n".join(lines) + "\n"
+
+
+def _is_deep(value: Any) -> bool:
+    """Whether it is a mapping that has mappings in it, which on one line nobody reads."""
+    return isinstance(value, dict) and any(isinstance(each, dict) for each in value.values())
+
+
+def _block(key: str, value: Any) -> list[str]:
+    """A field over several lines, down to mappings that fit on one."""
+    if not _is_deep(value):
+        return [f"{key}: {_yaml(value)}"]
+    return [f"{key}:", *(f"  {line}" for name, each in value.items() for line in _block(name, each))]
 
 
 def _yaml(value: Any) -> str:
