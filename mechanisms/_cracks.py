@@ -160,7 +160,7 @@ def cracked(
         del made[body]
         pieces[body] = names
     found = Cracked(made, {}, pieces)
-    told = {d: _Names(cracks, levels[d], found, ends).side(side) for d, side in sides.items()}
+    told = {d: _Names(d, cracks, levels[d], found, ends).side(side) for d, side in sides.items()}
     return found._replace(sides=told)
 
 
@@ -187,6 +187,7 @@ def _piece(shape: Shape, corners: Points, whole: float) -> Shape:
 class _Names(NamedTuple):
     """What the names of a side mean where the cracks are."""
 
+    direction: Direction
     cracks: Mapping[str, Crack]
     levels: Mapping[str, float]
     made: Cracked
@@ -222,8 +223,9 @@ class _Names(NamedTuple):
             for end, at in zip(crack.ends, self.ends[crack.body, level], strict=True):
                 if text == f"{name} {end}":
                     return [at.real, at.imag]
-        known = [f"{name} {end}" for name, crack in self.cracks.items() for end in crack.ends]
-        raise geometry_error(("joints", joint, "at"), f"is a point [x, y], or one of {', '.join(known)}; got {text!r}")
+        known = ", ".join(f"{name} {end}" for name, crack in self.cracks.items() for end in crack.ends)
+        what = f"a point [x, y], or one of {known}" if known else "a point [x, y]"
+        raise geometry_error((self.direction.label, "joints", joint, "at"), f"is {what}; got {text!r}")
 
     def _piece(self, name: str, at: object) -> str:
         """A piece by its name: `wall below K`; a body that is cut, by where its joint is."""
@@ -233,7 +235,10 @@ class _Names(NamedTuple):
                 if name == f"{body} {side} {crack}":
                     cuts = sorted(own for other, own in self.ends if other == body)
                     return self.made.pieces[body][cuts.index(level) + k]
-        return self.made.piece(name, complex(*at)) if isinstance(at, list) else name
+        if isinstance(at, list):
+            return self.made.piece(name, complex(*at))
+        whole = not any(self.cracks[crack].body == name for crack in self.levels)
+        return self.made.pieces[name][0] if whole and name in self.made.pieces else name  # its pieces are one here
 
 
 def _away(z: Points, corners: Points) -> float:

@@ -34,11 +34,12 @@ from rocking_cli.core import (
     quantity,
     rotation,
 )
+from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.kinematics import Points
 from rocking_cli.errors import MechanismError
 
-OTHERS = "others"
+LEADS = 1e-8  # of the fastest turn: less is none
 
 Coefficient = Annotated[float, Field(ge=0, le=10)]
 EXAMPLE_BLOCKS = {
@@ -173,16 +174,8 @@ class Assembly(Membered):
 
     def _hold_together(self) -> None:
         super()._hold_together()
-        try:
-            for direction in self.directions:
-                self._collapse(direction)
-        except analysis.DoesNotStand as error:
-            raise self._refused(("blocks", *error.blocks[:1]), str(error)) from None
-        except analysis.NothingMoves as error:
-            why = f"{error}: every joint is closed under any acceleration. Give friction, or a block that can turn"
-            raise self._refused(("blocks",), why) from None
-        except analysis.AssemblyFault as error:
-            raise MechanismError(str(error)) from None
+        for direction in self.directions:
+            self._check_collapses(direction)
         for direction in self.directions:
             found = self._collapse(direction)
             if not found.unique:
@@ -192,6 +185,43 @@ class Assembly(Membered):
                     f"in the {direction.label} direction several mechanisms start at {found.multiplier:.6g} g, in "
                     f"which move: {ways}. Change a size or a density by a little, or tie what should not part",
                 )
+
+            self._check_lead(direction)
+
+    def _check_collapses(self, direction: Direction) -> None:
+        try:
+            self._collapse(direction)
+        except analysis.DoesNotStand as error:
+            raise self._refused(("blocks", *error.blocks[:1]), str(error)) from None
+        except analysis.NothingMoves as error:
+            why = (
+                f"in the {direction.label} direction {error}: every joint is closed under any. Give a block that can "
+                "turn, or friction, because joints without it never slide"
+            )
+            if self.rocks_both_ways:
+                why += f"; if it leans there, give one_sided: {direction.opposite.label}"
+            raise self._refused(("blocks",), why) from None
+        except analysis.AssemblyFault as error:
+            raise MechanismError(str(error)) from None
+
+    def _check_lead(self, direction: Direction) -> None:
+        """Refuse a block that cannot lead."""
+        told = getattr(self.lead, direction.label, None)
+        if told is None or (found := self._groups(direction)).slides:
+            return
+        number = next((k for k, group in enumerate(found.groups) if told in group), None)
+        turns = 0.0 if number is None else -int(direction) * float(found.velocity[number, 2])
+        most = float(np.abs(found.velocity[:, 2]).max())
+        if turns > LEADS * most:
+            return
+        does = "turns the other way" if turns < -LEADS * most else "rests" if number is None else "does not turn"
+        able = [
+            name
+            for group, velocity in zip(found.groups, found.velocity, strict=True) for name in group
+            if -int(direction) * velocity[2] > LEADS * most
+        ]  # fmt: skip
+        why = f"{told} {does} in the {direction.label} direction: it cannot lead; {', '.join(able)} could"
+        raise self._refused(("lead", direction.label), why)
 
     @staticmethod
     def _refused(field: tuple[str, ...], reason: str) -> Exception:
@@ -222,17 +252,33 @@ class Assembly(Membered):
     def _contacts(self) -> Sequence[analysis.Contact]:
         blocks = [analysis.Block(name, tuple(shape.corners)) for name, shape in self.blocks.items()]
         ground = [analysis.Block(name, each.corners) for name, each in self.ground.items()]
-        pairs: dict[tuple[str, str], float | None] = {}
-        for words, mu in (self.friction_of or {}).items():
-            one, _, other = words.partition(" and ")
-            pairs[one, other] = mu
+        pairs: dict[tuple[str, str], float | None] = {self._pair(words): mu for words, mu in self._frictions.items()}
         try:
             return analysis.contacts(blocks, ground, friction=self.friction, per_pair=pairs, within=self.gap)
         except analysis.ContactFault as error:
             names = [name for name in error.blocks if name in self.blocks]
-            asked = [words for words in self.friction_of or {} if set(words.split(" and ")) == set(error.blocks)]
+            asked = [words for words in self._frictions if set(self._pair(words)) == set(error.blocks)]
             where = ("friction_of", asked[0]) if asked else ("blocks", *names[:1])
             raise geometry_error(where, str(error)) from None
+
+    @property
+    def _frictions(self) -> Mapping[str, float]:
+        return self.friction_of or {}
+
+    def _pair(self, words: str) -> tuple[str, str]:
+        """The two bodies that a joint is of, whose names may have an `and` of their own."""
+        parts = words.split(" and ")
+        ways = [(" and ".join(parts[:k]), " and ".join(parts[k:])) for k in range(1, len(parts))]
+        names = {*self.blocks, *self.ground}
+        found = [pair for pair in ways if names.issuperset(pair)]
+        if len(found) != 1 or found[0][0] == found[0][1]:
+            why = (
+                "could be of several pairs" if found[1:] else "is no joint: write the names of two bodies, as `a and b`"
+            )
+            raise geometry_error(
+                ("friction_of", words), f"{why}; there are {', '.join(self.blocks)} on {', '.join(self.ground)}"
+            )
+        return found[0]
 
     @cached_property
     def _guides(self) -> Sequence[analysis.Guide]:
@@ -368,7 +414,7 @@ class Assembly(Membered):
         """The weakest mechanism of a direction. Raises `MechanismError` where there is none."""
         found = self._groups(direction)
         state = self._collapse(direction)
-        friction = analysis.friction(state)
+        friction = self._needed(direction)
         thrust = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
         parts = {name: "+".join(group) for group in found.groups for name in group}
         moves = not found.slides
@@ -433,18 +479,39 @@ class Assembly(Membered):
                 raise MechanismError(f"the forces in its joints at {phi:.4g} rad could not be found")
             return found, share
 
-        first = analysis.first_violation(lambda phi: held(phi)[0].margin, self.critical_rotation(direction))
+        try:
+            end = self.critical_rotation(direction)
+        except NoCriticalRotation:
+            end = self.limit(direction) * (1 - 1e-6)  # a tie holds it; at the very end it may lock
+        first = analysis.first_violation(lambda phi: held(phi)[0].margin, end)
         if first is None:
             return None
         found, share = held(first)
         return first, found.contact if found.contact is not None else 0, share
 
+    @cached_property
+    def _frictions_needed(self) -> dict[Direction, analysis.Friction]:
+        return {}
+
+    def _needed(self, direction: Direction) -> analysis.Friction:
+        if direction not in self._frictions_needed:
+            self._frictions_needed[direction] = analysis.friction(self._collapse(direction))
+        return self._frictions_needed[direction]
+
     def extras(self, direction: Direction) -> Sequence[Extra]:
+        needed, glued = self._needed(direction).needed, [self._joint(k) for k in self._needed(direction).glued]
+        if needed is not None:
+            friction = Extra("friction_needed", needed, "", "friction in every joint without which lambda is less")
+        else:
+            which = ", ".join(glued) or "joints"
+            why = f"not even this friction does: {which} would carry shear without pressing, and lambda be less"
+            friction = Extra("friction_needed", analysis.MOST, "", why)
         found = self._valid[direction]
         if found is None:
-            return ()
+            return (friction,)
         phi, k, share = found
         return (
+            friction,
             Extra("valid_to", phi, "rad", f"rotation at which, held there, the joint of {self._joint(k)} opens too"),
             Extra("held_by", share, "g", "the acceleration that holds it there, G/B"),
         )
@@ -462,7 +529,7 @@ class Assembly(Membered):
         )
 
     def _thrust_line(self, direction: Direction) -> Line | None:
-        friction = analysis.friction(self._collapse(direction))
+        friction = self._needed(direction)
         found = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
         if not found.chain:
             return None

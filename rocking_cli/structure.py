@@ -14,7 +14,16 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.dotted import copied, put, words
-from rocking_cli.io.field_problems import fields_at, lists_models, of_arguments, problems, types_at, unit_at
+from rocking_cli.io.field_problems import (
+    fields_at,
+    is_plural,
+    lists_models,
+    names_at,
+    of_arguments,
+    problems,
+    types_at,
+    unit_at,
+)
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.text import cut, did_you_mean, one_line
 
@@ -97,20 +106,28 @@ class Varied:
         found: Place = ()
         for k, part in enumerate(place):
             if isinstance(part, str):
-                known = list(fields_at(cls, found))
+                named = names_at(cls, found)
+                known = list(self._entries(found) if named else fields_at(cls, found))
                 if part not in known:
                     within = ".".join(path[:k]) or cls.mechanism
-                    message, hint = f"{cut(part)} is not a field of {within}", did_you_mean(part, known)
-                    message = message if k else f"is not a field of {within}"
+                    message = f"{within} has no {cut(part)}" if named else f"{cut(part)} is not a field of {within}"
+                    message, hint = message if k else f"is not a field of {within}", did_you_mean(part, known)
                     raise InputError(Problem(message, field=self.field, hint=hint))
             found = (*found, part)
-        if float not in types_at(cls, place) or (isinstance(place[-1], str) and _holds_list(cls, place)):
+        if float not in types_at(cls, place) or (isinstance(place[-1], str) and is_plural(cls, place)):
             raise InputError(Problem("is no number that could vary", field=self.field))
         object.__setattr__(self, "_place", place)
 
     @cached_property
     def _data(self) -> dict[str, Any]:
         return self.mechanism.model_dump(by_alias=True, exclude_unset=True)
+
+    def _entries(self, place: Place) -> list[str]:
+        """The names that the user chose at a place."""
+        here: Any = self._data
+        for part in place:
+            here = (here or {}).get(part) if isinstance(part, str) else here[part]
+        return list(here or {})
 
     @property
     def unit(self) -> str:
@@ -135,11 +152,6 @@ class Varied:
             return cls.from_fields(data, self.folder)
         except ValidationError as error:
             raise InputError(*of_arguments(cls, error.errors(include_url=False), cls.mechanism)) from None
-
-
-def _holds_list(cls: type[Mechanism], place: Place) -> bool:
-    info = fields_at(cls, place[:-1])[str(place[-1])]
-    return "list[" in str(info.annotation)
 
 
 def _mechanism(document: Document, registry: Registry) -> type[Mechanism] | None:

@@ -351,6 +351,8 @@ class Mechanism(Described, ABC):
                 changed[key] = _multiplied(value, factor**power)
             elif isinstance(value, list) and value and hasattr(value[0], "enlarged"):
                 changed[key] = [thing.enlarged(factor) for thing in value]
+            elif isinstance(value, dict) and any(hasattr(thing, "enlarged") for thing in value.values()):
+                changed[key] = {name: thing.enlarged(factor) for name, thing in value.items()}
             elif hasattr(value, "enlarged"):
                 changed[key] = value.enlarged(factor)
         return self.model_copy(update=changed)

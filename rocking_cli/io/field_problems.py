@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
@@ -55,15 +55,28 @@ def problems(
 def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: str) -> list[Problem]:
     """The errors of a validation of arguments in Python, each with the name of its argument."""
     found: dict[Place, Problem] = {}
-    known = _names(model)
-    for error in _of_words(errors):
-        place: Place = tuple(part for part in error["loc"] if part in known or isinstance(part, int))
+    errors = _of_words(errors)
+    places = [_place_in(model, error) for error in errors]
+    for error, place in zip(errors, places, strict=True):
+        if error["type"] in OF_KIND and isinstance(error["input"], dict | list) and place[-1:] != error["loc"][-1:]:
+            others = zip(errors, places, strict=True)
+            if any(at[: len(place)] == place and (each["type"] not in OF_KIND or at != place) for each, at in others):
+                continue  # of another branch of a union than the one that was meant
         place = place or tuple(error["loc"][:1])
         if error["type"] == "geometry":
             place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place or (owner,), error, owner, f"`rocking mechanisms {owner}` lists the fields")
         found.setdefault(place, Problem(message, field=spell(place) if place else None, hint=hint))
     return list(found.values())
+
+
+def _place_in(model: type[BaseModel], error: ErrorDetails) -> Place:
+    """The path of an error in the data of a model: pydantic adds the branches of unions to it."""
+    place: Place = ()
+    for part in error["loc"]:
+        if isinstance(part, int) or part in fields_at(model, place) or names_at(model, place):
+            place = (*place, part)
+    return place
 
 
 def place_of(data: Any, error: ErrorDetails) -> Place:
@@ -180,25 +193,29 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
 
 def unit_at(model: type[BaseModel], place: Place) -> str:
     """The unit of the number at a place of the data of a model; empty for a pure number, or where there is no field."""
-    names = [k for k, part in enumerate(place) if isinstance(part, str)]
-    last = place[: names[-1] + 1] if names else ()
-    info = fields_at(model, last[:-1]).get(str(last[-1])) if last else None
-    extra = info.json_schema_extra if info is not None else None
-    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
+    extras = [info.json_schema_extra for info, _ in _held(model, place) if info is not None]
+    return next((str(extra["unit"]) for extra in extras[:1] if isinstance(extra, dict) and "unit" in extra), "")
 
 
 def types_at(model: type[BaseModel], place: Place) -> set[Any]:
     """The types that the value at a place may have, those in lists too; of a fixed word, the word."""
-    names = [k for k, part in enumerate(place) if isinstance(part, str)]
-    last = place[: names[-1] + 1] if names else ()
-    info = fields_at(model, last[:-1]).get(str(last[-1])) if last else None
-    return set(_leaves(info.annotation)) if info is not None else set()
+    return {leaf for _, annotation in _held(model, place)[:1] for leaf in _leaves(annotation)} if place else set()
 
 
 def lists_models(model: type[BaseModel], place: Place) -> bool:
     """Whether a list of mappings stands at a place, such as `loads`."""
-    info = fields_at(model, place[:-1]).get(str(place[-1])) if place else None
-    return info is not None and "list[" in str(info.annotation) and bool(_models(info.annotation))
+    held = _held(model, place)[:1] if place and isinstance(place[-1], str) else []
+    return any("list[" in str(annotation) and _models(annotation) for _, annotation in held)
+
+
+def names_at(model: type[BaseModel], place: Place) -> bool:
+    """Whether the keys of the mapping at a place are names that the user chooses, such as those of `blocks`."""
+    return any(get_origin(each) is dict for _, annotation in _held(model, place) for each in _choices(annotation))
+
+
+def is_plural(model: type[BaseModel], place: Place) -> bool:
+    """Whether a list or a mapping stands at a place."""
+    return any("list[" in str(annotation) or "dict[" in str(annotation) for _, annotation in _held(model, place))
 
 
 def _leaves(annotation: Any) -> list[Any]:
@@ -208,23 +225,42 @@ def _leaves(annotation: Any) -> list[Any]:
 
 def fields_at(model: type[BaseModel], place: Place) -> dict[str, Any]:
     """The fields that may stand at a place, of whichever models it may hold, by the names that users write."""
-    models: list[Any] = [model]
-    for part in place:
-        held = [inner[part].annotation for each in models if part in (inner := _spelt(each))]
-        if held:  # else it is a place in a list, or a key that the user chooses
-            models = [inner for annotation in held for inner in _models(annotation)]
+    models = [each for _, annotation in _held(model, place) for each in _choices(annotation) if _is_model(each)]
     return {name: info for each in models for name, info in _spelt(each).items()}
+
+
+def _held(model: type[BaseModel], place: Place) -> list[tuple[Any, Any]]:
+    """What a place may hold: the field, where one has its name, and the annotation; places in lists count for nothing.
+
+    A key that the user chooses is no name of a field, even if one is called the same.
+    """
+    held: list[tuple[Any, Any]] = [(None, model)]
+    for part in place:
+        if isinstance(part, str):
+            choices = [each for _, annotation in held for each in _choices(annotation)]
+            held = [(info, info.annotation) for each in choices if (info := _field(each, part)) is not None]
+            held += [(None, get_args(each)[1]) for each in choices if get_origin(each) is dict]
+    return held
+
+
+def _choices(annotation: Any) -> list[Any]:
+    """Models, mappings and plain types that an annotation allows, also as entries of a list."""
+    if get_origin(annotation) is dict or not get_args(annotation):
+        return [annotation]
+    return [inner for part in get_args(annotation) for inner in _choices(part)]
+
+
+def _is_model(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+
+
+def _field(annotation: Any, name: str) -> Any:
+    return _spelt(annotation).get(name) if _is_model(annotation) else None
 
 
 def _spelt(model: type[BaseModel]) -> dict[str, Any]:
     """The fields of a model by the names that users write."""
     return {info.alias or name: info for name, info in model.model_fields.items()}
-
-
-def _names(model: type[BaseModel]) -> set[str]:
-    """The names of all fields of a model, and of the models they hold."""
-    inner = [_names(each) for info in model.model_fields.values() for each in _models(info.annotation)]
-    return {*_spelt(model), *model.model_fields}.union(*inner)
 
 
 def _models(annotation: Any) -> list[type[BaseModel]]:

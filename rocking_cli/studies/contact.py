@@ -6,7 +6,7 @@ that is so: at every sample while the structure rocks, at its first uplift and o
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.reactions import Reactions, acceleration, at_uplift, impulses, reactions
+from rocking_cli.core.reactions import Reactions, acceleration, at_uplift, impulses, parts, reactions
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
@@ -68,7 +68,7 @@ class Contact:
         it needs more than 90 % of `friction_needed`.
     base_shear : float
         The largest horizontal force of the ground on the structure while it rocks, in either sense [N], per unit mass
-        of a structure without masses; of guides that hold it sideways nothing.
+        of a structure without masses; of guides that hold it sideways nothing. What rests counts as ground.
     least_normal : float
         The smallest N of any joint while it rocks [N], per unit mass of a structure without masses.
     impact_friction : float
@@ -159,7 +159,7 @@ class Contacts:
                 part = mine[start : start + BLOCK]
                 found = self._forces(direction, states, part)
                 most[:, part], joint[:, part] = self._worst(direction, found)
-                shear = max(shear, float(np.abs(_base(found)).max()))
+                shear = max(shear, float(np.abs(_base(found, self._rest[direction])).max()))
         asked = self._summed_up(history, states, most, joint, shear)
         opened = self._opened(states) if closed else None
         return asked if opened is None else replace(asked, opens=opened[0], opens_joint=opened[1])
@@ -203,8 +203,16 @@ class Contacts:
             mine = np.flatnonzero(states.rocks & (states.sign == direction))
             for start in range(0, mine.size, BLOCK):
                 part = mine[start : start + BLOCK]
-                shear[part] = _base(self._forces(direction, states, part))
+                shear[part] = _base(self._forces(direction, states, part), self._rest[direction])
         return np.concatenate([shear, np.full(history.time.size - shear.size, np.nan)])
+
+    @cached_property
+    def _rest(self) -> Mapping[Direction, Collection[str]]:
+        """The bodies that do not move in a direction."""
+        return {
+            direction: {name for name, number in parts(self.mechanism, direction).items() if not number}
+            for direction in self.mechanism.directions
+        }
 
     def _forces(self, direction: Direction, states: _States, part: Places) -> Reactions:
         return reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
@@ -343,10 +351,16 @@ def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None)
     return _States(table[0], table[1], table[2], table[3], _ground(table[0], motion), rocks)
 
 
-def _base(found: Reactions) -> Reals:
-    """The horizontal force of the ground, without what guides hold, shape (n,)."""
-    grounded = np.array([found.is_whole or (len(joint.bodies) == 1 and not joint.is_guide) for joint in found.joints])
-    return np.asarray(found.force[grounded].real.sum(axis=0))
+def _base(found: Reactions, rest: Collection[str] = ()) -> Reals:
+    """The horizontal force of the ground and of bodies that rest on it, without what guides hold, shape (n,)."""
+    total = np.zeros(found.force.shape[1])
+    for joint, force in zip(found.joints, found.force.real, strict=True):
+        moves = [name not in rest for name in joint.bodies]
+        if found.is_whole or (not joint.is_guide and moves == [True]) or moves == [False, True]:
+            total += force  # on the last of its bodies
+        elif moves == [True, False]:
+            total -= force
+    return total
 
 
 def _ground(time: Reals, motion: GroundMotion | None) -> NDArray[np.complex128]:

@@ -46,8 +46,7 @@ def view(structure: Prepared) -> View:
         ]
         for each in PARAMETERS
     ]
-    for extras in zip(*(mechanism.found(side.direction) for side in shown), strict=True):
-        rows.append([extras[0].key, *(number(each.value) for each in extras), extras[0].unit, extras[0].meaning])
+    rows += _found(mechanism, [side.direction for side in shown])
     heads = ["", *(("value",) if len(shown) == 1 else (side.direction.label for side in shown)), "unit", "meaning"]
     table = Table(heading(mechanism), heads, rows, numbers=range(1, len(shown) + 1))
     where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
@@ -63,6 +62,20 @@ def view(structure: Prepared) -> View:
     said += [f"P{mechanism.crushed[1:]}."] if mechanism.crushed else []
     said += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
     return View(data, [table, *said])
+
+
+def _found(mechanism: Mechanism, directions: Sequence[Direction]) -> list[list[str]]:
+    """Rows of what the structure found: it need not be the same in both directions, nor mean the same."""
+    found = {direction: {each.key: each for each in mechanism.found(direction)} for direction in directions}
+    rows = []
+    for key in dict.fromkeys(key for of in found.values() for key in of):
+        each = {direction: of[key] for direction, of in found.items() if key in of}
+        first = next(iter(each.values()))
+        values = [number(each[direction].value if direction in each else None) for direction in directions]
+        same = all(other.meaning == first.meaning for other in each.values())
+        meaning = first.meaning if same else "; ".join(f"{d.label}: {other.meaning}" for d, other in each.items())
+        rows.append([key, *values, first.unit, meaning])
+    return rows
 
 
 class Side(NamedTuple):
