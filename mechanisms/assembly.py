@@ -13,6 +13,7 @@ from mechanisms import _assembly as analysis
 from mechanisms._assembly.loads import Going, at_rest, under_way
 from mechanisms._membered import Membered
 from mechanisms._members import Member, Shape
+from mechanisms._per_direction import per_direction
 from mechanisms._polygons import fault_of
 from rocking_cli.core import (
     CollapseHinge,
@@ -39,6 +40,8 @@ from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.kinematics import Points
 from rocking_cli.errors import MechanismError
 
+SLIPS = 0.01  # of the limit: where it is seen which way a face that slips goes
+OFF = 1e-7  # of its length: a joint that opens there by less stays shut
 LEADS = 1e-8  # of the fastest turn: less is none
 
 Coefficient = Annotated[float, Field(ge=0, le=10)]
@@ -289,30 +292,19 @@ class Assembly(Membered):
 
     # The weakest mechanism
 
-    @cached_property
-    def _collapses(self) -> dict[Direction, analysis.Collapse]:
-        return {}
-
+    @per_direction
     def _collapse(self, direction: Direction) -> analysis.Collapse:
-        if direction not in self._collapses:
-            dead, live = at_rest(self.weighed(), self.attached, direction, self.gravity)
-            self._collapses[direction] = analysis.collapse(
-                self._blocks, self._contacts, self._guides, direction, dead=dead, live=live, gravity=self.gravity
-            )
-        return self._collapses[direction]
+        dead, live = at_rest(self.weighed(), self.attached, direction, self.gravity)
+        return analysis.collapse(
+            self._blocks, self._contacts, self._guides, direction, dead=dead, live=live, gravity=self.gravity
+        )
 
-    @cached_property
-    def _found(self) -> dict[Direction, analysis.Linkage]:
-        return {}
-
+    @per_direction
     def _groups(self, direction: Direction) -> analysis.Linkage:
-        if direction not in self._found:
-            try:
-                found = analysis.linkage(self._blocks, self._contacts, self._guides, self._collapse(direction))
-            except analysis.AssemblyFault as error:
-                raise MechanismError(f"in the {direction.label} direction {error}") from None
-            self._found[direction] = found
-        return self._found[direction]
+        try:
+            return analysis.linkage(self._blocks, self._contacts, self._guides, self._collapse(direction))
+        except analysis.AssemblyFault as error:
+            raise MechanismError(f"in the {direction.label} direction {error}") from None
 
     def _joint(self, k: int) -> str:
         contact = self._contacts[k]
@@ -329,18 +321,10 @@ class Assembly(Membered):
         hinged = {self._contacts[h.contact].b for h in found.hinges if None in (h.one, h.other)}
         return next((name for name in group if name in hinged), group[0])
 
-    @cached_property
-    def _linkages(self) -> dict[Direction, LinkageMotion]:
-        return {}
-
+    @per_direction
     def _linkage(self, direction: Direction) -> LinkageMotion:
-        if direction not in self._linkages:
-            if direction not in self.directions:
-                raise MechanismError(f"it cannot rock in the {direction.label} direction")
-            self._linkages[direction] = self._made(direction)
-        return self._linkages[direction]
-
-    def _made(self, direction: Direction) -> LinkageMotion:
+        if direction not in self.directions:
+            raise MechanismError(f"it cannot rock in the {direction.label} direction")
         found = self._groups(direction)
         if found.slides:
             where = ", ".join(self._joint(k) for k in found.slides)
@@ -369,6 +353,7 @@ class Assembly(Membered):
                     f"friction never slide: give friction, or `friction_of: {{{joints[0]}: 0}}`"
                 )
             raise MechanismError(f"in the {direction.label} direction {why}") from None
+        self._check_slips_off(direction, linkage)
         turns = float(linkage.motions(np.zeros(1))[lead].dpsi[0])
         number = next(k for k, group in enumerate(found.groups) if lead in group)
         if turns * found.velocity[number, 2] < 0:
@@ -377,6 +362,29 @@ class Assembly(Membered):
                 "let another block lead"
             )
         return linkage
+
+    def _check_slips_off(self, direction: Direction, linkage: LinkageMotion) -> None:
+        """Refuse a mechanism in which a corner that slips along a face without friction does not leave it."""
+        found, phi = self._groups(direction), np.array([SLIPS * linkage.limit])
+        motions = linkage.motions(phi)
+
+        def carried(name: str, at: complex) -> tuple[complex, complex]:
+            if name not in motions:
+                return at, 1 + 0j
+            return complex(motions[name].carry(at)[0][0]), complex(np.exp(1j * motions[name].psi[0]))
+
+        for k in found.lifted:
+            contact = self._contacts[k]
+            for end, at in enumerate(contact.ends):
+                (a, turn_a), (b, turn_b) = (carried(name, at) for name in (contact.a, contact.b))
+                turn = turn_a if contact.face_at(end) == contact.a else turn_b
+                gap = ((b - a) * (contact.normal * turn).conjugate()).real
+                if gap <= OFF * contact.length:
+                    what = "goes into" if gap < -OFF * contact.length else "slides along"
+                    raise MechanismError(
+                        f"in the {direction.label} direction {contact.b} {what} {contact.a} as it moves: there is no "
+                        "rocking model of that"
+                    )
 
     def _hinges(self, direction: Direction) -> list[tuple[str, analysis.Contact, complex]]:
         """Letter, joint and point of each hinge, from the left."""
@@ -418,7 +426,7 @@ class Assembly(Membered):
         thrust = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
         parts = {name: "+".join(group) for group in found.groups for name in group}
         moves = not found.slides
-        valid = self._valid[direction] if moves else None
+        valid = self._valid_to(direction) if moves else None
         return CollapseMechanism(
             lambda_=self.uplift(direction) if moves else state.multiplier,
             lead=self._lead(direction) if moves else "",
@@ -463,12 +471,10 @@ class Assembly(Membered):
                 found.append(None)
         return found
 
-    @cached_property
-    def _valid(self) -> Mapping[Direction, tuple[float, int, float] | None]:
-        """The rotation at which another joint opens as it is held displaced, which, and by what acceleration over g."""
-        return {direction: self._valid_to(direction) for direction in self.directions}
-
+    @per_direction
     def _valid_to(self, direction: Direction) -> tuple[float, int, float] | None:
+        """The rotation at which another joint opens as it is held displaced, which, and by what acceleration over g."""
+
         def held(phi: float) -> tuple[analysis.Admissible, float]:
             here = np.array([phi])
             there = self.coefficients(here, direction)
@@ -489,14 +495,9 @@ class Assembly(Membered):
         found, share = held(first)
         return first, found.contact if found.contact is not None else 0, share
 
-    @cached_property
-    def _frictions_needed(self) -> dict[Direction, analysis.Friction]:
-        return {}
-
+    @per_direction
     def _needed(self, direction: Direction) -> analysis.Friction:
-        if direction not in self._frictions_needed:
-            self._frictions_needed[direction] = analysis.friction(self._collapse(direction))
-        return self._frictions_needed[direction]
+        return analysis.friction(self._collapse(direction))
 
     def extras(self, direction: Direction) -> Sequence[Extra]:
         needed, glued = self._needed(direction).needed, [self._joint(k) for k in self._needed(direction).glued]
@@ -506,7 +507,7 @@ class Assembly(Membered):
             which = ", ".join(glued) or "joints"
             why = f"not even this friction does: {which} would carry shear without pressing, and lambda be less"
             friction = Extra("friction_needed", analysis.MOST, "", why)
-        found = self._valid[direction]
+        found = self._valid_to(direction)
         if found is None:
             return (friction,)
         phi, k, share = found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise, product
+from math import atan
 
 import numpy as np
 import pytest
@@ -778,3 +779,22 @@ def test_a_joint_too_many_that_stays_satisfied_is_harmless():
 def test_what_cannot_rock_that_way_says_so():
     with pytest.raises(MechanismError, match="slides between floor and a"):
         assembly({"a": TOWERS["a"]}, friction=0.1).uplift(POSITIVE)
+
+
+def test_what_leans_on_a_wall_leaves_it():
+    """Its heel slips up the wall and off it to second order; with the joint glued nothing could move."""
+    leans = {"one_sided": "positive", "rebound": 0.3}
+    ground = {"floor": rectangle(-2.0, -1.0, 3.0, 0.0), "wall": rectangle(-1.0, 0.0, 0.0, 2.0)}
+    block = {"l": rectangle(0.0, 0.0, 1.0, 4.0)}
+    found = assembly(block, ground=ground, friction_of={"wall and l": 0.0}, **leans)
+    assert found.uplift(POSITIVE) == approx(0.25, rel=1e-12)
+    assert found.critical_rotation(POSITIVE) == approx(atan(0.25), rel=1e-12)
+    refused(block, "no acceleration sets it in motion", ground=ground, **leans)
+
+
+def test_a_heel_that_would_go_into_a_wall_does_not_move():
+    wall = {"polygon": [[-1.0, 0.0], [0.0, 0.0], [0.4, 2.0], [-1.0, 2.0]]}
+    block = {"l": {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.4, 4.0], [0.8, 4.0]]}}
+    ground = {"floor": rectangle(-2.0, -1.0, 3.0, 0.0), "wall": wall}
+    leans = {"one_sided": "positive", "rebound": 0.3}
+    refused(block, "no acceleration sets it in motion", ground=ground, friction_of={"wall and l": 0.0}, **leans)

@@ -23,7 +23,7 @@ from rocking_cli.core import Reals
 
 BALANCED = 1e-6  # of the weight: forces that joints need not carry may be no more, or they are not in balance
 HELD = 1e-9  # of the weight: a tension that counts as none
-STEPS = 64  # in which a first violation is looked for
+STEPS = 32  # in which a first violation is looked for
 
 Placed = Mapping[str, tuple[complex, float]]
 
@@ -177,7 +177,7 @@ class Displaced:
 def first_violation(margin: Callable[[float], float], end: float) -> float | None:
     """Where a margin first falls below zero, from rest to `end`; None if it does not.
 
-    Looked for in steps and then bisected, to 1e-9 of `end`: an excursion between two steps is not seen.
+    Looked for in steps and then bisected, to 1e-8 of `end`: an excursion between two steps is not seen.
     """
     low = 0.0
     for high in np.linspace(0.0, end, STEPS + 1):
@@ -187,7 +187,7 @@ def first_violation(margin: Callable[[float], float], end: float) -> float | Non
     else:
         return None
     high = float(high)
-    while high - low > 1e-9 * abs(end):
+    while high - low > 1e-8 * abs(end):
         middle = (low + high) / 2
         low, high = (low, middle) if margin(middle) < -HELD else (middle, high)
     return high

@@ -25,7 +25,7 @@ class Opening(Enum):
     CLOSED = "stays closed"
     START = "hinges at its start"
     END = "hinges at its end"
-    LIFTED = "opens at both ends"
+    LIFTED = "opens at both ends, or slips off without pressing"
     SLIDES = "slides"
 
 
@@ -144,7 +144,8 @@ def _state(start: float, end: float, slide: float, contact: Contact, still: floa
     """What a joint does, by its rates; one with friction opens as it slides, by no more than that friction."""
     dilates = (contact.friction or 0.0) * slide
     if slide > still and min(start, end) <= dilates + still:
-        return Opening.SLIDES
+        slips = contact.friction == 0 and max(start, end) > still
+        return Opening.LIFTED if slips else Opening.SLIDES
     if max(start, end) <= still:
         return Opening.CLOSED
     if min(start, end) > still:

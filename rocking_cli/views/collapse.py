@@ -37,7 +37,7 @@ def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechan
     if found.lead:
         said.append(f"phi is the rotation of {found.lead}.")
     if found.lifted:
-        said.append(f"Open at both ends: {', '.join(found.lifted)}.")
+        said.append(f"Open at both ends, or slip off: {', '.join(found.lifted)}.")
     if found.slides:
         said.append(
             f"It slides between {', '.join(found.slides)}: lambda says when, and there is no rocking model of it. Flow "
