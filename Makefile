@@ -34,7 +34,7 @@ demo: $(PACKAGE_STAMP)  ## The main job on the shipped example: equiv, respond w
 test: setup  ## All tests
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
-test-kernels: setup  ## The tests of fits and studies, with the last bits as other processors round them
+test-kernels: setup  ## The tests of fits, studies and linkages, with the last bits as other processors round them
 	$(BIN)/python -m tests.elsewhere kernels
 
 test-versions: setup  ## The same with the other versions of Python that are installed here

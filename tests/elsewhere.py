@@ -1,4 +1,4 @@
-"""Run the tests of fits and studies as other machines would: `python -m tests.elsewhere kernels versions`.
+"""Run the tests of fits, studies and linkages as other machines would: `python -m tests.elsewhere kernels versions`.
 
 Other processors round the last bits of linear algebra otherwise, and other versions of Python bring other libraries.
 What this machine cannot run is said and left out.
@@ -20,11 +20,11 @@ from tests.conftest import PROJECT
 
 KERNELS = ("Haswell", "SkylakeX", "Prescott")  # of OpenBLAS, which numpy and scipy use on these processors
 VERSIONS = ((3, 11), (3, 12), (3, 13), (3, 14))
-FITS = [
+ROUNDED = [
     f"tests/test_{name}.py"
     for name in (
-        "distributions", "equivalent", "fragility_curves", "fragility_pictures", "hazard", "json_text", "observed",
-        "spectrum", "study_file", "study_runs",
+        "assembly", "assembly_limit", "distributions", "equivalent", "fragility_curves", "fragility_pictures",
+        "hazard", "json_text", "linkage", "observed", "spectrum", "study_file", "study_runs",
     )
 ]  # fmt: skip
 # They take long, and rest on random numbers or on processes rather than on rounding: once is enough.
@@ -33,8 +33,8 @@ NEEDED = ["hypothesis>=6.100", "pytest>=8", "statsmodels>=0.14.2"]  # besides th
 
 
 def tests(python: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    """The tests of fits and studies by a Python."""
-    command = [str(python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", f"not ({ONCE})", *FITS]
+    """The tests of fits, studies and linkages by a Python."""
+    command = [str(python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", f"not ({ONCE})", *ROUNDED]
     return subprocess.run(
         command, cwd=PROJECT, env={**os.environ, **environment}, check=False, encoding="utf-8", errors="replace",
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
