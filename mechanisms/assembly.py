@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from math import isclose
 from typing import Annotated, ClassVar, Self
 
 import numpy as np
@@ -40,6 +41,7 @@ from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.kinematics import Points
 from rocking_cli.errors import MechanismError
 
+SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
 SLIPS = 0.01  # of the limit: where it is seen which way a face that slips goes
 OFF = 1e-7  # of its length: a joint that opens there by less stays shut
 LEADS = 1e-8  # of the fastest turn: less is none
@@ -182,13 +184,15 @@ class Assembly(Membered):
         for direction in self.directions:
             found = self._collapse(direction)
             if not found.unique:
-                ways = "; ".join(" and ".join(each.moves) for each in found.several)
+                ways = "; ".join(dict.fromkeys(" and ".join(each.moves) for each in found.several))
+                what = "Change a size or a density by a little, or tie what should not part"
+                if self.friction is not None and isclose(found.multiplier, self.friction, rel_tol=SLIDING):
+                    what = "That is the friction given: they slide, and there is no rocking model of it"
                 raise self._refused(
                     ("blocks",),
                     f"in the {direction.label} direction several mechanisms start at {found.multiplier:.6g} g, in "
-                    f"which move: {ways}. Change a size or a density by a little, or tie what should not part",
+                    f"which move: {ways}. {what}",
                 )
-
             self._check_lead(direction)
 
     def _check_collapses(self, direction: Direction) -> None:

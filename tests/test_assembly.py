@@ -798,3 +798,9 @@ def test_a_heel_that_would_go_into_a_wall_does_not_move():
     ground = {"floor": rectangle(-2.0, -1.0, 3.0, 0.0), "wall": wall}
     leans = {"one_sided": "positive", "rebound": 0.3}
     refused(block, "no acceleration sets it in motion", ground=ground, friction_of={"wall and l": 0.0}, **leans)
+
+
+def test_blocks_that_slide_at_the_friction_given_are_told_so():
+    tall = {"a": rectangle(0.0, 0.0, 1.0, 1.0), "b": rectangle(0.0, 1.0, 1.0, 2.0)}
+    said = refused(tall, "several mechanisms start at 0.3 g", friction=0.3)
+    assert "That is the friction given: they slide" in said
