@@ -14,6 +14,7 @@ from mechanisms import _faces as faces
 from mechanisms._cracks import EDGE, Crack, Cracked, active, cracked, weakest
 from mechanisms._membered import Membered
 from mechanisms._members import Member, Shape
+from mechanisms._polygons import distance, inside, size_of
 from mechanisms._sides import GROUND, Held, Side, mirrored
 from rocking_cli.core import (
     Direction,
@@ -24,6 +25,7 @@ from rocking_cli.core import (
     LinkageMotion,
     NoMotion,
     Outline,
+    Pin,
     Reals,
     RigidMotion,
     Sketch,
@@ -36,6 +38,7 @@ from rocking_cli.errors import MechanismError
 
 MOST_CRACKS = 2  # in a direction
 ALIKE = 1e-6  # of the size of the structure: how far an image may be from the body it is of
+BESIDE = 1e-2  # of the width and height of a body: how far beside it a joint may be drawn
 CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding
 
 EXAMPLE_BODIES = {
@@ -117,6 +120,13 @@ class Linkage(Membered):
             others = {each.cut for each in (self.cracks or {}).values() if each.body == crack.body}
             if len(others) > 1:
                 raise geometry_error(("cracks", name, "cut"), f"{crack.body} is cut the other way too: one way only")
+        spoken = {name for side in self._sides.values() for name in active(side, self.cracks or {})}
+        for name, crack in (self.cracks or {}).items():
+            if name not in spoken:
+                at = " or ".join(f"`{name} {end}`" for end in crack.ends)
+                raise geometry_error(
+                    ("cracks", name), f"no joint speaks of it: hinge its pieces at {at}, or leave it out"
+                )
         for direction, side in self._sides.items():
             named = active(side, self.cracks or {})
             if len(named) > MOST_CRACKS:
@@ -161,7 +171,23 @@ class Linkage(Membered):
             other = f"let another body lead, of {', '.join(able)}"
             why = other if able else f"nothing in it turns {way} as it is thrown"
             raise geometry_error(where, f"{lead} turns the wrong way: {why}")
+        self._check_on_bodies(direction)
         self._check_opens(direction, motions)
+
+    def _check_on_bodies(self, direction: Direction) -> None:
+        """Refuse a joint beside a body that it joins, where the shape of that is known."""
+        for joint in self._held[direction].joints:
+            for name in joint.bodies if isinstance(joint, Pin) else joint.bodies[:1]:
+                shapes = [np.array(shape) for shape in self._members[name].outlines]
+                away = min((float(distance(np.array([joint.at]), z)[0]) for z in shapes), default=0.0)
+                within = any(bool(inside(np.array([joint.at]), z)[0]) for z in shapes)
+                if not within and away > BESIDE * max((size_of(z) for z in shapes), default=1.0):
+                    side = getattr(self, direction.label)
+                    where = (
+                        (direction.label, "joints", joint.name, "at") if isinstance(side, Side) else (direction.label,)
+                    )
+                    at = f"[{joint.at.real:g}, {joint.at.imag:g}]"
+                    raise geometry_error(where, f"{at} is {away:.4g} m beside {name}: a joint is on what it joins")
 
     def _check_opens(self, direction: Direction, motions: Mapping[str, RigidMotion]) -> None:
         fastest = max(

@@ -221,6 +221,11 @@ class TestCracks:
         assert least == pytest.approx(at(places["crack_K"], places["crack_M"]), rel=1e-9)
         assert "at the end of its line" in found.extras(Direction.POSITIVE)[0].meaning
 
+    def test_a_crack_that_no_joint_speaks_of_is_a_slip(self):
+        cracks = {name: {"body": "wall", "along": [[0.0, 0.3], [0.0, 2.9]]} for name in ("K", "M")}
+        with pytest.raises(InputError, match=r"cracks\.M: no joint speaks of it: hinge its pieces at `M left`"):
+            rk.Linkage(bodies={"wall": self.WALL}, cracks=cracks, positive=self.SIDE)
+
     @pytest.mark.parametrize(
         ("change", "said"),
         [
@@ -348,6 +353,7 @@ WRONG = [
     # what is changed, into what, line, what is said
     ("pivot: lower, at: [0.3, 0]", "pivot: lower, at: [0, 0]", 10, "A closes: there lower and the ground"),
     ("at: [0, 1.5]}", "at: [0.3, 1.5]}", 11, "B closes: there lower and upper would go into one another"),
+    ("at: [0, 1.5]}", "at: [0, 15]}", 11, "[0, 15] is 13.5 m beside lower: a joint is on what it joins"),
     ("lead: lower", "lead: middle", 8, "there is no body 'middle'; there are lower, upper"),
     ("[lower, upper]", "[lower, uper]", 11, "there is no body 'uper'"),
     ("[lower, upper]", "[lower, lower]", 11, "joins lower to itself"),
