@@ -9,12 +9,12 @@ from typing import ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
-from mechanisms import _faces as faces
 from mechanisms._cracks import EDGE, Crack, Cracked, active, cracked, weakest
+from mechanisms._held_checks import beside, closing, face_at, turns_the_wrong_way
 from mechanisms._membered import Membered
 from mechanisms._members import Member, Shape
-from mechanisms._polygons import distance, inside, size_of
 from mechanisms._sides import GROUND, Held, Side, mirrored
 from rocking_cli.core import (
     Direction,
@@ -24,8 +24,6 @@ from rocking_cli.core import (
     Joint,
     LinkageMotion,
     NoMotion,
-    Outline,
-    Pin,
     Reals,
     RigidMotion,
     Sketch,
@@ -38,8 +36,6 @@ from rocking_cli.errors import MechanismError
 
 MOST_CRACKS = 2  # in a direction
 ALIKE = 1e-6  # of the size of the structure: how far an image may be from the body it is of
-BESIDE = 1e-2  # of the width and height of a body: how far beside it a joint may be drawn
-CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding
 
 EXAMPLE_BODIES = {
     "lower": {"polygon": [[0.0, 0.0], [0.3, 0.0], [0.3, 1.5], [0.0, 1.5]]},
@@ -150,64 +146,21 @@ class Linkage(Membered):
 
     def _check_moves(self, direction: Direction) -> None:
         """Refuse joints that leave no motion, one the wrong way, or one that closes a face."""
-        where = direction.label
         try:
             linkage = self._linkages[direction]
         except NoMotion as error:
-            own = (where, "joints", error.joint) if error.joint and isinstance(getattr(self, where), Side) else (where,)
-            raise geometry_error(own, error.reason) from None
-        motions = linkage.motions(np.zeros(1))
-        lifted, driven = (
-            sum(
-                each.body.mass * part(motions[name].carry(each.body.centroid)[1][0])
-                for name, each in self._members.items()
-            )
-            for part in (np.imag, lambda dz: direction * np.real(dz))
-        )
-        if lifted < 0 and driven < 0:
-            lead = self._held[direction].lead
-            able = [name for name, motion in motions.items() if motion.dpsi[0] * motions[lead].dpsi[0] < 0]
-            way = "clockwise" if direction > 0 else "anticlockwise"
-            other = f"let another body lead, of {', '.join(able)}"
-            why = other if able else f"nothing in it turns {way} as it is thrown"
-            raise geometry_error(where, f"{lead} turns the wrong way: {why}")
-        self._check_on_bodies(direction)
-        self._check_opens(direction, motions)
+            raise self._refused(direction, error.joint, error.reason) from None
+        held, motions = self._held[direction], linkage.motions(np.zeros(1))
+        if (wrong := turns_the_wrong_way(self._members, held.lead, motions, direction)) is not None:
+            raise geometry_error(direction.label, wrong)
+        for found in (beside(self._members, held), closing(self._members, held, motions)):
+            if found is not None:
+                raise self._refused(direction, *found)
 
-    def _check_on_bodies(self, direction: Direction) -> None:
-        """Refuse a joint beside a body that it joins, where the shape of that is known."""
-        for joint in self._held[direction].joints:
-            for name in joint.bodies if isinstance(joint, Pin) else joint.bodies[:1]:
-                shapes = [np.array(shape) for shape in self._members[name].outlines]
-                away = min((float(distance(np.array([joint.at]), z)[0]) for z in shapes), default=0.0)
-                within = any(bool(inside(np.array([joint.at]), z)[0]) for z in shapes)
-                if not within and away > BESIDE * max((size_of(z) for z in shapes), default=1.0):
-                    side = getattr(self, direction.label)
-                    where = (
-                        (direction.label, "joints", joint.name, "at") if isinstance(side, Side) else (direction.label,)
-                    )
-                    at = f"[{joint.at.real:g}, {joint.at.imag:g}]"
-                    raise geometry_error(where, f"{at} is {away:.4g} m beside {name}: a joint is on what it joins")
-
-    def _check_opens(self, direction: Direction, motions: Mapping[str, RigidMotion]) -> None:
-        fastest = max(
-            float(abs(motions[name].carry(z)[1][0])) for name, each in self._members.items()
-            for z in (each.body.centroid, *(z for shape in each.outlines for z in shape))
-        )  # fmt: skip
-        for joint in self._held[direction].joints:
-            face = self._face(joint.bodies, joint.at)
-            if isinstance(joint, Guide) or face is None:
-                continue
-            way = [motions[name].carry(face.far)[1][0] for name in joint.bodies]
-            rate = (way[1] - way[0] if len(way) > 1 else way[0]) * np.conj(face.normal)
-            if rate.real < -CLOSES * fastest:
-                names = " and ".join([*joint.bodies, *(["the ground"] if len(way) == 1 else [])])
-                side = getattr(self, direction.label)
-                raise geometry_error(
-                    (direction.label, "joints", joint.name) if isinstance(side, Side) else direction.label,
-                    f"{joint.name} closes: there {names} would go into one another at "
-                    f"[{face.far.real:.4g}, {face.far.imag:.4g}]; hinge at the other end of the face",
-                )
+    def _refused(self, direction: Direction, joint: str | None, reason: str) -> PydanticCustomError:
+        """The error of a joint, where the file has it: in a mirror it has none."""
+        has_joints = joint is not None and isinstance(getattr(self, direction.label), Side)
+        return geometry_error((direction.label, "joints", joint or "") if has_joints else direction.label, reason)
 
     # Masses
 
@@ -356,16 +309,12 @@ class Linkage(Membered):
 
     # Contacts and picture
 
-    def _face(self, bodies: Sequence[str], at: complex) -> faces.Face | None:
-        shapes: list[Sequence[Outline]] = [self._members[name].outlines for name in bodies]
-        return faces.under(shapes[0], at) if len(shapes) == 1 else faces.between(shapes[0], shapes[1], at)
-
     def joints(self, direction: Direction) -> Sequence[Joint]:
         found = []
         if direction in self._held and not self._linkages[direction].determinate:
             return ()  # how a joint too many shares the forces is not known
         for each in self._held[direction].joints if direction in self._held else ():
-            names, face = each.bodies, self._face(each.bodies, each.at)
+            names, face = each.bodies, face_at(self._members, each.bodies, each.at)
             letter = self._letter(each.name, direction)
             if isinstance(each, Guide):
                 if len(names) > 1:

@@ -1,0 +1,73 @@
+"""Whether the joints of a linkage are where bodies touch, and open as it rocks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from mechanisms import _faces as faces
+from mechanisms._members import Member
+from mechanisms._polygons import distance, inside, size_of
+from mechanisms._sides import Held
+from rocking_cli.core import Direction, Outline, Pin, RigidMotion
+
+BESIDE = 1e-2  # of the width and height of a body: how far beside it a joint may be drawn
+CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding
+
+
+def face_at(members: Mapping[str, Member], bodies: Sequence[str], at: complex) -> faces.Face | None:
+    """The face on which bodies bear on one another, or one on the ground; None where their shapes do not say."""
+    shapes: list[Sequence[Outline]] = [members[name].outlines for name in bodies]
+    return faces.under(shapes[0], at) if len(shapes) == 1 else faces.between(shapes[0], shapes[1], at)
+
+
+def beside(members: Mapping[str, Member], held: Held) -> tuple[str, str] | None:
+    """A joint that is beside a body which it joins, where the shape of that is known, and what is wrong with it."""
+    for joint in held.joints:
+        at = np.array([joint.at])
+        for name in joint.bodies if isinstance(joint, Pin) else joint.bodies[:1]:
+            shapes = [np.array(shape) for shape in members[name].outlines]
+            away = min((float(distance(at, z)[0]) for z in shapes), default=0.0)
+            if away > BESIDE * max((size_of(z) for z in shapes), default=1.0) and not any(
+                inside(at, z)[0] for z in shapes
+            ):
+                where = f"[{joint.at.real:g}, {joint.at.imag:g}]"
+                return joint.name, f"{where} is {away:.4g} m beside {name}: a joint is on what it joins"
+    return None
+
+
+def closing(members: Mapping[str, Member], held: Held, motions: Mapping[str, RigidMotion]) -> tuple[str, str] | None:
+    """A joint whose face closes as it begins to rock, and what is wrong with it."""
+    fastest = max(
+        float(abs(motions[name].carry(z)[1][0])) for name, each in members.items()
+        for z in (each.body.centroid, *(z for shape in each.outlines for z in shape))
+    )  # fmt: skip
+    for joint in held.joints:
+        face = face_at(members, joint.bodies, joint.at) if isinstance(joint, Pin) else None
+        if face is None:
+            continue
+        way = [motions[name].carry(face.far)[1][0] for name in joint.bodies]
+        rate = (way[1] - way[0] if len(way) > 1 else way[0]) * np.conj(face.normal)
+        if rate.real < -CLOSES * fastest:
+            names = " and ".join([*joint.bodies, *(["the ground"] if len(way) == 1 else [])])
+            return joint.name, (
+                f"{joint.name} closes: there {names} would go into one another at "
+                f"[{face.far.real:.4g}, {face.far.imag:.4g}]; hinge at the other end of the face"
+            )
+    return None
+
+
+def turns_the_wrong_way(
+    members: Mapping[str, Member], lead: str, motions: Mapping[str, RigidMotion], direction: Direction
+) -> str | None:
+    """What is wrong with a lead as which turns the whole goes down, and the other way; None if nothing is."""
+    velocities = [(each.body.mass, complex(motions[n].carry(each.body.centroid)[1][0])) for n, each in members.items()]
+    lifted = sum(mass * dz.imag for mass, dz in velocities)
+    driven = direction * sum(mass * dz.real for mass, dz in velocities)
+    if not (lifted < 0 and driven < 0):
+        return None
+    able = [name for name, motion in motions.items() if motion.dpsi[0] * motions[lead].dpsi[0] < 0]
+    way = "clockwise" if direction > 0 else "anticlockwise"
+    why = f"let another body lead, of {', '.join(able)}" if able else f"nothing in it turns {way} as it is thrown"
+    return f"{lead} turns the wrong way: {why}"
