@@ -116,13 +116,6 @@ class Linkage(Membered):
             others = {each.cut for each in (self.cracks or {}).values() if each.body == crack.body}
             if len(others) > 1:
                 raise geometry_error(("cracks", name, "cut"), f"{crack.body} is cut the other way too: one way only")
-        spoken = {name for side in self._sides.values() for name in active(side, self.cracks or {})}
-        for name, crack in (self.cracks or {}).items():
-            if name not in spoken:
-                at = " or ".join(f"`{name} {end}`" for end in crack.ends)
-                raise geometry_error(
-                    ("cracks", name), f"no joint speaks of it: hinge its pieces at {at}, or leave it out"
-                )
         for direction, side in self._sides.items():
             named = active(side, self.cracks or {})
             if len(named) > MOST_CRACKS:
