@@ -1,4 +1,4 @@
-"""What mechanisms have in common whose bodies are given one by one: their masses."""
+"""What mechanisms have in common whose bodies are given one by one: their masses, and that they move as a linkage."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from mechanisms._members import Member
-from rocking_cli.core import Body, Mechanism, geometry_error
+from rocking_cli.core import Body, Direction, LinkageMotion, Mechanism, Reals, RigidMotion, geometry_error, rotation
 
 
 class Membered(Mechanism):
@@ -17,6 +19,10 @@ class Membered(Mechanism):
     @abstractmethod
     def _members(self) -> Mapping[str, Member]:
         """The bodies with the masses that the file gives, or relative ones."""
+
+    @abstractmethod
+    def _linkage(self, direction: Direction) -> LinkageMotion:
+        """How they move in a direction in which it can rock. Raises `MechanismError` if they do not."""
 
     def _check_masses(self, field: str) -> None:
         """Refuse bodies of which some have masses and others have not; `field` is where they are."""
@@ -44,3 +50,12 @@ class Membered(Mechanism):
             return bodies
         total = sum(body.mass for body in bodies)
         return [replace(body, mass=body.mass / total, inertia=body.inertia / total) for body in bodies]
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        if direction not in self.directions:  # it leans, and rests
+            return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
+        found = self._linkage(direction).motions(phi)
+        return [found[name] for name in self._members]
+
+    def limit(self, direction: Direction) -> float:
+        return self._linkage(direction).limit

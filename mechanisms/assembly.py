@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from math import isclose
+from math import isclose, nan
 from typing import Annotated, ClassVar, Self
 
 import numpy as np
@@ -28,19 +28,18 @@ from rocking_cli.core import (
     NoMotion,
     Pin,
     Reals,
-    RigidMotion,
     Sketch,
     Vertex,
     geometry_error,
     point,
     quantity,
-    rotation,
 )
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.kinematics import Points
 from rocking_cli.errors import MechanismError
 
+ABOVE = 1e-6  # of how far they are apart: hinges that are above one another
 SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
 SLIPS = 0.01  # of the limit: where it is seen which way a face that slips goes
 OFF = 1e-7  # of its length: a joint that opens there by less stays shut
@@ -392,19 +391,12 @@ class Assembly(Membered):
 
     def _hinges(self, direction: Direction) -> list[tuple[str, analysis.Contact, complex]]:
         """Letter, joint and point of each hinge, from the left."""
-        found = sorted(self._groups(direction).hinges, key=lambda h: (round(h.point.real, 9), h.point.imag))
+        hinges = self._groups(direction).hinges
+        order = from_the_left([hinge.point for hinge in hinges])
         return [
-            (_letter(k) + direction.prime, self._contacts[hinge.contact], hinge.point) for k, hinge in enumerate(found)
+            (_letter(n) + direction.prime, self._contacts[hinges[k].contact], hinges[k].point)
+            for n, k in enumerate(order)
         ]
-
-    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
-        if direction not in self.directions:  # it leans, and rests
-            return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
-        found = self._linkage(direction).motions(phi)
-        return [found[name] for name in self._members]
-
-    def limit(self, direction: Direction) -> float:
-        return self._linkage(direction).limit
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
         if direction not in self.directions:
@@ -509,8 +501,9 @@ class Assembly(Membered):
             friction = Extra("friction_needed", needed, "", "friction in every joint without which lambda is less")
         else:
             which = ", ".join(glued) or "joints"
-            why = f"not even this friction does: {which} would carry shear without pressing, and lambda be less"
-            friction = Extra("friction_needed", analysis.MOST, "", why)
+            most = f"no friction up to {analysis.MOST:g} does"
+            why = f"{most}: {which} would carry shear without pressing, and lambda be less"
+            friction = Extra("friction_needed", nan, "", why)
         found = self._valid_to(direction)
         if found is None:
             return (friction,)
@@ -540,6 +533,15 @@ class Assembly(Membered):
             return None
         name = f"a line of thrust at uplift, {self._collapse(direction).multiplier:.3g} g"
         return Line(name, [each.point for each in found.passages], direction)
+
+
+def from_the_left(points: Sequence[complex]) -> list[int]:
+    """The order of points from the left, of those above one another from below, whatever their last bits."""
+    x = np.array([each.real for each in points])
+    order = np.argsort(x, kind="stable")
+    columns = np.cumsum(np.diff(x[order], prepend=x[order][:1]) > ABOVE * np.ptp(x)) if x.size else x
+    pairs = sorted(zip(columns.tolist(), order.tolist(), strict=True), key=lambda pair: (pair[0], points[pair[1]].imag))
+    return [k for _, k in pairs]
 
 
 def _letter(k: int) -> str:

@@ -24,11 +24,8 @@ from rocking_cli.core import (
     Joint,
     LinkageMotion,
     NoMotion,
-    Reals,
-    RigidMotion,
     Sketch,
     geometry_error,
-    rotation,
 )
 from rocking_cli.core.fields import Name
 from rocking_cli.core.ties import Place, Tie
@@ -277,15 +274,6 @@ class Linkage(Membered):
         if direction not in self._linkages:
             raise MechanismError(f"it cannot rock in the {direction.label} direction")
         return self._linkages[direction]
-
-    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
-        if direction not in self.directions:  # it leans, and rests
-            return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
-        found = self._linkage(direction).motions(phi)
-        return [found[name] for name in self._members]
-
-    def limit(self, direction: Direction) -> float:
-        return self._linkage(direction).limit
 
     def piece(self, body: str, at: complex) -> str:
         return self._cracked.piece(body, at)

@@ -12,6 +12,7 @@ from pytest import approx
 from scipy.optimize import linprog
 
 import rocking_cli as rk
+from mechanisms.assembly import from_the_left
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.studies.contact import Contacts
@@ -804,3 +805,20 @@ def test_blocks_that_slide_at_the_friction_given_are_told_so():
     tall = {"a": rectangle(0.0, 0.0, 1.0, 1.0), "b": rectangle(0.0, 1.0, 1.0, 2.0)}
     said = refused(tall, "several mechanisms start at 0.3 g", friction=0.3)
     assert "That is the friction given: they slide" in said
+
+
+def test_a_friction_that_there_is_not_is_no_number(tmp_path):
+    """With hardly any friction between them the towers jam as if glued, and no greater one would carry that."""
+    jammed = {"blocks": TOWERS, "ground": {"floor": rectangle(-5.0, -1.0, 9.0, 0.0)}, "friction_of": {"a and b": 0.001}}
+    (tmp_path / "s.yaml").write_text(yaml.safe_dump({"mechanism": "assembly", **jammed}), encoding="utf-8")
+    found = run_json("equiv", tmp_path / "s.yaml")["directions"]["positive"]
+    assert found["friction_needed"] is None and found["lambda"] == approx(0.5, rel=0.01)
+    assert "no friction up to 10 does" in " ".join(run("equiv", tmp_path / "s.yaml").stdout.split())
+
+
+@pytest.mark.parametrize("by", [0.0, 1e-13, -1e-13])
+def test_hinges_above_one_another_come_from_below(by):
+    """Whatever the last bits of where they are."""
+    points = [complex(1.0 + by, 3.0), 4 + 0j, complex(1.0 - by, 0.0), -2 + 5j, complex(1.0, 1.0)]
+    assert from_the_left(points) == [3, 2, 4, 0, 1]
+    assert from_the_left([]) == [] and from_the_left([2j, 1j]) == [1, 0]

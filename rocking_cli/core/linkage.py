@@ -37,12 +37,12 @@ class NoMotion(ValueError):
     ----------
     reason : str
         A sentence without a full stop.
-    joint, body : str, optional
-        What it is about.
+    joint : str, optional
+        Which it is about.
     """
 
-    def __init__(self, reason: str, *, joint: str | None = None, body: str | None = None) -> None:
-        self.reason, self.joint, self.body = reason, joint, body
+    def __init__(self, reason: str, *, joint: str | None = None) -> None:
+        self.reason, self.joint = reason, joint
         super().__init__(reason)
 
 
@@ -129,12 +129,12 @@ class LinkageMotion:
 
     def _check_held(self, lead: str) -> None:
         if self._link_of[lead] is None:
-            raise NoMotion(f"{lead} cannot lead: it is fixed to the ground", body=lead)
+            raise NoMotion(f"{lead} cannot lead: it is fixed to the ground")
         held = {self._link_of[name] for joint in self.joints for name in joint.bodies}
-        for name, link in self._link_of.items():
+        for link in self._link_of.values():
             if link is not None and link not in held:
                 what = " and ".join(other for other, own in self._link_of.items() if own == link)
-                raise NoMotion(f"no joint holds {what}: if it rests, fix it to the ground", body=name)
+                raise NoMotion(f"no joint holds {what}: if it rests, fix it to the ground")
 
     def _of(self, joints: Sequence[LinkageJoint]) -> Loops:
         scaled = [replace(joint, at=joint.at / self._size) for joint in joints]
@@ -167,10 +167,7 @@ class LinkageMotion:
         if not len(free):
             raise self._nothing_moves()
         if np.abs(free[:, self._lead]).max() < 1e-7:
-            raise NoMotion(
-                f"{self._lead_name} cannot lead: it does not turn; what can move is {self._movers(free)}",
-                body=self._lead_name,
-            )
+            raise NoMotion(f"{self._lead_name} cannot lead: it does not turn; what can move is {self._movers(free)}")
         loose = _free(matrix)
         if len(loose):
             raise NoMotion(

@@ -392,9 +392,22 @@ class Mechanism(Described, ABC):
     def margins(
         self, direction: Direction, phi: Reals, turning: Reals, rate: Reals, ground: Points
     ) -> tuple[Reals, Sequence[str]] | None:
-        """How far the joints that do not move are from opening in states of motion, and which is nearest.
+        """How far the joints that its mechanism keeps closed are from opening in states of motion.
 
-        By default unknown. A margin below zero says that another mechanism would have begun.
+        Parameters
+        ----------
+        direction : Direction
+            Which way it rocks.
+        phi, turning, rate : ndarray, shape (n,)
+            Rotations inside the direction [rad], and their second [rad/s2] and first [rad/s] derivatives.
+        ground : ndarray of complex, shape (n,)
+            Ground acceleration u_g'' + i v_g'' [m/s2].
+
+        Returns
+        -------
+        (ndarray, sequence of str) or None
+            The least normal force over the weight, shape (n,), below zero where another mechanism would have begun, NaN
+            where it is not known; and the joint that has it. None, as by default: there is nothing to be known.
         """
         return None
 
