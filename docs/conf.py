@@ -75,7 +75,7 @@ def _on_the_site(app: Sphinx, page: str, source: list[str]) -> None:
 
 
 def _menus(text: str) -> str:
-    """The menus of the site: the lists of contents of the first page."""
+    """Return the menus of the site, from the lists of contents of the first page."""
     _, *lists = re.split(r"^##+ (?=Contents|Worked|Mechanisms|Background|Reference)", text, flags=re.M)
     menus = []
     for each in lists:

@@ -1,4 +1,6 @@
-"""How often intervals of fragility curves hold the truth, in seeded trials: the table of docs/fragility.md.
+"""Compute how often intervals of fragility curves cover the true value, in seeded trials.
+
+The result is the table of docs/fragility.md.
 
     python docs/make_coverage.py [TRIALS]
 
@@ -41,7 +43,7 @@ def _ladders(random: np.random.Generator, records: int, each: int, shared: float
 
 @dataclass(frozen=True)
 class Case:
-    """A kind of study: in words, and how one is drawn with so many records."""
+    """Kind of study: its description, and how to draw one with a number of records."""
 
     words: str
     draw: Callable[[np.random.Generator, int], Curve]
@@ -59,7 +61,7 @@ CASES = (
 
 
 def held(case: Case, records: int, trials: int, seed: int) -> tuple[int, int, int]:
-    """How many trials gave a lognormal fit, and in how many its intervals of median and dispersion hold the truth."""
+    """Count trials with a lognormal fit, and those whose intervals of median and of dispersion cover the true value."""
     random = np.random.default_rng([seed, records, *case.words.encode()])
     fitted = median = dispersion = 0
     for _ in range(trials):

@@ -1,4 +1,4 @@
-"""Makes the parts of the pages that are made, and the pictures: all that the pages show of the program is its own.
+"""Write the generated parts of the pages, and the pictures, so that the pages show real output of the program.
 
     python docs/make_pages.py             # part of make docs
 
@@ -24,20 +24,20 @@ RUNS = ("run", "draw")  # the kinds of parts that are made by a command, with an
 
 
 def pages() -> list[Path]:
-    """The README and all pages, the tutorial first: it writes the file that others use."""
+    """Return the README and all pages, the tutorial first: it writes the file that others use."""
     folders = ("", "mechanisms/", "walls/", "masonry/")
     found = [*(page for folder in folders for page in DOCS.glob(f"{folder}*.md")), PROJECT / "README.md"]
     return sorted(found, key=lambda page: (page.name != "tutorial.md", page))
 
 
 def commands() -> list[str]:
-    """Every command that is shown, once."""
+    """Return every command that is shown, without repetitions."""
     parts = (part for page in pages() for part in asked(page.read_text(encoding="utf-8")))
     return list(dict.fromkeys(what for kind, what in parts if kind in RUNS))
 
 
 def made(kind: str, what: str, runs: dict[str, Run]) -> str:
-    """The text of a part."""
+    """Return the text of a part."""
     if kind in RUNS:
         output = f"\n\n```{'yaml' if '>' in what else 'text'}\n{runs[what].output}```" if kind == "run" else ""
         return f"    {what}{output}"
@@ -58,20 +58,20 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
 
 
 def of_the_readme(name: str) -> str:
-    """What stands in the README between `<!-- NAME -->`, or its beginning, and `<!-- /NAME -->`."""
+    """Return the text of the README between `<!-- NAME -->`, or its beginning, and `<!-- /NAME -->`."""
     before, _, _ = (PROJECT / "README.md").read_text(encoding="utf-8").partition(f"<!-- /{name} -->")
     return before.rpartition(f"<!-- {name} -->")[2]
 
 
 def drawn(runs: dict[str, Run]) -> dict[str, Content]:
-    """The content of every picture that is shown."""
+    """Return the content of every picture that is shown."""
     all_drawn = {name: content for each in runs.values() for name, content in each.pictures.items()}
     wanted = {name for page in pages() for name in shown(page.read_text(encoding="utf-8"))}
     return {name: all_drawn[name] for name in sorted(wanted)}
 
 
 def main() -> None:
-    """Run all commands, and renew what is stale."""
+    """Run all commands, and renew stale parts and pictures."""
     shutil.rmtree(RUN, ignore_errors=True)
     RUN.mkdir(parents=True)
     runs = run(commands(), RUN)

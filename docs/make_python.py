@@ -16,14 +16,14 @@ PAGE = Path(__file__).resolve().parent / "python.md"
 
 
 def run(folder: Path) -> int:
-    """How many lines of the page do something else than it says; pictures and files are left in the folder."""
+    """Count the lines of the page whose output differs from the page; pictures and files are left in the folder."""
     shutil.copytree(PAGE.parents[1] / "examples", folder / "examples")
     with chdir(folder):
         return doctest.testfile(str(PAGE), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE).failed
 
 
 def script() -> str:
-    """The lines of the page without what they print, for a type checker."""
+    """Return the lines of the page without their output, for a type checker."""
     return doctest.script_from_examples(PAGE.read_text(encoding="utf-8"))
 
 

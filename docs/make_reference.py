@@ -1,4 +1,4 @@
-"""The parts of the documentation that are in the code: the command line, fields of mechanisms, names for Python."""
+"""Parts of the documentation that come from the code: command line, fields of mechanisms, Python names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
 
 def command_line() -> str:
-    """The group and every command: usage, help and options."""
+    """Return usage, help and options of the group and of every command."""
     group = click.Context(main, info_name="rocking", **main.context_settings)
     parts = [described(main, group)]
     for name in main.list_commands(group):
@@ -36,7 +36,7 @@ def described(command: click.Command, ctx: click.Context) -> str:
 
 
 def paragraph(text: str) -> str:
-    r"""A paragraph of a help text; one that begins with click's \b keeps its lines, and its heading stands above."""
+    r"""Return a paragraph of a help text; one that begins with click's \b keeps its lines, below its heading."""
     if not text.startswith("\b"):
         return plain(" ".join(text.split()))
     _, heading, *lines = text.split("\n")
@@ -44,7 +44,7 @@ def paragraph(text: str) -> str:
 
 
 def options(command: click.Command, ctx: click.Context) -> str:
-    """A list of what `--help` lists."""
+    """Return a list of the entries of `--help`."""
     listed = [each for each in command.get_params(ctx) if isinstance(each, click.Option)]
     records = [found for each in listed if (found := each.get_help_record(ctx)) is not None]
     return "\n".join(f"- `{names}`: {plain(meaning)}" for names, meaning in records)
@@ -69,7 +69,7 @@ def mechanism(cls: Any) -> str:
 
 
 def table_of_fields(cls: Any) -> str:
-    """The fields of its own, and by name those that all mechanisms have."""
+    """Return the fields of a mechanism, and the names of those that all mechanisms have."""
     rows = ["| field | meaning | symbol | unit | bounds | default |", "|---|---|---|---|---|---|"]
     for row in fields(cls):
         if not row["common"]:
@@ -81,7 +81,7 @@ def table_of_fields(cls: Any) -> str:
 
 
 def public_names(names: str) -> str:
-    """What some names of `rocking_cli` are called with, and the first sentence on each."""
+    """Return signature and first sentence of names of `rocking_cli`."""
     rows = ["| name | what it is |", "|---|---|"]
     for name in names.split():
         each = getattr(rocking_cli, name)
@@ -92,7 +92,7 @@ def public_names(names: str) -> str:
 
 
 def helpers(names: str) -> str:
-    """What `rocking_cli.core` gives to authors of plugins: what each is called with, and the first sentence on it.
+    """Return signature and first sentence of names of `rocking_cli.core`, for authors of plugins.
 
     With a dot, a method that `Mechanism` has: `.bodies`.
     """
@@ -105,7 +105,7 @@ def helpers(names: str) -> str:
 
 
 def called(name: str, each: Any) -> str:
-    """How a function or a class is called, with the kinds of its arguments and what they are by default."""
+    """Return the signature of a function or a class, with types and defaults of its arguments."""
     if isclass(each) and issubclass(each, Enum):
         return ", ".join(f"{name}.{member}" for member in each.__members__)
     is_called = callable(each) and not getattr(each, "_is_protocol", False)  # a property is not
@@ -129,12 +129,12 @@ def argument(one: Parameter) -> str:
 
 
 def kind(annotation: Any) -> str:
-    """What an argument is, as its author wrote it."""
+    """Return the annotation of an argument as its author wrote it."""
     return annotation if isinstance(annotation, str) else getattr(annotation, "__forward_arg__", str(annotation))
 
 
 def equivalent_blocks(names: str) -> str:
-    """What is equivalent to some structures of the examples, a line for each direction that differs."""
+    """Return the equivalent blocks of example structures, one line for each direction that differs."""
     rows = ["| structure | direction | lambda | phi\\_cr \\[rad] | p \\[rad/s] | eta |", "|---|---|---|---|---|---|"]
     for name in names.split():
         structure = rocking_cli.load_structure(EXAMPLES / f"{name}.yaml")
@@ -151,7 +151,7 @@ def equivalent_blocks(names: str) -> str:
 
 
 def docstrings(names: str) -> str:
-    """The same names in full, for Sphinx."""
+    """Return the full documentation of names, for Sphinx."""
     kinds = {
         name: "exception" if isclass(each) and issubclass(each, Exception) else "class" if isclass(each) else "function"
         for name in names.split()

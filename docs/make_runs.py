@@ -44,7 +44,7 @@ PLAINER = ((128, 1600), (64, 1300), (64, 1000), (64, 480), (32, 480), (32, 360))
 
 @dataclass(frozen=True)
 class Run:
-    """What a command printed, and what each picture that it drew shows, by the name of the file."""
+    """Output of a command, and the content of each picture that it drew, by the name of the file."""
 
     output: str
     pictures: dict[str, Content]
@@ -80,7 +80,7 @@ def ran(command: str) -> Run:
 
 @contextmanager
 def noted_figures() -> Iterator[list[Figure]]:
-    """The figures that are saved meanwhile."""
+    """Collect the figures that are saved meanwhile."""
     figures: list[Figure] = []
     save = Figure.savefig
 
@@ -93,7 +93,7 @@ def noted_figures() -> Iterator[list[Figure]]:
 
 
 def content(figure: Figure) -> Content:
-    """What a figure shows, without what fonts and their sizes change: words, and size, mean and deviation of data."""
+    """Return the content of a figure independently of fonts: words, and size, mean and deviation of data."""
     entries: Content = []
     for axes in figure.axes:
         entries.append([axes.get_title(loc="left"), axes.get_title(), axes.get_xlabel(), axes.get_ylabel()])
@@ -108,14 +108,14 @@ def content(figure: Figure) -> Content:
 
 
 def content_of_frames(file: Path) -> Content:
-    """How many frames there are, and how bright."""
+    """Return the number of frames, and their brightness."""
     with Image.open(file) as image:
         frames = [np.asarray(frame.convert("L")) for frame in ImageSequence.Iterator(image)]
     return [["frames", len(frames), *numbers(np.mean(frames, axis=(1, 2)))]]
 
 
 def numbers(values: Any) -> list[float]:
-    """How many there are, their mean and their standard deviation, of those that are finite."""
+    """Return number, mean and standard deviation of the finite values."""
     found = np.asarray(values, dtype=float).ravel()
     found = found[np.isfinite(found)]
     return [found.size, *(float(f"{value:.5g}") for value in (found.mean(), found.std()))] if found.size else [0]
@@ -134,18 +134,18 @@ def alike(one: Content, other: Content) -> bool:
 
 
 def shown(page: str) -> list[str]:
-    """The names of the pictures that a page shows."""
+    """Return the names of the pictures that a page shows."""
     return re.findall(r"!\[[^]]*\]\((?:\.\./|docs/)?pictures/([^)]+)\)", page)
 
 
 def kept() -> dict[str, Content]:
-    """What the pictures in docs/pictures show."""
+    """Return the content of the pictures in docs/pictures."""
     found: dict[str, Content] = json.loads(KEPT_CONTENT.read_text(encoding="utf-8")) if KEPT_CONTENT.exists() else {}
     return {name: entries for name, entries in found.items() if (KEPT / name).exists()}
 
 
 def stale(contents: dict[str, Content]) -> list[str]:
-    """The pictures that are not there, or show something else than these."""
+    """Return the pictures that are missing, or whose content differs."""
     there = kept()
     return [name for name, entries in contents.items() if name not in there or not alike(entries, there[name])]
 
@@ -169,7 +169,7 @@ def keep(contents: dict[str, Content], folder: Path) -> None:
 
 
 def found(folder: Path, name: str) -> Path | None:
-    """The picture that a command drew; of a page, the picture that a browser takes of it, where there is one."""
+    """Return the picture that a command drew; for a page, a screenshot by the browser, if there is one."""
     for file in folder.rglob(name):
         return file
     picture, browser = folder / name, shutil.which("chromium") or shutil.which("google-chrome")

@@ -1,4 +1,4 @@
-"""Writes rocking_cli/__init__.pyi, which tells type checkers what the package hands out when it is asked for.
+"""Writes rocking_cli/__init__.pyi, which tells type checkers the names that the package provides on first use.
 
     python docs/make_stub.py              # part of make stub
 
@@ -16,7 +16,7 @@ STUB = Path(rocking_cli.__file__).with_suffix(".pyi")
 
 
 def stub() -> str:
-    """The text of the stub."""
+    """Return the text of the stub."""
     lines = ['"""Written by `make stub`: do not edit."""', ""]
     own = distribution("rocking-cli").entry_points.select(group="rocking.mechanisms")
     found = [(point.module, point.attr) for point in own]

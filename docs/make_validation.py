@@ -42,7 +42,7 @@ G = 9.80665
 
 @dataclass(frozen=True)
 class Check:
-    """A quantity, where its reference value comes from, both values, and the test that holds it."""
+    """Quantity with the source of its reference value, both values, and the test that checks it."""
 
     quantity: str
     reference: str
@@ -52,7 +52,7 @@ class Check:
 
     @property
     def below(self) -> str:
-        """The power of ten below which the relative difference stays; the absolute one where zero is expected."""
+        """Power of ten above the relative difference; above the absolute difference if zero is expected."""
         difference = abs(self.ours - self.expected) / (abs(self.expected) or 1.0)
         if difference == 0:
             return f"< 1e{FLOOR}"
@@ -60,13 +60,13 @@ class Check:
         return f"< 1e{power}"
 
     def row(self) -> str:
-        """A line of the table."""
+        """Return a line of the table."""
         values = " | ".join(f"{value:.5g}" for value in (self.expected, self.ours))
         return f"| {self.quantity} | {self.reference} | {values} | {self.below} | `{self.test}` |"
 
 
 def make(name: str, **values: Any) -> Mechanism:
-    """A mechanism by name."""
+    """Return a mechanism by name."""
     return Registry()[name](**values)
 
 
@@ -226,7 +226,7 @@ def records() -> Iterator[Check]:
 
 
 def cosh_minus_one(y: float) -> float:
-    """The rise under twice the uplift acceleration, over phi_cr."""
+    """Return the rise under twice the uplift acceleration, over phi_cr."""
     return (exp(y / 2) - exp(-y / 2)) ** 2 / 2
 
 
@@ -326,7 +326,7 @@ SECTIONS: dict[str, Callable[[], Iterator[Check]]] = {
 
 
 def page() -> str:
-    """The page as it should be."""
+    """Return the text of the page."""
     parts = [(DOCS / "validation_head.md").read_text(encoding="utf-8").rstrip()]
     for title, checks in SECTIONS.items():
         rows = "\n".join(check.row() for check in checks())

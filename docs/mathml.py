@@ -1,4 +1,4 @@
-"""A Sphinx extension: equations as MathML, which every current browser draws by itself.
+"""Sphinx extension that writes equations as MathML, which every current browser draws by itself.
 
 Sphinx's own ways need a script from a server (MathJax) or LaTeX (imgmath), and sphinxcontrib-katex needs Node to do
 without a script. docutils, which Sphinx is built on, turns LaTeX into MathML in Python: no script, no network and no

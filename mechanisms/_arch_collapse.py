@@ -107,7 +107,7 @@ def collapse_hinges(ring: Ring, voussoirs: int | None) -> Hinges:
     multiplier, hinges, faces = _collapse(ring, joints)
     if not (np.array_equal(faces, FACES) and (np.diff(hinges) > 0).all()):
         raise MechanismError(
-            "the arch is too thick to rock on four hinges: "
+            "the arch is too thick for a four-hinge mechanism: "
             + (f"at {multiplier:.3g} g it lifts off a springing instead" if multiplier < STRONGEST else "none can open")
         )
     if voussoirs is None:

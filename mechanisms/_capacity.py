@@ -32,7 +32,7 @@ def read_curve(path: Path) -> tuple[list[Point], list[int]]:
                 continue  # names of the columns
             raise ValueError(f"line {number} is not two numbers, displacement and ratio: write 0.05, 0.21") from None
         if len(row) != 2:
-            hint = "; a decimal comma is no decimal point" if "," in line else ""
+            hint = "; write a decimal point, not a comma" if "," in line else ""
             raise ValueError(f"line {number} has {len(row)} numbers, not two: displacement and ratio{hint}")
         points.append(row)
         lines.append(number)
@@ -49,21 +49,21 @@ def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:
         return 0, f"begins at {points[0][0]:g} m: the first point is at rest, with the ratio at uplift"
     for k, ((d, _), (after, _)) in enumerate(pairwise(points), 1):
         if after == d:
-            return k, f"is no function: it has two ratios at {d:g} m"
+            return k, f"has two ratios at {d:g} m: give one ratio per displacement"
         if after < d:
             return k, f"goes back from {d:g} to {after:g} m: displacements must increase"
     if points[0][1] <= 0:
         return 0, (
-            f"has the ratio {points[0][1]:g} at rest: a rocking structure resists before it moves. Leave out what is "
-            "elastic: the curve begins with the ratio at uplift"
+            f"has the ratio {points[0][1]:g} at zero displacement, but a rocking structure resists before it moves. "
+            "Leave out the elastic branch: the curve starts with the ratio at uplift"
         )
     last = len(points) - 1
     if points[last][1] > 0:
         return last, (
-            f"ends at the ratio {points[last][1]:g}: go on to zero, where the critical rotation is, or beyond"
+            f"ends at the ratio {points[last][1]:g}: continue to zero, where the critical rotation is, or beyond"
         )
     if points[last][1] >= points[last - 1][1]:
-        return last, "does not fall at its end: beyond the critical rotation the structure must fall"
+        return last, "does not decrease at its end: beyond the critical rotation the structure must overturn"
     return None
 
 

@@ -33,7 +33,7 @@ def beside(members: Mapping[str, Member], held: Held) -> tuple[str, str] | None:
                 inside(at, z)[0] for z in shapes
             ):
                 where = f"[{joint.at.real:g}, {joint.at.imag:g}]"
-                return joint.name, f"{where} is {away:.4g} m beside {name}: a joint is on what it joins"
+                return joint.name, f"{where} is {away:.4g} m outside {name}: a joint must lie on the bodies it joins"
     return None
 
 

@@ -57,9 +57,9 @@ class Shape(Described):
         None, min_length=1, max_length=1000, description="masses at points, {mass, at} each, on a frame without mass"
     )
     density: float | None = quantity(
-        "its density; left out, that of the structure", unit="kg/m3", default=None, gt=0, le=1e6
+        "its density; if omitted, that of the structure", unit="kg/m3", default=None, gt=0, le=1e6
     )
-    depth: float | None = quantity("its depth; left out, that of the structure", unit="m", default=None, gt=0, le=1e6)
+    depth: float | None = quantity("its depth; if omitted, that of the structure", unit="m", default=None, gt=0, le=1e6)
     mass: float | None = quantity("its mass, instead of density and depth", unit="kg", default=None, gt=0, le=1e15)
     centroid: Vertex | None = point("its centroid, with mass and inertia", default=None)
     inertia: float | None = quantity("moment of inertia about the centroid", unit="kg m2", default=None, ge=0, le=1e21)
@@ -74,7 +74,7 @@ class Shape(Described):
                     raise geometry_error(key, "is missing: give mass, centroid and inertia, all of them")
             if given and given != ["polygon"]:
                 raise geometry_error(
-                    given[0], "goes not with centroid and inertia: only a polygon is drawn beside them"
+                    given[0], "cannot be combined with centroid and inertia: only `polygon` can, for the drawing"
                 )
         elif len(given) != 1:
             what = "give one of them" if given else "is missing: give a polygon, parts, a disc, masses, or numbers"
@@ -82,9 +82,9 @@ class Shape(Described):
         if self.masses is not None:
             for key in ("mass", "density", "depth"):
                 if getattr(self, key) is not None:
-                    raise geometry_error(key, "goes not with masses, which weigh what they say")
+                    raise geometry_error(key, "cannot be combined with masses, which give their own values")
         if self.mass is not None and (self.density is not None or self.depth is not None):
-            raise geometry_error("mass", "goes not with density and depth: give one or the other")
+            raise geometry_error("mass", "cannot be combined with density and depth: give one or the other")
         if self.polygon is not None and (fault := fault_of(np.array(self.corners))):
             raise geometry_error("polygon", fault)
         return self

@@ -37,9 +37,9 @@ class Part(Described):
         max_length=1000,
     )  # fmt: skip
     density: float | None = quantity(
-        "its density; left out, that of the body", unit="kg/m3", default=None, gt=0, le=1e6
+        "its density; if omitted, that of the body", unit="kg/m3", default=None, gt=0, le=1e6
     )
-    depth: float | None = quantity("its depth; left out, that of the body", unit="m", default=None, gt=0, le=1e6)
+    depth: float | None = quantity("its depth; if omitted, that of the body", unit="m", default=None, gt=0, le=1e6)
     opening: bool = Field(False, description="whether it is cut out of the part that it lies in")
 
     @model_validator(mode="after")

@@ -36,10 +36,10 @@ class Connection(Described):
         kind = kinds[0]
         for key, needed in (("at", kind != "fixed"), ("along", kind == "slide")):
             if (getattr(self, key) is not None) != needed:
-                what = f"is missing: a {kind} needs it" if needed else f"goes not with {kind}"
+                what = f"is missing: a {kind} needs it" if needed else f"cannot be combined with {kind}"
                 raise geometry_error(key, what)
         if self.along is not None and not any(self.along):
-            raise geometry_error("along", "is no direction: give [x, y], not both zero")
+            raise geometry_error("along", "is not a valid direction: give [x, y], not both zero")
         if len(set(self.bodies)) < len(self.bodies):
             raise geometry_error(kind, f"joins {self.bodies[0]} to itself")
         return self
@@ -65,7 +65,7 @@ class Side(Described):
     lead: Name = Field(description="the body whose rotation phi is")
     joints: dict[Name, Connection] = Field(description="what holds the bodies, by names", min_length=1, max_length=1000)
     limit_deg: float | None = quantity(
-        "where the motion ends at the latest; left out, where it locks or the leading body lies flat", unit="deg",
+        "where the motion ends at the latest; if omitted, where it locks or the leading body lies flat", unit="deg",
         default=None, gt=0, le=180,
     )  # fmt: skip
 

@@ -88,7 +88,7 @@ class Support(Described):
     @model_validator(mode="after")
     def _has_a_direction(self) -> Self:
         if not any(self.along):
-            raise geometry_error("along", "is no direction: give [x, y], not both zero")
+            raise geometry_error("along", "is not a valid direction: give [x, y], not both zero")
         return self
 
     def enlarged(self, factor: float) -> Support:
@@ -113,8 +113,8 @@ class Assembly(Membered):
     )
     verified: ClassVar[str] = "arches, portals and stacks by hand; static and kinematic multiplier; brute force"
     caution: ClassVar[str] = (
-        "It rocks on the joints that open first, and only while no other opens: see `valid_to`. Where friction is "
-        "given, joints that slide also open (associated flow), which over-estimates lambda."
+        "The assembly rocks on the joints that open first, and the result is valid only while no other joint opens: "
+        "see `valid_to`. If friction is given, sliding joints also open (associated flow), which overestimates lambda."
     )
 
     starter: ClassVar[tuple[str, ...]] = ("density", "depth")
@@ -133,22 +133,26 @@ class Assembly(Membered):
         description="what holds points sideways, by names: {slide: block, at: [x, y], along: [0, 1]}",
     )  # fmt: skip
     friction: float | None = quantity(
-        "coefficient of friction of every joint; left out, none slides", example=0.6, default=None, gt=0, le=10
+        "coefficient of friction of every joint; if omitted, joints do not slide",
+        example=0.6,
+        default=None,
+        gt=0,
+        le=10,
     )
     friction_of: dict[Name, Coefficient] | None = Field(
         None,
-        description="that of single joints, 0 too",
+        description="coefficient of friction of single joints; may be 0",
         min_length=1,
         max_length=1000,
         examples=[{"left and lintel": 0.3}],
     )
     lead: Leads | None = Field(
         None,
-        description="the block whose rotation phi is; left out, the one on the ground that turns most",
+        description="the block whose rotation phi is; if omitted, the one on the ground that turns most",
         examples=[{"positive": "left", "negative": "right"}],
     )
     gap: float | None = quantity(
-        "how far apart faces may be that touch; left out, 2 per mille of the smaller block", unit="m", example=0.005,
+        "how far apart faces may be that touch; if omitted, 2 per mille of the smaller block", unit="m", example=0.005,
         default=None, gt=0, le=10,
     )  # fmt: skip
 
@@ -174,7 +178,7 @@ class Assembly(Membered):
 
     def _known(self, block: str, where: tuple[str, ...]) -> None:
         if block not in self.blocks:
-            raise geometry_error(where, f"there is no block {block!r}; there are {', '.join(self.blocks)}")
+            raise geometry_error(where, f"there is no block {block!r}; the blocks are {', '.join(self.blocks)}")
 
     def _hold_together(self) -> None:
         super()._hold_together()
@@ -186,11 +190,11 @@ class Assembly(Membered):
                 ways = "; ".join(dict.fromkeys(" and ".join(each.moves) for each in found.several))
                 what = "Change a size or a density by a little, or tie what should not part"
                 if self.friction is not None and isclose(found.multiplier, self.friction, rel_tol=SLIDING):
-                    what = "That is the friction given: they slide, and there is no rocking model of it"
+                    what = "This equals the friction given: the blocks slide, and no rocking model exists for sliding"
                 raise self._refused(
                     ("blocks",),
-                    f"in the {direction.label} direction several mechanisms start at {found.multiplier:.6g} g, in "
-                    f"which move: {ways}. {what}",
+                    f"in the {direction.label} direction several mechanisms start at {found.multiplier:.6g} g, "
+                    f"with these moving blocks: {ways}. {what}",
                 )
             self._check_lead(direction)
 
@@ -201,8 +205,8 @@ class Assembly(Membered):
             raise self._refused(("blocks", *error.blocks[:1]), str(error)) from None
         except analysis.NothingMoves as error:
             why = (
-                f"in the {direction.label} direction {error}: every joint is closed under any. Give a block that can "
-                "turn, or friction, because joints without it never slide"
+                f"in the {direction.label} direction {error}: all joints stay closed. Add a block that can "
+                "rotate, or give `friction`, because joints without it never slide"
             )
             if self.rocks_both_ways:
                 why += f"; if it leans there, give one_sided: {direction.opposite.label}"
@@ -245,7 +249,7 @@ class Assembly(Membered):
         return {name: shape.member(name, self.density, self.depth) for name, shape in self.blocks.items()}
 
     def _shapes(self) -> Sketch:
-        return Sketch()  # its bodies have their outlines, and its hinges follow from what hangs on it
+        return Sketch()  # its bodies have their outlines, and its hinges follow from its loads and ties
 
     @cached_property
     def _blocks(self) -> Sequence[analysis.Block]:
@@ -279,10 +283,12 @@ class Assembly(Membered):
         found = [pair for pair in ways if names.issuperset(pair)]
         if len(found) != 1 or found[0][0] == found[0][1]:
             why = (
-                "could be of several pairs" if found[1:] else "is no joint: write the names of two bodies, as `a and b`"
+                "fits several pairs of bodies"
+                if found[1:]
+                else "does not name a joint: write the names of two bodies, as `a and b`"
             )
             raise geometry_error(
-                ("friction_of", words), f"{why}; there are {', '.join(self.blocks)} on {', '.join(self.ground)}"
+                ("friction_of", words), f"{why}; the blocks are {', '.join(self.blocks)}, on {', '.join(self.ground)}"
             )
         return found[0]
 
@@ -332,9 +338,9 @@ class Assembly(Membered):
         if found.slides:
             where = ", ".join(self._joint(k) for k in found.slides)
             raise MechanismError(
-                f"in the {direction.label} direction, at {self._collapse(direction).multiplier:.4g} g, it slides "
-                f"between {where}: there is no rocking model of that. `rocking collapse` shows it, and the friction it "
-                "would need"
+                f"in the {direction.label} direction the mechanism slides between {where} at "
+                f"{self._collapse(direction).multiplier:.4g} g: no rocking model exists for sliding. `rocking "
+                "collapse` shows the mechanism and the friction required"
             )
         pins = [
             Pin(letter, tuple(name for name in (contact.a, contact.b) if name in self.blocks), at)
@@ -352,8 +358,8 @@ class Assembly(Membered):
             if found.lifted:
                 joints = [self._joint(k) for k in found.lifted]
                 why = (
-                    f"{' and '.join(joints)} open at both ends and hold by shear all the same, as joints without "
-                    f"friction never slide: give friction, or `friction_of: {{{joints[0]}: 0}}`"
+                    f"{' and '.join(joints)} open at both ends but still carry shear, because joints without "
+                    f"friction never slide: give `friction`, or `friction_of: {{{joints[0]}: 0}}`"
                 )
             raise MechanismError(f"in the {direction.label} direction {why}") from None
         self._check_slips_off(direction, linkage)
@@ -385,8 +391,8 @@ class Assembly(Membered):
                 if gap <= OFF * contact.length:
                     what = "goes into" if gap < -OFF * contact.length else "slides along"
                     raise MechanismError(
-                        f"in the {direction.label} direction {contact.b} {what} {contact.a} as it moves: there is no "
-                        "rocking model of that"
+                        f"in the {direction.label} direction {contact.b} {what} {contact.a} as it moves: no "
+                        "rocking model exists for that"
                     )
 
     def _hinges(self, direction: Direction) -> list[tuple[str, analysis.Contact, complex]]:

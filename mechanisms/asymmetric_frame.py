@@ -75,7 +75,9 @@ class AsymmetricFrame(Mechanism):
                 "give density and depth, or left_mass, beam_mass and right_mass: all of one set, none of the other",
             )
         if self.mass is not None and any(given):
-            raise geometry_error("mass", "goes with no other mass: leave out density, depth and the three masses")
+            raise geometry_error(
+                "mass", "cannot be combined with other masses: leave out density, depth and the three masses"
+            )
         return self
 
     def total_mass(self) -> float | None:

@@ -38,7 +38,7 @@ class Cone(SingleBody):
         if self.kind == "hollow" and self.inner_ratio is None:
             raise geometry_error("inner_ratio", "a hollow cone needs inner_ratio, the size of its inner cone")
         if self.kind != "hollow" and self.inner_ratio is not None:
-            raise geometry_error("inner_ratio", f"inner_ratio goes with kind: hollow, not with kind: {self.kind}")
+            raise geometry_error("inner_ratio", f"requires kind: hollow, got kind: {self.kind}")
         return self
 
     def bodies(self) -> Sequence[Body]:

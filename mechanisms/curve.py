@@ -62,7 +62,7 @@ class Curve(Mechanism):
         "instead: a CSV file of these two columns, in the folder of this file", example="pushover.csv", default=None
     )
     negative_points: list[list[float]] | None = quantity(
-        "the same of the negative direction, away from rest; left out, that of the positive",
+        "the same of the negative direction, away from rest; if omitted, that of the positive",
         default=None,
         min_length=2,
         max_length=10_000,
@@ -87,7 +87,7 @@ class Curve(Mechanism):
             if not isinstance(name := data.get(from_file), str):
                 continue
             if data.get(key) is not None:
-                raise geometry_error(from_file, f"goes not with {key}: the curve is in one or the other")
+                raise geometry_error(from_file, f"cannot be combined with {key}: give the curve in one of the two")
             folder = (info.context or {}).get("folder") or Path()
             try:
                 points, lines = read_curve(folder / name)
@@ -125,7 +125,7 @@ class Curve(Mechanism):
             raise geometry_error((key, fault[0]), f"the curve {fault[1]}")
         if points and points[-1][0] >= pi / 2 * self.control_height:
             raise geometry_error(
-                "control_height", f"the curve goes on to {points[-1][0]:g} m, beyond a quarter turn about the foot"
+                "control_height", f"the curve continues to {points[-1][0]:g} m, beyond a quarter turn about the foot"
             )
 
     @cached_property

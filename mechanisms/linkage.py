@@ -108,11 +108,17 @@ class Linkage(Membered):
         for name, crack in (self.cracks or {}).items():
             shape = self.members.get(crack.body)
             if shape is None or shape.polygon is None or shape.inertia is not None:
-                why = f"cuts a polygon; {crack.body!r} is none" if shape else f"there is no body {crack.body!r}"
+                why = (
+                    f"can only cut a polygon, and {crack.body!r} is not one"
+                    if shape
+                    else f"there is no body {crack.body!r}"
+                )
                 raise geometry_error(("cracks", name, "body"), why)
             others = {each.cut for each in (self.cracks or {}).values() if each.body == crack.body}
             if len(others) > 1:
-                raise geometry_error(("cracks", name, "cut"), f"{crack.body} is cut the other way too: one way only")
+                raise geometry_error(
+                    ("cracks", name, "cut"), f"{crack.body} is also cut the other way: use one orientation per body"
+                )
         for direction, side in self._sides.items():
             named = active(side, self.cracks or {})
             if len(named) > MOST_CRACKS:
@@ -122,17 +128,17 @@ class Linkage(Membered):
         bodies = self._cracked.shapes
         known = ", ".join(bodies)
         if side.lead not in bodies:
-            raise geometry_error((direction.label, "lead"), f"there is no body {side.lead!r}; there are {known}")
+            raise geometry_error((direction.label, "lead"), f"there is no body {side.lead!r}; the bodies are {known}")
         for name, each in side.joints.items():
             where = (direction.label, "joints", name)
             for body in each.bodies:
                 if body not in bodies and not (body == GROUND and each.fixed is not None):
                     why = "use pivot, or slide with one body, for joints with the ground" if body == GROUND else (
-                        f"there is no body {body!r}; there are {known}"
+                        f"there is no body {body!r}; the bodies are {known}"
                     )  # fmt: skip
                     raise geometry_error(where, why)
             if isinstance(each.at, str):
-                raise geometry_error((*where, "at"), f"is a point [x, y], got {each.at!r}")
+                raise geometry_error((*where, "at"), f"must be a point [x, y], got {each.at!r}")
 
     def _check_moves(self, direction: Direction) -> None:
         """Refuse joints that leave no motion, one the wrong way, or one that closes a face."""

@@ -121,7 +121,9 @@ class RigidBody(SingleBody):
             )
         if len(begun) > 1:
             second = next(key for key in begun[1] if getattr(self, key) is not None and key != "mass")
-            raise geometry_error(second, f"goes not with {begun[0][0]}: describe the body by one or the other")
+            raise geometry_error(
+                second, f"cannot be combined with {begun[0][0]}: describe the body in one of the two ways"
+            )
         missing = [key for key in begun[0] if getattr(self, key) is None]
         if missing:
             raise geometry_error(missing[0], f"give all of {', '.join(begun[0])}; {missing[0]} is missing")
@@ -169,7 +171,9 @@ class RigidBody(SingleBody):
         if self.corner_radius is None:
             return
         if self.crushing is not None:
-            raise geometry_error("corner_radius", "goes not with crushing: a foot is rounded, or crushes on its edge")
+            raise geometry_error(
+                "corner_radius", "cannot be combined with crushing: a foot is either rounded or crushes at its edge"
+            )
         for direction in Direction:
             arm = self.arm(direction)
             if not (direction * arm.real < 0 < arm.imag):

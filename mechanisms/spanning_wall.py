@@ -75,7 +75,8 @@ class SpanningWall(Mechanism):
             raise geometry_error("hinge", f"is a share of the height: between 0 and 1, or weakest; got {self.hinge:g}")
         if isinstance(self.support, float) and abs(self.support) > self.thickness / 2:
             raise geometry_error(
-                "support", f"is off the top of the wall: at most {self.thickness / 2:g} m from its axis to either side"
+                "support",
+                f"is outside the top of the wall: give at most {self.thickness / 2:g} m to either side of the axis",
             )
         if self.overburden > 0 and not self.has_mass:
             raise geometry_error("density", "is missing: with an overburden the wall needs density and depth, or mass")

@@ -31,9 +31,9 @@ class Wall(Mechanism):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 21-23"
     verified: ClassVar[str] = "closed forms phi_cr = alpha, kappa1 = 1/2, lambda = 2 tan(alpha), p^2 = 3g/(2R); Eq. 21"
     caution: ClassVar[str] = (
-        "Not on the safe side without a load on top: the hinge is held at mid-height, where lambda = 2 tan(alpha). "
-        "Under its own weight alone the weakest hinge of a wall lies higher, and there both lambda and the room to "
-        "move are smaller."
+        "Unconservative without a load on top: the hinge is fixed at mid-height, where lambda = 2 tan(alpha). Under "
+        "self-weight alone, the weakest hinge of a wall lies higher, where both lambda and the displacement capacity "
+        "are smaller."
     )
 
     thickness: float = length("thickness", symbol="2b", example=0.3)

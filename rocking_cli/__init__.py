@@ -1,6 +1,6 @@
-"""rocking-cli: rocking structures under earthquakes.
+"""rocking-cli: rocking response of structures in earthquakes.
 
-The public Python API. Importing it loads nothing heavy: each name is fetched when it is first used.
+Public Python interface. Importing it is fast: each name is imported when it is first used.
 
 Examples
 --------
@@ -69,7 +69,7 @@ _MODULES = {name: module for module, names in _HOME.items() for name in names}
 
 
 def _own_mechanisms() -> dict[str, str]:
-    """The names of mechanisms by those of their classes: of this package, whose classes can be imported from it.
+    """Return the names of the mechanisms of this package, by their classes, which can be imported from it.
 
     Those of other packages are found in `mechanisms`, by their names.
     """

@@ -1,4 +1,4 @@
-"""`python -m rocking_cli`: what `rocking` does, where its command is not on the path."""
+"""`python -m rocking_cli`: run `rocking` if its command is not on the path."""
 
 from rocking_cli.cli.main import main
 

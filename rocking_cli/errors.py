@@ -13,6 +13,14 @@ from typing import ClassVar
 
 from rocking_cli.text import one_line, printable, quoted_line
 
+PREDICATES = frozenset({
+    "applies", "are", "begins", "belongs", "can", "cannot", "comes", "contains", "cuts", "depends", "does", "ends", "exceeds",
+    "fits", "follows", "gives", "goes", "had", "has", "have", "is", "joins", "lacks", "leaves", "lies", "makes", "may", "must",
+    "names", "needs", "occurs", "reads", "refers", "repeats", "requires", "runs", "should", "stands", "starts", "steps",
+    "takes", "turns", "uses", "was", "were", "would",
+})  # fmt: skip
+"""First words of messages that are the predicate of the field before them: "FC is missing"."""
+
 INCOMPLETE = 5
 """Exit code of a command that did its work except for what it reports: one bad record in a hundred."""
 
@@ -48,8 +56,9 @@ class Problem:
     def __str__(self) -> str:
         place = ":".join(one_line(str(part)) for part in (self.file, self.line, self.column) if part is not None)
         # What is quoted of a file must not command the terminal, nor fill it.
-        head = ": ".join(printable(part) for part in (place, self.field, self.message) if part)
-        lines = [head]
+        joint = " " if self.message.partition(" ")[0] in PREDICATES else ": "
+        what = joint.join(printable(part) for part in (self.field, self.message) if part)
+        lines = [f"{place}: {what}" if place else what]
         if self.excerpt is not None:
             lines += [f"    {line}" for line in quoted_line(self.excerpt, self.column)]
         if self.hint:

@@ -1,7 +1,7 @@
-"""Words that every command uses for one thing, and that cost nothing to import.
+"""Words shared by all commands, in a module that imports nothing.
 
-A motion ends in one of four ways: the structure does not uplift; it rocks, which is to lift and come back, to rest in
-the end; it overturns; or it is still rocking, long after the ground is quiet, and not going to overturn.
+A motion has one of four outcomes: the structure does not uplift; it rocks, that is, it uplifts and comes to rest; it
+overturns; or it is still rocking long after the end of the ground motion, without going to overturn.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ STILL_ROCKING = "still rocking"
 
 
 def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False) -> str:
-    """What became of a structure, in the words above.
+    """Return the outcome of a motion, in the words above.
 
     Parameters
     ----------
     uplifts, overturned, still_rocking : bool
-        Whether it lifts at all (a release from a tilt counts), whether it overturns, and whether it is left rocking.
+        Whether the structure uplifts (also by a release), whether it overturns, and whether it is still rocking.
 
     Examples
     --------
@@ -33,7 +33,7 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False) -> 
 
 
 def percent(share: float) -> str:
-    """A share as people read it: two digits below ten per cent, whole numbers above, never a power of ten.
+    """Return a share in per cent: two digits below ten per cent, whole numbers above, never a power of ten.
 
     Examples
     --------

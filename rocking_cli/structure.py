@@ -1,4 +1,4 @@
-"""A structure from its YAML file, with every problem placed at file:line:column."""
+"""Read a structure from its YAML file, with every problem placed at file:line:column."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from rocking_cli.io.field_problems import (
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.text import cut, did_you_mean, one_line
 
-HINT = "`rocking new block` prints one to start from"
+HINT = "`rocking new block` prints a template"
 
 
 def load_structure(path: str | Path, registry: Registry | None = None) -> Mechanism:
@@ -38,17 +38,17 @@ def load_structure(path: str | Path, registry: Registry | None = None) -> Mechan
     path : str or Path
         The file: a mapping with `mechanism` and that mechanism's fields.
     registry : Registry, optional
-        Where to look up the mechanism; by default all that are installed.
+        Registry of mechanisms; by default that of all installed ones.
 
     Returns
     -------
     Mechanism
-        Named after the file if it does not give a name.
+        Structure, named after the file if it does not give a name.
 
     Raises
     ------
     InputError
-        With every problem of the file: place, field, and what would be right.
+        With every problem of the file: its place, its field and a remedy.
     MechanismError
         If the mechanism's plugin cannot be used.
     """
@@ -57,13 +57,13 @@ def load_structure(path: str | Path, registry: Registry | None = None) -> Mechan
 
 
 def parse_structure(text: str, file: str, default_name: str, registry: Registry | None = None) -> Mechanism:
-    """Read a structure from YAML text; `file` is what errors call it. Raises as `load_structure`."""
+    """Read a structure from YAML text; errors name it `file`. Raises as `load_structure`."""
     document = parse(text, file, "structure", HINT)
     return of_document(document, default_name, Path(file).parent, registry)
 
 
 def of_document(document: Document, default_name: str, folder: Path, registry: Registry | None = None) -> Mechanism:
-    """A structure of data that were read; files that it names are in `folder`. Raises as `load_structure`."""
+    """Make a structure from a document that was read; it names files in `folder`. Raises as `load_structure`."""
     cls = _mechanism(document, registry if registry is not None else Registry())
     fields = {key: value for key, value in document.data.items() if key != "mechanism"}
     if cls is not None:
@@ -79,21 +79,21 @@ def of_document(document: Document, default_name: str, folder: Path, registry: R
 
 @dataclass(frozen=True)
 class Varied:
-    """A structure of which one number is another.
+    """A structure with one numeric field that varies.
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure.
     field : str
-        The number, with dots for what is inside and an entry of a list by its name or number: `ties.bar.prestress`.
+        Path of the field, with dots, and entries of lists by name or number: `ties.bar.prestress`.
     folder : Path, optional
-        Where files that its fields name are, by default here.
+        Folder of the files that its fields name; by default the current one.
 
     Raises
     ------
     InputError
-        If it has no such field, or the field is no number.
+        If the structure does not have the field, or the field is not numeric.
     """
 
     mechanism: Mechanism
@@ -115,7 +115,7 @@ class Varied:
                     raise InputError(Problem(message, field=self.field, hint=hint))
             found = (*found, part)
         if float not in types_at(cls, place) or (isinstance(place[-1], str) and is_plural(cls, place)):
-            raise InputError(Problem("is no number that could vary", field=self.field))
+            raise InputError(Problem("is not a numeric field, so it cannot be varied", field=self.field))
         object.__setattr__(self, "_place", place)
 
     @cached_property
@@ -123,7 +123,7 @@ class Varied:
         return self.mechanism.model_dump(by_alias=True, exclude_unset=True)
 
     def _entries(self, place: Place) -> list[str]:
-        """The names that the user chose at a place."""
+        """Return the names that the user chose at a place."""
         here: Any = self._data
         for part in place:
             here = (here or {}).get(part) if isinstance(part, str) else here[part]
@@ -131,12 +131,12 @@ class Varied:
 
     @property
     def unit(self) -> str:
-        """That of the number; empty if it has none."""
+        """Unit of the field; empty if it is dimensionless."""
         return unit_at(type(self.mechanism), self._place)  # type: ignore[attr-defined]
 
     @property
     def value(self) -> float | None:
-        """The number as it is; None if it is not given."""
+        """Current value of the field; None if it is not given."""
         here: Any = self._data
         for part in self._place:  # type: ignore[attr-defined]
             here = here.get(part) if isinstance(here, dict) else here[part]
@@ -145,7 +145,7 @@ class Varied:
         return float(here) if isinstance(here, int | float) else None
 
     def at(self, value: float) -> Mechanism:
-        """The structure with another number. Raises `InputError` if it cannot be built."""
+        """Return the structure with another value of the field. Raises `InputError` if it cannot be built."""
         data, cls = copied(self._data), type(self.mechanism)
         put(data, words(self.field), value, is_list=partial(lists_models, cls), grow=False)
         try:
@@ -155,12 +155,14 @@ class Varied:
 
 
 def _mechanism(document: Document, registry: Registry) -> type[Mechanism] | None:
-    """The class the file asks for; None with a problem noted if there is no such mechanism."""
+    """Return the class of the mechanism in the file; None, with a problem added, if it does not exist."""
     data = document.data
     if "mechanism" not in data:
         known = ", ".join(registry)
         near = get_close_matches("mechanism", list(data), n=1)
-        hint = f"is {near[0]} meant to be mechanism?" if near else f"add a line `mechanism: NAME`; known: {known}"
+        hint = (
+            f"did you mean mechanism instead of {near[0]}?" if near else f"add a line `mechanism: NAME`; known: {known}"
+        )
         document.problems.append(document.problem("is missing", document.values[()], "mechanism", hint))
         return None
     name, mark = data["mechanism"], document.values[("mechanism",)]

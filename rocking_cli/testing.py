@@ -1,6 +1,6 @@
-"""The contract every mechanism must keep: for the check of an installed mechanism, and as a test class for authors.
+"""Contract of all mechanisms: for the check of an installed mechanism, and as a test class for authors.
 
-What a mechanism says of its mechanics is held to its bodies and their motion alone.
+The mechanics that a mechanism defines are checked against its bodies and their motion alone.
 
 Examples
 --------
@@ -72,82 +72,82 @@ FLUSH = 1e-8  # of the size of the structure: how near to the ground counts as o
 A_BIT = 0.01  # of the weight: what is hung on a structure to see whether it takes it
 A_MASS = 1000.0  # kg
 SIDED = ("one_sided", "rebound")
-HUNG = ("loads", "ties", "interlock", *SIDED)  # fields that every mechanism takes
+HUNG = ("loads", "ties", "interlock", *SIDED)  # fields of every mechanism
 GIVEN = 0.625  # a coefficient of restitution that no structure has by itself
 
 
 def contract(structure: Mechanism) -> list[Verdict]:
-    """What every check of the contract says of a structure; needs no pytest.
+    """Run all checks of the contract on a structure; needs no pytest.
 
     Parameters
     ----------
     structure : Mechanism
-        Any.
+        Any structure.
 
     Returns
     -------
     list of Verdict
-        In the order of `CHECKS`. An error that the plugin makes is a check that it fails.
+        Verdicts in the order of `CHECKS`. A check that raises an error of the plugin is failed.
     """
     return [verdict(each.__name__, meaning(each), partial(_alone, each, structure)) for each in CHECKS]
 
 
 def verdict(name: str, meaning: str, check: Callable[[], object]) -> Verdict:
-    """What one check says: it fails by raising anything."""
+    """Return the verdict of one check, which fails by raising any error."""
     try:
-        with np.errstate(all="ignore"):  # what is not a number fails by itself
+        with np.errstate(all="ignore"):  # NaN fails the comparisons
             check()
     except AssertionError as error:
         return Verdict(name, meaning, str(error))
     except RockingError as error:
         return Verdict(name, meaning, str(error), own_traceback(error))
-    except Exception as error:  # what the plugin gives is of no use
+    except Exception as error:  # the plugin returned something unusable
         return Verdict(name, meaning, f"{type(error).__name__}: {error}", traceback.format_exc().rstrip("\n"))
     return Verdict(name, meaning)
 
 
 def meaning(check: Callable[..., object]) -> str:
-    """What a check holds a structure to: the first sentence of its docstring."""
+    """Return the requirement of a check: the first paragraph of its docstring."""
     return cleandoc(check.__doc__ or "").partition("\n\n")[0].replace("\n", " ")
 
 
 def is_declared(structure: Mechanism) -> None:
-    """It has a name, a title and a source, and every abstract method."""
+    """The mechanism has a name, a title and a source, and defines every abstract method."""
     faults = conformance(type(structure), structure.mechanism)
     _demand(not faults, "; ".join(faults))
 
 
 def fields_say_what_they_are(structure: Mechanism) -> None:
-    """Every field has a description, those that a file needs an example too, and the examples make a structure."""
+    """Every field has a description, required fields have an example too, and the examples make a structure."""
     cls = type(structure)
     silent = [key for key, field in cls.model_fields.items() if not field.description]
     _demand(not silent, f"no description: {', '.join(silent)}")
     unknown = [key for key in cls.starter if key not in cls.model_fields]
-    _demand(not unknown, f"starter names what is no field: {', '.join(unknown)}")
+    _demand(not unknown, f"starter has names that are not fields: {', '.join(unknown)}")
     needed = [key for key, field in cls.model_fields.items() if field.is_required() or key in cls.starter]
     examples = {key: (cls.model_fields[key].examples or [None])[0] for key in needed}
     without = [key for key, example in examples.items() if example is None]
-    _demand(not without, f"no example, which `rocking new` prints: {', '.join(without)}")
+    _demand(not without, f"no example for `rocking new` to print: {', '.join(without)}")
     try:
         cls.from_fields(examples)
     except ValueError as error:
-        raise AssertionError(f"the examples of its fields make no structure: {error}") from error
+        raise AssertionError(f"the examples of its fields are not a valid structure: {error}") from error
 
 
 def bodies_have_mass(structure: Mechanism) -> None:
-    """Masses and inertias are finite and not negative, there is some mass, and each body has a name of its own."""
+    """Masses and inertias are finite and not negative, a body has a mass, and the names of bodies are unique."""
     bodies = structure.bodies()
     for body in bodies:
-        _demand(isinstance(body, Body), f"{body!r} is no Body")
+        _demand(isinstance(body, Body), f"{body!r} is not a Body")
         for what, value in (("mass", body.mass), ("inertia", body.inertia)):
             _demand(0 <= value < np.inf, f"the {what} of {body.name} is {value}")
     _demand(sum(body.mass for body in bodies) > 0, "no body has a mass")
     names = [body.name for body in bodies]
-    _demand(len(set(names)) == len(names), f"two bodies have one name: {', '.join(names)}")
+    _demand(len(set(names)) == len(names), f"two bodies have the same name: {', '.join(names)}")
 
 
 def gives_a_motion_for_each_body(structure: Mechanism) -> None:
-    """The motion over n rotations has n places for each body, and each is the same if asked for by itself."""
+    """The motion at n rotations has n places for each body, each the same as if computed alone."""
     bodies = structure.bodies()
     for direction in structure.directions:
         phi = np.linspace(0.0, 0.5, 7) * structure.limit(direction)
@@ -167,12 +167,12 @@ def gives_a_motion_for_each_body(structure: Mechanism) -> None:
                     where = f"{quantity} of {body.name} at phi = {value:.4g} rad, {direction.label} direction,"
                     _demand(
                         abs(mine[0] - its[k]) <= ALIKE * size,
-                        f"{where} is {mine[0]:.6g} if asked for alone and {its[k]:.6g} among others",
+                        f"{where} is {mine[0]:.6g} if computed alone and {its[k]:.6g} among others",
                     )
 
 
 def moves_from_rest(structure: Mechanism) -> None:
-    """At phi = 0 every body is where it rests, in both directions."""
+    """At phi = 0 every body is at its place of rest, in both directions."""
     size = _size(structure)
     for direction in structure.directions:
         for body, motion in zip(structure.bodies(), structure.motion(np.zeros(1), direction), strict=True):
@@ -185,7 +185,7 @@ def moves_from_rest(structure: Mechanism) -> None:
 
 
 def moves_without_jumps(structure: Mechanism) -> None:
-    """No body jumps from one place, or from one velocity, to another, up to the kinematic limit."""
+    """The places and velocities of all bodies are continuous up to the kinematic limit."""
     size = _size(structure)
     for direction in structure.directions:
         x = np.linspace(0.0, 1.0, CELLS + 1)
@@ -202,7 +202,7 @@ def moves_without_jumps(structure: Mechanism) -> None:
 
 
 def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
-    """First and second derivatives agree with difference quotients of what they derive."""
+    """First and second derivatives agree with difference quotients."""
     for direction in structure.directions:
         top = _top(structure, direction)
         step = min(STEP, SHARE * top)
@@ -222,7 +222,7 @@ def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
                 wide, fine = (_quotient(values[k : k + 4], each) for k, each in zip((0, 4), steps, strict=True))
                 found = np.where(np.abs(wide - derivative) <= np.abs(fine - derivative), wide, fine)
                 what = f"{what} of {body.name}, {direction.label} direction,"
-                _near(what, phi, derivative, found, 1e-6 * size, "the difference quotient")
+                _near(what, phi, derivative, found, 1e-6 * size, "the difference quotient is")
 
 
 def energies_agree_with_coefficients(structure: Mechanism) -> None:
@@ -238,11 +238,11 @@ def energies_agree_with_coefficients(structure: Mechanism) -> None:
             ("J", [each.I / 2 for each in around], here.J, here.I.max()),
         ):
             found, what = _quotient(values, step), f"{name} in the {direction.label} direction"
-            _near(what, phi, value, found, 1e-6 * size, "the difference quotient")
+            _near(what, phi, value, found, 1e-6 * size, "the difference quotient is")
 
 
 def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
-    """I, J, G, B, their derivatives, V and both energies are what the masses and motions of the bodies make them."""
+    """I, J, G, B, their derivatives, V and both energies agree with the masses and motions of the bodies."""
     for direction in structure.directions:
         phi = np.linspace(0.0, 1.0, 33) * _top(structure, direction)
         says, makes = structure.coefficients(phi, direction), _of_bodies(structure, phi, direction)
@@ -253,21 +253,21 @@ def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
             value = getattr(makes, field.name)
             size = sizes.get(field.name, moment) + np.abs(value).max()
             what = f"{field.name} of coefficients, {direction.label} direction,"
-            _near(what, phi, getattr(says, field.name), value, ALIKE * size, "of its bodies")
+            _near(what, phi, getattr(says, field.name), value, ALIKE * size, "its bodies give")
         energy = structure.gravity * makes.V + makes.U
         for what, said, value in (
             ("kinetic_inertia", structure.kinetic_inertia(phi, direction), makes.I),
             ("potential_energy", structure.potential_energy(phi, direction), energy),
         ):
             size = np.abs(value).max()
-            _near(f"{what}, {direction.label} direction,", phi, said, value, ALIKE * size, "of its bodies")
+            _near(f"{what}, {direction.label} direction,", phi, said, value, ALIKE * size, "its bodies give")
 
 
 def stands_and_can_overturn(structure: Mechanism) -> None:
-    """It resists at rest, balances before its kinematic limit, and falls beyond; what is tied may only resist."""
+    """The structure is stable at rest, balances before its kinematic limit and falls beyond, unless it is tied."""
     for direction in structure.directions:
         if not _overturns(structure, direction):
-            _demand(structure.uplift(direction) > 0, f"it does not stand in the {direction.label} direction")
+            _demand(structure.uplift(direction) > 0, f"it is not stable at rest in the {direction.label} direction")
             continue
         lam, phi_cr, limit = (
             structure.uplift(direction),
@@ -275,7 +275,7 @@ def stands_and_can_overturn(structure: Mechanism) -> None:
             structure.limit(direction),
         )
         here = f"in the {direction.label} direction"
-        _demand(lam > 0, f"it does not stand {here}: lambda = {lam:.4g}")
+        _demand(lam > 0, f"it is not stable at rest {here}: lambda = {lam:.4g}")
         _demand(
             0 < phi_cr < limit < np.inf,
             f"phi_cr = {phi_cr:.4g} rad is not between rest and the kinematic limit of {limit:.4g} rad {here}",
@@ -284,12 +284,13 @@ def stands_and_can_overturn(structure: Mechanism) -> None:
         moment, slope = around.restoring(structure.gravity), around.stiffness(structure.gravity)
         _demand(
             moment[0] > 0 > moment[2] and abs(moment[1]) <= 1e-12 * abs(slope[1]),
-            f"phi_cr = {phi_cr:.6g} rad {here} is not where its bodies balance: G there is {moment[1]:.3g} kg m",
+            f"phi_cr = {phi_cr:.6g} rad {here} is not the rotation at which its bodies "
+            f"balance: there G is {moment[1]:.3g} kg m",
         )
 
 
 def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
-    """The uplift and the critical rotation it gives are those that its bodies and their motion give."""
+    """The uplift and the critical rotation agree with the bodies and their motion."""
     for direction in structure.directions:
         here = f"in the {direction.label} direction"
         at = partial(_of_bodies, structure, direction=direction)
@@ -300,7 +301,7 @@ def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
 
 
 def restitution_is_that_of_the_bodies(structure: Mechanism) -> None:
-    """Restitution is that of the kinematics of its bodies, or what the user gives."""
+    """Restitution is that of the kinematics of the bodies, or the value of the user."""
     if not structure.rocks_both_ways:
         return  # what is left says nothing of an impact
     bodies, rest = structure.weighed(), np.zeros(1)
@@ -315,12 +316,12 @@ def restitution_is_that_of_the_bodies(structure: Mechanism) -> None:
         of = f"of an impact that ends motion in the {direction.label} direction"
         _agree(f"restitution_from_kinematics {of}", structure.restitution_from_kinematics(direction), own)
         _agree(f"eta {of}", bare.eta(direction), own)
-        _agree(f"eta {of}, with one of the user,", given.eta(direction), GIVEN)
-        _agree(f"eta {of}, with two of the user,", each.eta(direction), GIVEN if direction > 0 else GIVEN**2)
+        _agree(f"eta {of}, with one value of the user,", given.eta(direction), GIVEN)
+        _agree(f"eta {of}, with two values of the user,", each.eta(direction), GIVEN if direction > 0 else GIVEN**2)
 
 
 def a_copy_is_the_same_structure(structure: Mechanism) -> None:
-    """A copy with another gravity has that gravity, and all else as before."""
+    """A copy with another gravity has that gravity, and is otherwise unchanged."""
     gravity = 2 * structure.gravity if structure.gravity <= 500 else structure.gravity / 2
     copy = structure.model_copy(update={"gravity": gravity})
     changed = [key for key in type(structure).model_fields if getattr(copy, key) != getattr(structure, key)]
@@ -334,7 +335,7 @@ def a_copy_is_the_same_structure(structure: Mechanism) -> None:
 
 
 def has_an_equivalent_block(structure: Mechanism) -> None:
-    """The parameters of its equivalent block are finite, and all but eta positive; ties may leave it none."""
+    """The parameters of the equivalent block are finite and, except eta, positive; ties may leave no block."""
     try:
         equivalence = equivalent_block(structure)
     except NoEquivalentBlock as error:
@@ -347,7 +348,7 @@ def has_an_equivalent_block(structure: Mechanism) -> None:
 
 
 def an_impact_gains_no_energy(structure: Mechanism) -> None:
-    """An impact with the restitution of the kinematics gains no energy."""
+    """An impact with the restitution of the kinematics does not increase the energy."""
     if not structure.rocks_both_ways:
         return
     rest = np.zeros(1)
@@ -356,15 +357,15 @@ def an_impact_gains_no_energy(structure: Mechanism) -> None:
         before, after = (_of_bodies(structure, rest, side).I[0] for side in (direction, direction.opposite))
         _demand(
             eta**2 * after <= before * (1 + 1e-12),
-            f"an impact that ends motion in the {direction.label} direction makes the energy "
-            f"{eta**2 * after / before:.4g} times as large",
+            f"an impact that ends motion in the {direction.label} direction multiplies the energy "
+            f"by {eta**2 * after / before:.4g}",
         )
 
 
 def carries_what_hangs_on_it(structure: Mechanism) -> None:
-    """With a load, a force and a tie, unless it refuses them, coefficients and restitution are those of all of them."""
+    """With a load, a force and a tie, unless it refuses them, coefficients and restitution include all of them."""
     bare = _with(structure, crushing=None)  # how far pivots move depends on the load
-    _demand(bare is not None, "it takes no mass")
+    _demand(bare is not None, "it accepts no mass")
     assert bare is not None
     spot, size = _liveliest(bare), _size(bare)
     weight = bare.gravity * sum(body.mass for body in bare.weighed())
@@ -380,7 +381,7 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
         return
 
     def energies(phi: Reals, direction: Direction) -> tuple[Reals, Reals]:
-        """By where the point is: that of the weight over g, and that of tie and force."""
+        """Return the energies from the place of the point: of the weight over g, and of tie and force."""
         z = bare.followed(phi, direction)(spot).z
         longer = np.abs(z - anchor) - abs(spot.at - anchor)
         work = ((z - spot.at) * np.conj(force)).real
@@ -406,9 +407,16 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
             ("U", here[1], bare.gravity * moment),
         ):
             what = f"{name} of coefficients with a load and a tie, {direction.label} direction,"
-            _near(what, phi, getattr(says, name), getattr(own, name) + added, 1e-6 * big, "of bodies and load")
+            _near(what, phi, getattr(says, name), getattr(own, name) + added, 1e-6 * big, "bodies and load give")
         turned = _quotient([each.Q for each in _around(laden, phi, direction, step)], step).real
-        _near(f"dQ, {direction.label} direction,", phi, says.dQ, turned, 1e-6 * bare.gravity * moment, "the quotient")
+        _near(
+            f"dQ, {direction.label} direction,",
+            phi,
+            says.dQ,
+            turned,
+            1e-6 * bare.gravity * moment,
+            "the difference quotient is",
+        )
         if not bare.rocks_both_ways:
             continue
         old, new = (complex(bare.followed(np.zeros(1), side)(spot).dz[0]) for side in (direction, direction.opposite))
@@ -419,47 +427,49 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
             return mass * (share["horizontal"] * one.real * other.real + share["vertical"] * one.imag * other.imag)
 
         expected = (before * base - product(old, new)) / (base + product(new, new))
-        _demand(abs(after - expected) <= 1e-9, f"eta with a load is {after:.9g}, and by bodies and load {expected:.9g}")
+        _demand(
+            abs(after - expected) <= 1e-9, f"eta with a load is {after:.9g}, but from bodies and load {expected:.9g}"
+        )
 
 
 def may_lean_on_side_walls(structure: Mechanism) -> None:
-    """It may rock to one side only, unless it refuses that, with the uplift and critical rotation of that side."""
+    """One-sided rocking, unless refused, has the uplift and critical rotation of that side."""
     for direction in structure.directions:
         sided = _with(structure, one_sided=direction.label, rebound=GIVEN, restitution=None)
         if sided is None:
             return
-        here = f"where it rocks in the {direction.label} direction only"
+        here = f"if it rocks in the {direction.label} direction only"
         _demand(list(sided.directions) == [direction] and sided.eta(direction) == GIVEN, f"its rebound is lost {here}")
         _agree(f"uplift {here}", sided.uplift(direction), structure.uplift(direction))
         _agree(f"critical_rotation {here}", sided.critical_rotation(direction), structure.critical_rotation(direction))
 
 
 def outlines_are_those_of_the_bodies(structure: Mechanism) -> None:
-    """Outlines enclose something, and their bodies have a mass and inertia that such shapes can have."""
+    """Outlines enclose an area, and the mass and inertia of their bodies are possible for such shapes."""
     sketch = structure.sketch()
     bodies = {body.name: body for body in structure.bodies()}
     for name in [*sketch.outlines, *sketch.copies]:
-        _demand(name in bodies, f"the sketch speaks of {name!r}, which is no body")
+        _demand(name in bodies, f"the sketch names {name!r}, which is not a body")
     for name, copies in sketch.copies.items():
         _demand(bool(copies) and copies[0] == 0, f"the first of the copies of {name} must be itself, 0")
     for name, body in bodies.items():
         outlines = sketch.outlines.get(name) or ([body.outline] if body.outline else [])
-        _demand(bool(outlines) or name not in sketch.outlines, f"the outlines of {name} are none")
+        _demand(bool(outlines) or name not in sketch.outlines, f"the list of outlines of {name} is empty")
         for each in outlines:
             z = np.asarray(each, np.complex128)
             _demand(z.size >= 3 and bool(np.isfinite(z).all()), f"an outline of {name} has fewer than three corners")
-            _demand(_area(each) > 0, f"an outline of {name} encloses nothing")
+            _demand(_area(each) > 0, f"an outline of {name} encloses no area")
         if sketch.uniform:
-            _demand(bool(outlines), f"the sketch says that bodies are uniform, and gives no outline of {name}")
+            _demand(bool(outlines), f"the sketch declares the bodies uniform, but gives no outline of {name}")
             _is_uniform(body, outlines)
         elif body.outline:
             _can_be_within(body)
 
 
 def hinges_hold_together(structure: Mechanism) -> None:
-    """The bodies that a hinge joins never part there; what it joins to the ground stays, or slides as it says.
+    """Bodies joined by a hinge stay together there; a hinge on the ground stays in place, or slides as declared.
 
-    Where the bodies are the plates that are drawn, hinges are on their edges.
+    If the bodies are the plates that are drawn, hinges are on their edges.
     """
     sketch = structure.sketch()
     bodies = {body.name: body for body in structure.bodies()}
@@ -475,41 +485,47 @@ def hinges_hold_together(structure: Mechanism) -> None:
 
 
 def joints_hold_what_moves(structure: Mechanism) -> None:
-    """The joints, where there are any, join what never parts there, and leave the bodies one motion."""
+    """Joints, if any, join bodies that stay together there, and leave the bodies one degree of freedom."""
     for direction in structure.directions:
         joints = structure.joints(direction)
         names = [body.name for body in structure.bodies()]
         for joint in joints:
             which = f"joint {joint.letter or joint.point} of the {direction.label} direction"
             _holds_together(structure, direction, joint, which)
-            _demand(joint.face is None or joint.face in names, f"the face of {which} turns with no body: {joint.face}")
+            _demand(
+                joint.face is None or joint.face in names,
+                f"the face of {which} does not turn with a body: {joint.face}",
+            )
             size = abs(joint.normal)
             _demand(joint.is_guide or abs(size - 1) <= ALIKE, f"the normal of {which} has the length {size:.6g}, not 1")
         if joints:
             known = not reactions(structure, direction, np.zeros(1), np.zeros(1)).is_whole
             way = f"the joints of the {direction.label} direction"
-            _demand(known, f"{way} do not leave one motion: n parts need 3n - 1 forces, two at a joint, one at a guide")
+            _demand(
+                known,
+                f"{way} do not leave one degree of freedom: n parts need 3n - 1 forces, two at a joint, one at a guide",
+            )
 
 
 def _holds_together(structure: Mechanism, direction: Direction, hinge: Hinge, which: str) -> None:
-    """What a hinge joins never parts there."""
+    """Check that bodies joined by a hinge stay together there."""
     bodies = [body.name for body in structure.bodies()]
     phi = np.linspace(0.0, 1.0, 33) * _top(structure, direction)
     moved = dict(zip(bodies, structure.motion(phi, direction), strict=True))
     known = len(hinge.bodies) in (1, 2) and set(hinge.bodies) <= set(bodies)
-    _demand(known, f"{which} must join one or two bodies, and joins {', '.join(hinge.bodies) or 'none'}")
+    _demand(known, f"{which} must join one or two bodies, but joins {', '.join(hinge.bodies) or 'none'}")
     about = hinge.point + 1j * hinge.roll
     first, *others = (moved[name].carry(about)[0] for name in hinge.bodies)
     gap = first - (others[0] if others else about + direction * hinge.roll * phi)
     across = np.abs((gap / hinge.slide).imag if hinge.slide else gap)
     held = bool(across.max() <= ALIKE * (_size(structure) + abs(hinge.point)))
-    _demand(held, f"{which} parts by {across.max():.3g} m at phi = {phi[across.argmax()]:.4g} rad")
+    _demand(held, f"{which} opens by {across.max():.3g} m at phi = {phi[across.argmax()]:.4g} rad")
 
 
 def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
-    """No body goes through the ground as it begins to rock, and the edge of what stood on it stays there.
+    """At the onset of rocking no body passes through the ground, and the edge of each base stays on it.
 
-    Bodies that move as one stand as one. Bodies whose outlines are not known are passed over.
+    Bodies that move as one stand as one. Bodies without known outlines are left out.
     """
     drawn, sketch = picture(structure), structure.sketch()
     known = [part for part in drawn.parts if not part.assumed]
@@ -523,7 +539,7 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
         motions = structure.motion(phi, direction)
         as_one = _moving_as_one(motions, size)
         within = f"within {phi[-1]:.4g} rad of the {direction.label} direction: it must turn about the edge of its base"
-        feet: dict[tuple[int, complex], list[Reals]] = {}  # of what moves as one, and of which copy of it
+        feet: dict[tuple[int, complex], list[Reals]] = {}  # by group that moves as one, and by copy
         for part in known:
             corners = np.concatenate(part.outlines) - part.shift
             moved = np.array([motions[part.body].carry(corner)[0] for corner in corners]) + part.shift
@@ -532,7 +548,7 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
                 _demand(
                     lowest >= -flush or not level,
                     f"{part.name} reaches {-lowest:.4g} m below the pivot of the {direction.label} direction: it must "
-                    "turn about the edge of its base, or the sketch say where the ground is",
+                    "turn about the edge of its base, or the sketch must define the ground",
                 )
                 above = above[above[:, 0] >= -flush]
                 sinks = max(
@@ -541,9 +557,9 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
                 deep = (above + sinks * phi).min(initial=0.0)
                 _demand(deep >= -flush, f"{part.name} goes {-deep:.4g} m through the ground {within}")
                 feet.setdefault((as_one[part.body], part.shift), []).extend(above[above[:, 0] <= flush])
-        # A base of unknown shape may be wider than what is known; a point is none.
+        # A base of unknown shape may be wider than its known part; a point has no base.
         wider = {as_one[part.body] for part in drawn.parts if part.assumed and bodies[part.body].inertia > 0}
-        # What rolls is on the ground with ever other points, and the hinge is held to that.
+        # The contact point of a rolling body changes; the check of hinges covers that.
         rolling = {name for hinge in sketch.hinges.get(direction, ()) if hinge.roll for name in hinge.bodies}
         wider |= {as_one[k] for k, body in enumerate(bodies) if body.name in rolling}
         for (one, _), heights in feet.items():
@@ -574,11 +590,11 @@ CHECKS: tuple[Callable[[Mechanism], None], ...] = (
     may_lean_on_side_walls,
     stands_on_the_edge_of_its_base,
 )
-"""The contract. Each takes a structure and raises an AssertionError that says what is wrong."""
+"""Checks of the contract. Each takes a structure and raises an AssertionError with the fault."""
 
 
 class MechanismContract:
-    """The checks of `CHECKS`, each as a test of its name; a subclass gives the structure as the fixture `structure`."""
+    """Test class with each of `CHECKS` as a test; a subclass gives the structure as the fixture `structure`."""
 
 
 def _as_test(check: Callable[[Mechanism], None]) -> Callable[[MechanismContract, Mechanism], None]:
@@ -594,24 +610,24 @@ for _check in CHECKS:
 
 
 def _demand(holds: object, otherwise: str) -> None:
-    """Fail with a sentence; unlike `assert` also under `python -O`."""
+    """Fail with a sentence, also under `python -O`, unlike `assert`."""
     if not holds:
         raise AssertionError(otherwise)
 
 
 def _alone(check: Callable[[Mechanism], object], structure: Mechanism) -> object:
-    """Hold a structure to a check without what users hang on it, which may leave it no critical rotation."""
+    """Run a check on a structure without loads, ties and the like, which may leave it no critical rotation."""
     hung = [key for key in HUNG if getattr(structure, key, None) is not None]
     if not hung:
         return check(structure)
     alone = _with(structure, **dict.fromkeys(hung))
-    if alone is None:  # it cannot rock the other way
+    if alone is None:  # it cannot rock in the other direction
         alone = structure.model_copy(update=dict.fromkeys([key for key in hung if key not in SIDED]))
     return check(alone)
 
 
 def _with(structure: Mechanism, **fields: object) -> Mechanism | None:
-    """It with these fields, and with masses; None if it says that it does not take them."""
+    """Return the structure with these fields, and with masses; None if it refuses the fields."""
     masses = {} if structure.has_mass else {"mass": A_MASS}
     try:
         return structure.model_copy(update={**masses, **fields})
@@ -622,7 +638,7 @@ def _with(structure: Mechanism, **fields: object) -> Mechanism | None:
 
 
 def _liveliest(structure: Mechanism) -> Spot:
-    """The corner of a body, or the centroid of one whose shape is not known, that moves most as it begins to rock."""
+    """Return the corner, or centroid of a body of unknown shape, that moves most at the onset of rocking."""
     sketch = structure.sketch()
     spots = []
     for body in structure.bodies():
@@ -638,27 +654,27 @@ def _around(structure: Mechanism, phi: Reals, direction: Direction, step: float)
 
 
 def _agree(what: str, said: float, found: float) -> None:
-    _demand(abs(said - found) <= 1e-11 * abs(found), f"{what} is {said:.12g}, and by its bodies {found:.12g}")
+    _demand(abs(said - found) <= 1e-11 * abs(found), f"{what} is {said:.12g}, but its bodies give {found:.12g}")
 
 
 def _near(what: str, phi: Reals, said: ArrayLike, found: ArrayLike, allowed: float, by: str) -> None:
-    """Two arrays over `phi` must agree; what is not a number does not."""
+    """Check that two arrays over `phi` agree; NaN does not."""
     said, found = np.asarray(said), np.asarray(found)
     _demand(said.shape == phi.shape, f"{what} has the shape {said.shape} for {phi.size} rotations")
     wrong = np.flatnonzero(~(np.abs(said - found) <= allowed))
     if wrong.size:
         k = wrong[np.argmax(np.nan_to_num(np.abs(said - found)[wrong], nan=np.inf))]
-        raise AssertionError(f"{what} is {said[k]:.6g} at phi = {phi[k]:.4g} rad, and {by} {found[k]:.6g}")
+        raise AssertionError(f"{what} is {said[k]:.6g} at phi = {phi[k]:.4g} rad, but {by} {found[k]:.6g}")
 
 
 def _quotient(values: Sequence[ArrayLike], step: float) -> NDArray[np.complex128]:
-    """The derivative from values at `SHIFTS` steps."""
+    """Return the derivative from values at `SHIFTS` steps."""
     before2, before, after, after2 = (np.asarray(each) for each in values)
     return np.asarray((8 * (after - before) - (after2 - before2)) / (12 * step))
 
 
 def _of_bodies(structure: Mechanism, phi: Reals, direction: Direction) -> Coefficients:
-    """The coefficients that follow from bodies, motions and what hangs on them, whatever the mechanism overrides."""
+    """Return the coefficients from bodies, motions, loads and ties, even if the mechanism overrides them."""
     bodies, motions = structure.weighed(), structure.motion(phi, direction)
     total = coefficients(phi, direction, bodies, motions)
     for thing in structure.attached:
@@ -667,7 +683,7 @@ def _of_bodies(structure: Mechanism, phi: Reals, direction: Direction) -> Coeffi
 
 
 def _phi_cr(structure: Mechanism, direction: Direction) -> float:
-    """The critical rotation by bodies and motions alone, or the limit where ties leave none [rad]."""
+    """Return the critical rotation from bodies and motions alone, or the limit if ties leave none [rad]."""
     try:
         return equilibrium.critical_rotation(
             partial(_of_bodies, structure, direction=direction), structure.limit(direction), structure.gravity
@@ -679,17 +695,17 @@ def _phi_cr(structure: Mechanism, direction: Direction) -> float:
 
 
 def _overturns(structure: Mechanism, direction: Direction) -> bool:
-    """Whether it has a critical rotation: what is tied may have none."""
+    """Return whether the structure has a critical rotation; a tied one may have none."""
     return _phi_cr(structure, direction) < structure.limit(direction)
 
 
 def _top(structure: Mechanism, direction: Direction) -> float:
-    """Up to where the motion must be smooth [rad]."""
+    """Return the rotation up to which the motion must be smooth [rad]."""
     return min(BEYOND * _phi_cr(structure, direction), REACH * structure.limit(direction))
 
 
 def _size(structure: Mechanism) -> float:
-    """How far a centroid moves with phi at rest, the most of any [m]: of the size of the levers."""
+    """Return the largest rate of a centroid with phi at rest, of the size of the lever arms [m]."""
     return max(
         abs(complex(motion.carry(body.centroid)[1][0]))
         for direction in structure.directions
@@ -698,7 +714,7 @@ def _size(structure: Mechanism) -> float:
 
 
 def _heights(corners: Points, ground: Sequence[Points], flush: float) -> Iterator[Reals]:
-    """Of each straight piece of the ground, the heights above it [m] of the corners that are over it at first."""
+    """Yield, for each straight piece of the ground, the heights of the corners above it at rest [m]."""
     for line in ground:
         for start, end in pairwise(line):
             length = abs(end - start)
@@ -707,7 +723,7 @@ def _heights(corners: Points, ground: Sequence[Points], flush: float) -> Iterato
 
 
 def _moving_as_one(motions: Sequence[RigidMotion], size: float) -> list[int]:
-    """For each body the first that moves with it as if they were one."""
+    """Return for each body the first one with the same motion."""
     places = [np.concatenate([motion.carry(0j)[0], motion.carry(complex(size))[0]]) for motion in motions]
     return [
         next(j for j, other in enumerate(places) if np.abs(place - other).max() <= ALIKE * (size + np.abs(place).max()))
@@ -716,7 +732,7 @@ def _moving_as_one(motions: Sequence[RigidMotion], size: float) -> list[int]:
 
 
 def _paired(one: RigidMotion, other: RigidMotion, point: complex) -> dict[str, tuple[Points, Points]]:
-    """Place and rotation in two motions, with their derivatives."""
+    """Return place and rotation in two motions, with their derivatives."""
     moved = zip(("q", "dq", "ddq"), one.carry(point), other.carry(point), strict=True)
     turned = {name: (getattr(one, name), getattr(other, name)) for name in ("psi", "dpsi", "ddpsi")}
     return {**{name: (mine, its) for name, mine, its in moved}, **turned}
@@ -736,16 +752,16 @@ def _is_uniform(body: Body, outlines: Sequence[Outline]) -> None:
     size = max(abs(corner - body.centroid) for each in outlines for corner in each)
     _demand(
         body.mass == 0 or abs(centroid - body.centroid) <= DRAWN * size,
-        f"the centroid of {body.name} is {body.centroid:.6g} m, and that of its outlines {centroid:.6g} m",
+        f"the centroid of {body.name} is {body.centroid:.6g} m, but that of its outlines {centroid:.6g} m",
     )
     _demand(
         abs(inertia - body.inertia) <= DRAWN * body.mass * size**2,
-        f"the inertia of {body.name} is {body.inertia:.6g} kg m2, and that of its outlines {inertia:.6g} kg m2",
+        f"the inertia of {body.name} is {body.inertia:.6g} kg m2, but that of its outlines {inertia:.6g} kg m2",
     )
 
 
 def _can_be_within(body: Body) -> None:
-    """However the mass is spread within its outline, its centroid is inside, and its inertia has a bound."""
+    """Check that the centroid is inside the outline, and the inertia possible for a mass within it."""
     corners = np.asarray(body.outline, np.complex128)
     reach = float(np.abs(corners - body.centroid).max())
     turned = np.exp(1j * np.linspace(0.0, 2 * np.pi, 360, endpoint=False))
@@ -753,13 +769,13 @@ def _can_be_within(body: Body) -> None:
     _demand(out <= DRAWN * reach, f"the centroid of {body.name} is {out:.4g} m outside of its outline")
     _demand(
         body.inertia <= body.mass * reach**2 * (1 + DRAWN),
-        f"the inertia of {body.name} is {body.inertia:.6g} kg m2, more than all of its mass at the furthest corner of "
-        f"its outline would have, {body.mass * reach**2:.6g} kg m2",
+        f"the inertia of {body.name} is {body.inertia:.6g} kg m2, more than that of all its mass at the furthest "
+        f"corner of its outline, {body.mass * reach**2:.6g} kg m2",
     )
 
 
 def _off_the_edge(point: complex, outline: Outline) -> float:
-    """Distance of a point from the sides of an outline [m]."""
+    """Return the distance of a point from the sides of an outline [m]."""
     z = np.asarray(outline, np.complex128)
     side = np.roll(z, -1) - z
     along = np.clip(((point - z) * side.conj()).real / np.maximum(np.abs(side) ** 2, np.finfo(float).tiny), 0.0, 1.0)

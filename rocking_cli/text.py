@@ -1,4 +1,4 @@
-"""Text of others - names, keys, lines of files - made fit to be shown on a terminal, in a picture or on a page."""
+"""Make foreign text (names, keys, lines of files) fit for a terminal, a plot or a page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ BEFORE, AFTER = 50, 70  # characters of a line that is quoted, on either side of
 
 
 def printable(text: str) -> str:
-    r"""A text with the characters spelled out that a terminal would obey, or a page could not hold: ESC is `\x1b`.
+    r"""Spell out the characters of a text that control a terminal or cannot be on a page: ESC is `\x1b`.
 
     A byte of a file name that is not UTF-8 is spelled as this byte, `\xff`.
 
@@ -34,27 +34,27 @@ def _spelled(found: re.Match[str]) -> str:
 
 
 def seen(text: str) -> str:
-    """A text without the characters that `printable` spells out, in one line with single blanks."""
+    """Return a text without the characters that `printable` spells out, in one line with single blanks."""
     return " ".join(_UNSEEN.sub("", " ".join(text.split())).split())
 
 
 def one_line(text: str) -> str:
-    """A text as `printable` shows it, with its tabs and line feeds spelled out too: a file name may hold any."""
+    """Spell out a text as `printable` does, with its tabs and line feeds too: file names may contain any."""
     return printable(text).replace("\t", r"\t").replace("\n", r"\n")
 
 
 def is_one_line(text: str) -> bool:
-    """Whether a text can be shown as it is, in one line."""
+    """Return whether a text can be shown unchanged, in one line."""
     return not _UNSEEN.search(text) and not {"\t", "\n"} & set(text)
 
 
 def cut(text: str, most: int = LONGEST) -> str:
-    """A text of this length at most, with dots where it was cut."""
+    """Cut a text to this length at most, with dots at the end if it was longer."""
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def quoted_line(line: str, column: int | None) -> list[str]:
-    """A line of a file to quote, cut around a column that is counted from 1, and below it a mark at this column."""
+    """Return a quoted line of a file, cut around a column counted from 1, and a mark below this column."""
     start = (column or 1) - 1
     before, after = printable(line[:start]), printable(line[start:])
     if len(before) > BEFORE:
@@ -64,7 +64,7 @@ def quoted_line(line: str, column: int | None) -> list[str]:
 
 
 def did_you_mean(word: str, known: list[str]) -> str | None:
-    """A hint with the known word nearest to a mistyped one, or the list of all."""
+    """Return a hint with the known word nearest to a mistyped one, or the list of all."""
     from difflib import get_close_matches
 
     close = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
@@ -72,7 +72,7 @@ def did_you_mean(word: str, known: list[str]) -> str | None:
 
 
 def exact(number: float) -> str:
-    """A number in as few digits as read back to the same one.
+    """Return a number with the fewest digits that read back to the same number.
 
     Examples
     --------

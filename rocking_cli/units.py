@@ -1,6 +1,6 @@
-"""Quantities with units, as people write them: `800 mm`, `2.1 t/m3`, `10 deg`. One table for files, options and Python.
+"""Quantities with units: `800 mm`, `2.1 t/m3`, `10 deg`. One table for files, options and Python.
 
-Without numpy and pydantic, so that the command line can use it before it needs them.
+The module imports neither numpy nor pydantic, so that the command line can use it before it needs them.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ _EXACT = Context(prec=60, Emax=10**6, Emin=-(10**6), traps=[])
 
 
 class UnitError(ValueError):
-    """A text that is not the quantity asked for.
+    """Error of a text that is not the required quantity.
 
     Parameters
     ----------
     message : str
-        What is wrong, such as "12 kg is a mass, not a length".
+        Problem, such as "12 kg is a mass, not a length".
     hint : str, optional
-        What to do about it.
+        Remedy.
     """
 
     def __init__(self, message: str, hint: str | None = None) -> None:
@@ -66,46 +66,46 @@ class UnitError(ValueError):
 
 
 def kind_of(unit: str) -> str | None:
-    """What a unit measures: "length" for `mm`; None for a unit that is not in the table, or for none."""
+    """Return what a unit measures: "length" for `mm`; None for an unknown unit, or for none."""
     return next((kind for kind, units in KINDS.items() if unit in units), None)
 
 
 def units_of(unit: str) -> tuple[str, ...]:
-    """The units in which a field of this unit may be given: all of its kind, or the one only."""
+    """Return the units in which a field of this unit may be given: all of its kind, or this one only."""
     kind = kind_of(unit)
     return tuple(KINDS[kind]) if kind is not None else (unit,) if unit else ()
 
 
 def split(text: str) -> tuple[str, str] | None:
-    """The number and the unit of a text such as `800 mm`, which may lack the unit; None if it is no number."""
+    """Split a text such as `800 mm` into number and unit, which may be empty; None if it is not a number."""
     found = _FORM.fullmatch(text.strip())
     return (found[1], _plain(found[2] or "")) if found else None
 
 
 def _plain(unit: str) -> str:
-    """A unit as the table spells it: `kg / m³` is `kg/m3`."""
+    """Return a unit as the table spells it: `kg / m³` is `kg/m3`."""
     return "".join(unit.translate(_RAISED).split())
 
 
 def read(text: str, unit: str) -> float:
-    """The number of a text with a unit.
+    """Read the number of a text with a unit.
 
     Parameters
     ----------
     text : str
-        Such as `800 mm`; the unit may be any of the same kind as `unit`.
+        Text such as `800 mm`; its unit may be any of the same kind as `unit`.
     unit : str
-        The unit of the number that is given back, such as `m`.
+        Unit of the returned number, such as `m`.
 
     Returns
     -------
     float
-        The number nearest to what the text says.
+        Number nearest to the value of the text.
 
     Raises
     ------
     UnitError
-        If it is no number with a unit, the unit is not known, or it measures something else.
+        If the text is not a number with a unit, or the unit is unknown or of another kind.
 
     Examples
     --------
@@ -116,13 +116,13 @@ def read(text: str, unit: str) -> float:
     """
     shown, parts = cut(printable(text.strip())), split(text)
     if parts is None:
-        hint = "write a decimal point, and nothing between thousands" if _COMMA.match(text.strip()) else None
+        hint = "write a decimal point, and no separator between thousands" if _COMMA.match(text.strip()) else None
         raise UnitError(f"{shown!r} is not a number with a unit", hint)
     (number, given), kind, known = parts, kind_of(unit), units_of(unit)
     if not given:
         raise UnitError(f"{shown!r} is a text without a unit")
     if not known:
-        raise UnitError(f"{shown!r}: this is a number without a unit")
+        raise UnitError(f"{shown!r} has a unit: give a number without one")
     if given == _plain(unit):
         return float(number)
     if kind and given in known:
@@ -133,8 +133,8 @@ def read(text: str, unit: str) -> float:
         raise UnitError(f"{cut(printable(given))!r} is not a unit of {kind or unit}", _guess(given, known))
     if (other, kind) == ("weight density", "density"):
         mass = _EXACT.divide(_EXACT.multiply(_EXACT.create_decimal(number), _factor(other, given)), STANDARD_GRAVITY)
-        hint = f"over {STANDARD_GRAVITY} m/s2 it is {float(mass):.6g} kg/m3"
-        raise UnitError(f"{shown} is a weight of a volume, not a density, which is a mass of it", hint)
+        hint = f"divided by {STANDARD_GRAVITY} m/s2 it is {float(mass):.6g} kg/m3"
+        raise UnitError(f"{shown} is a unit weight, not a density (mass per volume)", hint)
     raise UnitError(f"{shown} is {_a(other)}, not {_a(kind) if kind else f'in {unit}'}", f"units: {', '.join(known)}")
 
 
@@ -149,6 +149,6 @@ def _a(kind: str) -> str:
 
 
 def _factor(kind: str, unit: str) -> Decimal:
-    """A unit in SI units."""
+    """Return a unit in SI units."""
     above, _, below = KINDS[kind][unit].partition("/")
     return _EXACT.divide(Decimal(above), Decimal(below or "1"))

@@ -149,7 +149,9 @@ def _all_touch(blocks: Sequence[Block], found: Sequence[Contact]) -> None:
     loose = [block.name for block in blocks if block.name not in touched]
     if loose:
         verb = "touches" if len(loose) == 1 else "touch"
-        raise ContactFault(f"{listed(loose)} {verb} nothing along an edge: a corner on an edge is no joint", loose)
+        raise ContactFault(
+            f"{listed(loose)} {verb} nothing along an edge: a corner on an edge does not count as a joint", loose
+        )
 
 
 def _with_friction(found: list[Contact], per_pair: Mapping[tuple[str, str], float | None]) -> list[Contact]:

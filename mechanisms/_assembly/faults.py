@@ -24,7 +24,7 @@ class AssemblyFault(Exception):
 
 
 class ContactFault(AssemblyFault):
-    """Blocks that overlap, that touch nothing, or joints that are asked for and are not there."""
+    """Blocks that overlap or touch nothing, or named joints that do not exist."""
 
 
 class DoesNotStand(AssemblyFault):

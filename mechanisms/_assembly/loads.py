@@ -1,4 +1,4 @@
-"""What acts on each block of an assembly: weights and inertia, of the blocks and of what hangs on them."""
+"""Loads on each block of an assembly: weights and inertia of the block and of what is attached to it."""
 
 from __future__ import annotations
 

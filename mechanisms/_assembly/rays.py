@@ -46,7 +46,7 @@ class Frame:
 
     @classmethod
     def of(cls, blocks: Sequence[Block]) -> Frame:
-        """Blocks at rest."""
+        """Build the frame of blocks at rest."""
         corners = np.array([corner for block in blocks for corner in block.corners])
         size = float(np.ptp(corners.real) + np.ptp(corners.imag))
         return cls(tuple(block.name for block in blocks), tuple(block.centroid for block in blocks), size)
@@ -145,7 +145,7 @@ class Rays:
 
     @property
     def low(self) -> Reals:
-        """The least of each."""
+        """Lower bound of each ray multiplier."""
         return np.where(self.one_sided, 0.0, -np.inf)
 
 

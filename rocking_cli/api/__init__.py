@@ -1,1 +1,1 @@
-"""What Python users ask: a verb a question, an answer that shows itself. `rocking_cli` hands it on."""
+"""Python interface: one function per question, which returns an answer that displays itself."""

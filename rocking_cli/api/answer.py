@@ -1,4 +1,4 @@
-"""An answer that shows itself: in a sentence, as tables of a notebook, as a frame, as a picture."""
+"""Answers that display themselves: as a sentence, as tables in a notebook, as a frame or as a plot."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ SHORT = 100  # characters of a repr's sentence
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Answer(Generic[R]):
-    """What a question gave. Attributes of the result itself can be asked of the answer too.
+    """Answer to a question. The attributes of its result are also attributes of the answer.
 
     Parameters
     ----------
     question : str
-        What was asked, in a word or two.
+        Short name of the question.
     result : object
-        What the study found: numbers and arrays.
+        Result of the study: numbers and arrays.
     view : View
-        What that looks like.
+        Text and tables of the result.
     columns : callable
-        Makes it a table, a name and a column each.
+        Returns the result as columns by name.
     figure : callable
-        Draws it.
+        Returns the plot of the result.
     """
 
     question: str
@@ -58,17 +58,17 @@ class Answer(Generic[R]):
 
     @property
     def sentences(self) -> list[str]:
-        """What it says in words."""
+        """Result in words."""
         return [part for part in self.view.parts if isinstance(part, str) and part]
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data, the same as the JSON of the command line."""
+        """Return the result as plain data, equal to the JSON of the command line."""
         data = self.view.data() if callable(self.view.data) else self.view.data
         found: dict[str, Any] = json.loads(json_text(data))
         return found
 
     def to_frame(self) -> pandas.DataFrame:
-        """As a table of pandas, which must be installed.
+        """Return the result as a frame of pandas, which must be installed.
 
         Raises
         ------
@@ -76,23 +76,23 @@ class Answer(Generic[R]):
             If pandas is not installed.
         """
         if find_spec("pandas") is None:
-            raise InputError(Problem("a frame needs the package pandas", hint="pip install pandas"))
+            raise InputError(Problem("a frame requires the package pandas", hint="pip install pandas"))
         from pandas import DataFrame
 
         return DataFrame(dict(self.columns()))
 
     def plot(self, file: str | Path | None = None) -> Figure:
-        """Draw it.
+        """Plot the result.
 
         Parameters
         ----------
         file : str or Path, optional
-            Where to write the picture too: .png, .svg or .pdf.
+            File to write the plot to as well: .png, .svg or .pdf.
 
         Returns
         -------
         matplotlib.figure.Figure
-            To be changed, or shown by a notebook.
+            Figure to change, or to show in a notebook.
         """
         figure = self.figure()
         if file is not None:
@@ -101,7 +101,7 @@ class Answer(Generic[R]):
 
             path = Path(file)
             if path.suffix.lower() not in (".png", ".svg", ".pdf"):
-                raise InputError(Problem("a picture ends in .png, .svg or .pdf", str(file)))
+                raise InputError(Problem("give a file name that ends in .png, .svg or .pdf", str(file)))
             check_writable(path)
             write_whole(path, lambda stream: save(figure, stream, format=path.suffix[1:].lower()))
         return figure
@@ -115,7 +115,7 @@ class Answer(Generic[R]):
 
 
 class MappingAnswer(Answer[Mapping[K, V]], Mapping[K, V]):
-    """An answer that is found by key, as a mapping."""
+    """Answer that is a mapping, with items by key."""
 
     def __getitem__(self, key: K) -> V:
         return self.result[key]

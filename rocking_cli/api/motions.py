@@ -1,4 +1,4 @@
-"""What is made of ground motions, in Python: corrections, directions, floors."""
+"""Corrections, directions and floors of ground motions, in Python."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ if TYPE_CHECKING:
 
 
 def correct(motion: Motion, *steps: Step | str | Mapping[str, Any]) -> GroundMotion:
-    """A ground motion after corrections, made in the order in which they are given.
+    """Correct a ground motion, in the order in which the corrections are given.
 
     Parameters
     ----------
     motion : GroundMotion, Pulse, str or Path
         The motion, its file, or a pulse as text.
     *steps : str
-        Such as `"baseline linear"`, `"highpass 0.1"`, `"lowpass 25"`, `"taper 0.05"`, `"trim 2:20"`,
-        `"resample 0.005"`: frequencies in Hz, times in s. As mappings, `{"highpass": 0.1}`, too.
+        Corrections such as `"baseline linear"`, `"highpass 0.1"`, `"lowpass 25"`, `"taper 0.05"`, `"trim 2:20"`,
+        `"resample 0.005"`: frequencies in Hz, times in s. Mappings such as `{"highpass": 0.1}` are accepted too.
 
     Returns
     -------
     GroundMotion
-        Its `processing` says what was done.
+        Corrected motion; its `processing` lists the corrections.
 
     Raises
     ------
     InputError
-        If there is no such step, or the motion does not allow it.
+        If a step does not exist, or cannot be applied to the motion.
 
     Examples
     --------
@@ -53,25 +53,25 @@ def correct(motion: Motion, *steps: Step | str | Mapping[str, Any]) -> GroundMot
 
 
 def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMotion:
-    """The motion of a floor of a building, by its first mode, over a motion of the ground.
+    """Compute the motion of a floor of a building, by its first mode, from a ground motion.
 
     Parameters
     ----------
     motion : GroundMotion, Pulse, str or Path
-        Of the ground.
+        Ground motion, its file, or a pulse as text.
     floor : Floor, str or mapping
-        Such as `"T1=0.4,xi=0.05,z=0.67,gamma=1.29"`: period [s], damping ratio, height over that of the building and
-        participation factor; `n`, a number of equal storeys, may stand for the last.
+        Floor such as `"T1=0.4,xi=0.05,z=0.67,gamma=1.29"`: period [s], damping ratio, height over that of the building
+        and participation factor; `n`, a number of equal storeys, may replace the last.
 
     Returns
     -------
     GroundMotion
-        Its `ground` is the motion below.
+        Motion of the floor; its `ground` is the ground motion.
 
     Raises
     ------
     InputError
-        If it is no floor.
+        If the floor is not valid.
     """
     return (floor if isinstance(floor, Floor) else Floor.parse(floor)).of(_motion(motion))
 
@@ -86,34 +86,34 @@ def respond_around(
     release: float | str | None = None,
     rtol: float = RTOL,
 ) -> Answer[Around]:
-    """The response of a structure in every direction between two components.
+    """Compute the response of a structure in every direction between two components.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
     one, other : GroundMotion, Pulse, str or Path
-        The components at 0 and at 90 degrees, of one length and interval.
+        The components at 0 and at 90 degrees, of equal length and sampling interval.
     models : str or sequence of str, optional
-        Of "nonlinear", "linear1" and "linear2"; all, unless given.
+        Models "nonlinear", "linear1" or "linear2"; all by default.
     scale : float
-        Factor on both.
+        Scale factor on both.
     release : float or str, optional
-        Start at rest from this fraction of phi_cr, or from an angle such as "0.05rad".
+        Initial tilt of a release from rest: a fraction of phi_cr, or an angle such as "0.05rad".
     rtol : float
-        Relative local error of a step of the nonlinear motion.
+        Relative error tolerance per step of the nonlinear integration.
 
     Returns
     -------
     Answer of Around
-        `azimuths` [deg], and `outcomes` of each model over them.
+        `azimuths` [deg], and `outcomes` of each model at them.
 
     Raises
     ------
     InputError
-        If a value is out of range, or the components do not go together.
+        If a value is out of range, or the components cannot be combined.
     SolverError
-        If a motion cannot be followed.
+        If a motion cannot be simulated.
     """
     from rocking_cli.studies.azimuths import all_around
     from rocking_cli.views.azimuths import columns, view

@@ -1,4 +1,4 @@
-"""Sets of records for a target spectrum, in Python."""
+"""Selection of records for a target spectrum, in Python."""
 
 from __future__ import annotations
 
@@ -33,36 +33,36 @@ def select(
     same_factor: bool = False,
     seed: int = 0,
 ) -> Answer[RecordSet]:
-    """Choose records whose mean response spectrum fits a target, and the factor on each.
+    """Select records whose mean response spectrum matches a target, with a scale factor for each.
 
     Parameters
     ----------
     records : GroundMotion, Pulse, str or Path, or a sequence of these
-        What to choose from; a text may be a pattern of files, such as `records/*.AT2`.
+        Records to select from; a text may be a pattern of files, such as `records/*.AT2`.
     target : str or Path, or (array_like, array_like)
         The file of the spectrum, or its periods [s] and pseudo-accelerations [standard gravity].
     band : (float, float)
-        Periods over which it is to fit [s].
+        Period range over which the mean must match [s].
     count : int
-        How many records.
+        Number of records to select.
     within : (float, float)
-        Limits on the mean over the target.
+        Lower and upper limit on the ratio of mean to target.
     damping : float
-        Damping ratio that the target is of.
+        Damping ratio of the target.
     factors : (float, float)
-        Limits on the factor of each record.
+        Lower and upper limit on the scale factor of each record.
     one_per : {"event", "station", "none"}
-        Of what there is one record at most, where the files say.
+        Origin from which at most one record is taken, if the files name it.
     same_factor : bool
-        Whether all records have the same factor.
+        Whether all records have the same scale factor.
     seed : int
-        Of the searches, where there are too many sets to try all.
+        Seed of the random searches, if there are too many sets to try all.
 
     Returns
     -------
     Answer of RecordSet
-        `fits` says whether it does, `motions` are the scaled records, `factors` those on them; `periods`, `target` and
-        `spectra` of its `candidates`, and `mean`, are spectra.
+        `fits` is whether the set stays within the limits, `motions` are the scaled records, and `factors` their scale
+        factors; `mean`, and `periods`, `target` and `spectra` of `candidates`, are spectra.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def select(
 
     Notes
     -----
-    The limits are those of NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4), has the lower one alone, from 0.2 to 2
+    The limits are those of NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4), requires the lower one only, from 0.2 to 2
     times the fundamental period of a structure.
     """
     from rocking_cli.studies import record_set
@@ -92,7 +92,7 @@ def select(
 
 
 def _candidates(given: Any) -> tuple[list[GroundMotion], list[str | None]]:
-    """Motions, each with a name of its own, and the files of those that have one."""
+    """Return motions with unique names, and the files of those read from one."""
     from dataclasses import replace
 
     from rocking_cli.excitation.selection import select as files_of

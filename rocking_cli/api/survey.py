@@ -1,4 +1,4 @@
-"""Many structures, and one structure over one of its numbers, in Python."""
+"""Surveys of many structures, and design of one structure, in Python."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.survey import Entry, Survey
 
 Table = str | Path | Mapping[str, Sequence[Any]]
-"""A CSV file, or columns by their headings."""
+"""CSV file, or columns by their headings."""
 
 
 def survey(
@@ -29,7 +29,7 @@ def survey(
     site: Mapping[str, Any] | str | Path | None = None,
     threads: int | None = None,
 ) -> Answer[Survey]:
-    """Rank many structures by how vulnerable they are.
+    """Rank many structures by vulnerability.
 
     Parameters
     ----------
@@ -37,20 +37,21 @@ def survey(
         A table of structures as a CSV file, or its columns by their headings (a frame of pandas is one); or structures,
         or their YAML files.
     motions : GroundMotion, Pulse, str or Path, or a sequence of these
-        What shakes them; without any they are ranked by their uplift acceleration.
+        Ground motions; without any, the structures are ranked by their uplift acceleration.
     scale : float
-        Factor on the motions.
+        Scale factor on the motions.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse counts.
+        Polarities, of 1 and -1; with both, the worse governs.
     site : mapping, str or Path, optional
-        The fields of a site file, or the file: each is verified by its code, and they are ranked by the ratio.
+        Fields of a site file, or the file: each structure is verified by its code and ranked by the ratio of capacity
+        to demand.
     threads : int, optional
-        How many structures at a time; without it, one for each processor.
+        Number of structures at a time; by default, one for each processor.
 
     Returns
     -------
     Answer of Survey
-        `rows` are ranked, `bad` are those that could not be used, each with the reason.
+        `rows` are the ranked structures, `bad` the unusable ones with their reasons.
 
     Raises
     ------
@@ -106,41 +107,42 @@ def design(
     site: Mapping[str, Any] | str | Path | None = None,
     points: int = 41,
 ) -> Answer[Design]:
-    """Find for which values of one of its numbers a structure meets a requirement.
+    """Find the values of one field for which a structure meets a requirement.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
     vary : str, or (str, float, float)
-        A number of it and its range, such as `"width=0.2m:0.8m"`, or `("ties.bar.prestress", 0.0, 5e4)` in the unit of
-        the field. A place in a list is its number, from 0, or the name of the entry.
+        Field and its range, such as `"width=0.2m:0.8m"`, or `("ties.bar.prestress", 0.0, 5e4)` in the unit of the
+        field. An entry of a list is given by its number, from 0, or its name.
     until : str
         The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number. The metrics are
         `lambda`, `phi_cr`, `p`, `alpha0`, with motions `peak_ratio` and `overturned`, of their neighbours, and with a
         site `zeta_damage`, `zeta_linear` and `zeta_nonlinear`.
     motions : GroundMotion, Pulse, str or Path, or a sequence of these
-        What shakes it; the worst counts.
+        Ground motions; the worst one governs.
     scale : float
-        Factor on the motions.
+        Scale factor on the motions.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse counts.
+        Polarities, of 1 and -1; with both, the worse governs.
     neighbours : int
-        How many motions next to each are followed.
+        Number of neighbours of each motion to simulate.
     site : mapping, str or Path, optional
-        The fields of a site file, or the file.
+        Fields of a site file, or the file.
     points : int
-        How many values are tried first.
+        Number of values in the first scan.
 
     Returns
     -------
     Answer of Design
-        `value` is the least value from which on it holds, or the largest up to which it does; `holds` the ranges.
+        `value` is the least value from which the requirement holds, or the largest up to which it holds; `holds` are
+        the ranges in which it holds.
 
     Raises
     ------
     InputError
-        If there is no such field or metric, or it needs ground motions.
+        If the field or metric does not exist, or the metric requires ground motions.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The verbs: structures and motions in, as objects or as files; an answer out that shows itself."""
+"""Functions of the Python interface: structures and motions, as objects or files, to answers."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
     from rocking_cli.studies.spectrum import Spectrum
 
 Structure = Mechanism | str | Path
-"""A mechanism, or the YAML file that it stands in."""
+"""Mechanism, or its YAML file."""
 Motion = GroundMotion | Pulse | str | Path
-"""A ground motion or a pulse, a record's file, or a pulse as text such as `sine:0.6g:0.8s`."""
+"""Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
 
 
 def _structure(given: Structure) -> Prepared:
@@ -59,7 +59,7 @@ def _motion(given: Motion) -> GroundMotion:
 
 
 def _read(given: Motion) -> GroundMotion | Pulse:
-    """A motion from its file, a pulse from its text; a file goes before a text that it is called by."""
+    """Read a motion from its file, or a pulse from its text; a file of the same name has priority."""
     if isinstance(given, GroundMotion | Pulse):
         return given
     if isinstance(given, str) and given.partition(":")[0] in PulseShapes() and not Path(given).exists():
@@ -79,7 +79,7 @@ def _models(given: str | Sequence[str] | None) -> tuple[ModelName, ...]:
 
 
 def equiv(structure: Structure) -> Answer[Equivalence | None]:
-    """The equivalent single rocking block of a structure, in both directions.
+    """Compute the equivalent single rocking block of a structure, in both directions.
 
     Parameters
     ----------
@@ -89,8 +89,8 @@ def equiv(structure: Structure) -> Answer[Equivalence | None]:
     Returns
     -------
     Answer of Equivalence or None
-        `positive` and `negative` are the blocks; see `equivalent_block`. None where no single block is equivalent, of
-        which its sentences and `to_dict` say why.
+        `positive` and `negative` are the blocks; see `equivalent_block`. None if no single block is equivalent; its
+        sentences and `to_dict` give the reason.
 
     Raises
     ------
@@ -127,20 +127,20 @@ def equiv(structure: Structure) -> Answer[Equivalence | None]:
 
 
 def draw(structure: Structure, *, at: float | None = None) -> Answer[Picture]:
-    """A structure at rest with its dimensions, and displaced in both directions.
+    """Draw a structure at rest with its dimensions, and displaced in both directions.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
     at : float, optional
-        How far it is displaced, as a multiple of phi_cr, or of the kinematic limit where there is none; at most as far
-        as the mechanism goes. Without it 1, or what is seen well.
+        Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr; at most the
+        kinematic limit. By default 1, or a rotation that is easy to see.
 
     Returns
     -------
     Answer of Picture
-        Its parts, dimensions, and where they are at any rotation.
+        Parts of the structure, its dimensions, and the positions of the parts at any rotation.
 
     Raises
     ------
@@ -172,24 +172,25 @@ def draw(structure: Structure, *, at: float | None = None) -> Answer[Picture]:
 
 
 def collapse(structure: Structure) -> MappingAnswer[Direction, CollapseMechanism]:
-    """The weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
+    """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
-        An assembly, or its YAML file.
+        Assembly, or its YAML file.
 
     Returns
     -------
     MappingAnswer of Direction to CollapseMechanism
-        Its lambda, hinges, groups that move as one, a line of thrust, the friction it needs, and how far it is valid.
+        lambda, hinges, groups of blocks that move as one, a line of thrust, friction required, and rotation up to which
+        the mechanism is valid.
 
     Raises
     ------
     InputError
-        If the structure is no assembly, or its file cannot be used.
+        If the structure is not an assembly, or its file cannot be used.
     MechanismError
-        If it has no mechanism.
+        If the assembly has no mechanism.
 
     Examples
     --------
@@ -218,14 +219,14 @@ def collapse(structure: Structure) -> MappingAnswer[Direction, CollapseMechanism
 
 
 def record(motion: Motion, *, scale: float = 1.0) -> Answer[Measures]:
-    """How strong a ground motion is, and what is doubtful about it.
+    """Measure the strength of a ground motion, and check it for defects.
 
     Parameters
     ----------
     motion : GroundMotion, Pulse, str or Path
         The motion, its file, or a pulse as text.
     scale : float
-        Factor on it.
+        Scale factor on the motion.
 
     Returns
     -------
@@ -239,8 +240,8 @@ def record(motion: Motion, *, scale: float = 1.0) -> Answer[Measures]:
 
     Notes
     -----
-    Exact for the straight lines between samples; the intensity is that of Arias (1970), pi/(2 g) times the integral
-    of the squared acceleration.
+    The measures are exact for straight lines between the samples; the intensity is that of Arias (1970), pi/(2 g) times
+    the integral of the squared acceleration.
     """
     from rocking_cli.excitation.doubts import doubts
     from rocking_cli.excitation.measures import measure
@@ -267,24 +268,24 @@ def record(motion: Motion, *, scale: float = 1.0) -> Answer[Measures]:
 def response_spectrum(
     motion: Motion, periods: ArrayLike | None = None, *, damping: float = 0.05, scale: float = 1.0
 ) -> Answer[ResponseSpectrum]:
-    """The response spectrum of a ground motion: the largest responses of linear oscillators.
+    """Compute the response spectrum of a ground motion: the peak responses of linear oscillators.
 
     Parameters
     ----------
     motion : GroundMotion, Pulse, str or Path
         The motion, its file, or a pulse as text.
     periods : array_like, shape (n,), optional
-        Undamped periods of the oscillators [s]; 200 from 0.02 to 10 s at equal ratios, unless given.
+        Undamped periods of the oscillators [s]; by default 200 from 0.02 to 10 s at equal ratios.
     damping : float
-        Their damping ratio, from 0 to below 1.
+        Damping ratio of the oscillators, from 0 to below 1.
     scale : float
-        Factor on the motion.
+        Scale factor on the motion.
 
     Returns
     -------
     Answer of ResponseSpectrum
-        `periods`, and over them `sd`, the displacement [m], `sv` [m/s] and `sa` [standard gravity], the pseudo-velocity
-        and the pseudo-acceleration.
+        `periods`, and at each of them the displacement `sd` [m], the pseudo-velocity `sv` [m/s] and the
+        pseudo-acceleration `sa` [standard gravity].
 
     Raises
     ------
@@ -293,7 +294,7 @@ def response_spectrum(
 
     Notes
     -----
-    Exact for the straight lines between samples, while the motion lasts and after it.
+    The spectrum is exact for straight lines between the samples, during the motion and after it.
 
     Examples
     --------
@@ -326,7 +327,7 @@ def respond(
     tail: float = TAIL,
     rtol: float = RTOL,
 ) -> MappingAnswer[ModelName, History]:
-    """The response of a structure to a ground motion, a release from a tilt, or both; see `respond_each` for many.
+    """Compute the response of a structure to a ground motion, a release or both; `respond_each` is for many.
 
     Parameters
     ----------
@@ -335,30 +336,30 @@ def respond(
     motion : GroundMotion, Pulse, str or Path, optional
         The motion, its file, or a pulse as text.
     models : str or sequence of str, optional
-        Of "nonlinear", "linear1" and "linear2"; all, unless given.
+        Models "nonlinear", "linear1" or "linear2"; all by default.
     scale : float
-        Factor on the motion; a negative one reverses it.
+        Scale factor on the motion; a negative one reverses it.
     release : float or str, optional
-        Start at rest from this fraction of phi_cr, between -1 and 1, or from an angle such as "0.05rad"; negative:
-        anticlockwise.
+        Initial tilt of a release from rest: a fraction of phi_cr, between -1 and 1, or an angle such as "0.05rad";
+        negative is anticlockwise.
     tail : float
-        How long the samples go on after the record [s].
+        Length of output after the end of the record [s].
     rtol : float
-        Relative local error of a step of the nonlinear motion.
+        Relative error tolerance per step of the nonlinear integration.
 
     Returns
     -------
     MappingAnswer of str to History
-        By the model.
+        Time histories, by model.
 
     Raises
     ------
     InputError
-        If a value is out of range, a file cannot be used, or kinematics give no restitution to rock on with.
+        If a value is out of range, a file cannot be used, or kinematics give no restitution for rocking to continue.
     MechanismError
         If the structure has no critical rotation or no uplift acceleration.
     SolverError
-        If the motion cannot be followed to its end.
+        If the motion cannot be simulated to its end.
 
     Notes
     -----
@@ -409,23 +410,23 @@ def respond_each(
     scales: ArrayLike = 1.0,
     threads: int | None = None,
 ) -> MappingAnswer[ModelName, Outcomes]:
-    """What becomes of every structure under every motion with every factor on it.
+    """Compute the outcome of every structure under every motion with every scale factor.
 
     Parameters
     ----------
     structures, motions
         One or several, as for `respond`.
     models : str or sequence of str, optional
-        Of "nonlinear", "linear1" and "linear2"; all, unless given.
+        Models "nonlinear", "linear1" or "linear2"; all by default.
     scales : array_like
-        Factors on the motions; negative ones reverse them.
+        Scale factors on the motions; negative ones reverse them.
     threads : int, optional
-        Histories at a time; without it, one for each processor.
+        Number of time histories at a time; by default, one for each processor.
 
     Returns
     -------
     MappingAnswer of str to Outcome
-        By the model, arrays of shape (structures, motions, scales); `failed` is what could not be followed.
+        Arrays of shape (structures, motions, scales), by model; `failed` marks motions that could not be simulated.
 
     Raises
     ------
@@ -436,7 +437,8 @@ def respond_each(
 
     Notes
     -----
-    Every history is the same to the last bit as that of `respond`: Eqs. 8 and 16 of DeJong and Dimitrakopoulos (2014).
+    Every time history is identical, bit for bit, to that of `respond`: Eqs. 8 and 16 of DeJong and Dimitrakopoulos
+    (2014).
 
     Examples
     --------
@@ -472,7 +474,7 @@ def respond_each(
         return table
 
     def figure() -> Figure:
-        raise InputError("many responses have no picture of their own: draw a spectrum, a map or a margin")
+        raise InputError("many responses have no plot of their own: plot a spectrum, a map or a margin")
 
     first = found[chosen[0]]
     said = f"By the {chosen[0]} model {int(first.overturned.sum())} of {first.overturned.size} motions overturn."
@@ -492,7 +494,7 @@ def spectrum(
     polarities: Sequence[int] = (1,),
     fractiles: Sequence[float] = (0.16, 0.84),
 ) -> Answer[list[Spectrum]]:
-    """Peak rotation and overturning over the size of structures, and of blocks of given slenderness.
+    """Compute peak rotation and overturning against size, for structures and for blocks of given slenderness.
 
     Parameters
     ----------
@@ -501,22 +503,22 @@ def spectrum(
     slenderness : sequence of float
         alpha of rectangular blocks [rad].
     sizes : (float, float), optional
-        The smallest and the largest, as 2 pi/p [s].
+        Smallest and largest size, as 2 pi/p [s].
     count : int
-        Sizes between them, at equal ratios.
+        Number of sizes between them, at equal ratios.
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
     eta : float, optional
-        Restitution; without it that of the structures.
+        Coefficient of restitution; by default that of the structures.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse counts.
+        Polarities, of 1 and -1; with both, the worse governs.
     fractiles : sequence of float
-        Beside the median, of several motions.
+        Fractiles in addition to the median, with several motions.
 
     Returns
     -------
     Answer of list of Spectrum
-        One for each structure and slenderness; a peak that could not be followed is NaN.
+        One for each structure and slenderness; the peak of a motion that could not be simulated is NaN.
 
     Raises
     ------
@@ -536,7 +538,7 @@ def spectrum(
     shapes += [study.blocks_of(alpha, model, eta) for alpha in slenderness]
     shaking = [_motion(each) for each in _each(motions)]
     if not shapes:
-        raise InputError("a spectrum is of structures, or of blocks of some slenderness: none is given")
+        raise InputError("no structure given: give structures, or slenderness for blocks")
     periods = np.geomspace(*(sizes or study.usual_sizes(shapes)), count)
     found = study.spectra(shapes, periods, shaking, polarities=polarities)
     polarity = "both" if len(polarities) > 1 else str(polarities[0])
@@ -563,31 +565,31 @@ def overturning_map(
     polarities: Sequence[int] = (1,),
     points: int = 128,
 ) -> Answer[OverturningMap]:
-    """What pulses of every period and amplitude do to a structure, or to the dimensionless linear block.
+    """Map the effect of pulses of all periods and amplitudes on a structure, or on the dimensionless linear block.
 
     Parameters
     ----------
     structure : Mechanism, str or Path, optional
-        Without it the linear block, over omega = omega_g/p and a = a_g/(g lambda).
+        Structure; without it, the linear block, with the axes omega = omega_g/p and a = a_g/(g lambda).
     shape : str
-        Of the pulses.
+        Shape of the pulses.
     model : {"linear2", "linear1", "nonlinear"}
-        The equation of motion of a structure.
+        Model of the structure.
     eta : float, optional
-        Restitution; without it that of the structure, or 0.9.
+        Coefficient of restitution; by default that of the structure, or 0.9.
     period, ag : (float, float), optional
-        Least and largest period [s] and amplitude [standard gravity], of a structure.
+        Smallest and largest period [s] and amplitude [standard gravity], for a structure.
     omega, a : (float, float), optional
-        The same in dimensionless terms, of the linear block.
+        Smallest and largest dimensionless frequency and amplitude, for the linear block.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse counts.
+        Polarities, of 1 and -1; with both, the worse governs.
     points : int
-        Of each side.
+        Number of points along each side.
 
     Returns
     -------
     Answer of OverturningMap
-        What becomes of it under every pulse.
+        Outcome under every pulse.
 
     Raises
     ------
@@ -596,7 +598,7 @@ def overturning_map(
     MechanismError
         If the structure has no critical rotation or no uplift acceleration.
     SolverError
-        If a motion cannot be followed to its end.
+        If a motion cannot be simulated to its end.
 
     Notes
     -----
@@ -645,25 +647,25 @@ def overturning_curves(
     polarities: Sequence[int] = (1,),
     points: int = 60,
 ) -> Answer[Comparison]:
-    """The least amplitude that overturns each structure, over the period of a pulse: which goes first.
+    """Compute the smallest amplitude that overturns each structure, against the period of a pulse.
 
     Parameters
     ----------
     structures : sequence of Mechanism, str or Path
-        What is compared.
+        Structures to compare.
     shape, model, polarities
         As for `overturning_map`.
     period : (float, float), optional
-        Least and largest [s].
+        Smallest and largest period [s].
     top : float, optional
-        The largest amplitude to try [standard gravity].
+        Largest amplitude to try [standard gravity].
     points : int
-        Periods between them, at equal ratios.
+        Number of periods between them, at equal ratios.
 
     Returns
     -------
     Answer of Comparison
-        The least amplitudes, and which structure goes first.
+        Smallest amplitudes, and the structure that overturns first.
 
     Raises
     ------
@@ -672,7 +674,7 @@ def overturning_curves(
     MechanismError
         If the structure has no critical rotation or no uplift acceleration.
     SolverError
-        If a motion cannot be followed to its end.
+        If a motion cannot be simulated to its end.
 
     Notes
     -----
@@ -699,7 +701,7 @@ def overturning_curves(
 def margin(
     structure: Structure, motions: Motion | Sequence[Motion], *, polarities: Sequence[int] = (1, -1)
 ) -> MappingAnswer[str, Margin]:
-    """How much stronger or weaker motions would have to be to lift a structure, and to overturn it.
+    """Compute the scale factors on motions that uplift a structure, and that overturn it.
 
     Parameters
     ----------
@@ -708,12 +710,12 @@ def margin(
     motions
         One or several, as for `respond`.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse counts.
+        Polarities, of 1 and -1; with both, the worse governs.
 
     Returns
     -------
     MappingAnswer of str to Margin
-        By the name of the motion.
+        Margins, by name of the motion.
 
     Raises
     ------
@@ -722,11 +724,12 @@ def margin(
     MechanismError
         If the structure has no critical rotation or no uplift acceleration.
     SolverError
-        If a motion cannot be followed to its end.
+        If a motion cannot be simulated to its end.
 
     Notes
     -----
-    The nonlinear model, Eq. 8 of DeJong and Dimitrakopoulos (2014), of the motions next to each of many factors.
+    The model is the nonlinear one, Eq. 8 of DeJong and Dimitrakopoulos (2014), under the neighbours of the motion at
+    each of many scale factors.
     """
     from rocking_cli.studies import margin as study
     from rocking_cli.studies.neighbours import Around
@@ -756,21 +759,21 @@ def margin(
 def linearisation(
     structure: Structure, *, at: Sequence[float] = (0.5,), a: Sequence[float] = (2.0,)
 ) -> Answer[list[Linearisation]]:
-    """How far to trust the equivalent block of a structure; see `rocking error`.
+    """Compute the errors of the equivalent block of a structure; see `rocking error`.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
     at : sequence of float
-        Amplitudes phi/phi_cr of the free period.
+        Amplitudes phi/phi_cr for the free period.
     a : sequence of float
-        Constant accelerations over that at uplift, of the overturning time.
+        Constant accelerations for the overturning time, as multiples of the uplift acceleration.
 
     Returns
     -------
     Answer of list of Linearisation
-        One for each direction that differs.
+        One for each distinct direction.
 
     Raises
     ------
@@ -789,38 +792,38 @@ def linearisation(
     from rocking_cli.views import error as views
 
     ready = _structure(structure)
-    curves, asked = compare(ready.mechanism, ready.equivalence, at, a)
+    curves, found = compare(ready.mechanism, ready.equivalence, at, a)
 
     def columns() -> Columns:
         return {
-            "direction": [each.direction.label for each in asked for _ in at],
-            "phi/phi_cr": [value for _ in asked for value in at],
-            "period [s]": np.concatenate([each.period for each in asked]),
-            "period_ratio": np.concatenate([each.period_ratio for each in asked]),
+            "direction": [each.direction.label for each in found for _ in at],
+            "phi/phi_cr": [value for _ in found for value in at],
+            "period [s]": np.concatenate([each.period for each in found]),
+            "period_ratio": np.concatenate([each.period_ratio for each in found]),
         }
 
     def figure() -> Figure:
         from rocking_cli.plotting.linearisation import draw_linearisation
 
-        return draw_linearisation(curves, asked, heading(ready.mechanism))
+        return draw_linearisation(curves, found, heading(ready.mechanism))
 
-    view = views.view(ready.mechanism, ready.equivalence, curves, asked)
-    return Answer("linearisation", list(asked), view, columns, figure)
+    view = views.view(ready.mechanism, ready.equivalence, curves, found)
+    return Answer("linearisation", list(found), view, columns, figure)
 
 
 def equivalent(
     structures: Sequence[Structure], pulse: Pulse | str, *, polarity: int = 1
 ) -> Answer[EquivalentResponses]:
-    """Pulses to which structures are equivalently vulnerable; the one given is for the first.
+    """Find the pulses to which structures are equally vulnerable; the given pulse is for the first.
 
     Parameters
     ----------
     structures : sequence of Mechanism, str or Path
-        Two or more.
+        At least two structures.
     pulse : Pulse or str
-        Such as `sine:0.6g:0.8s`.
+        Pulse such as `sine:0.6g:0.8s`.
     polarity : {1, -1}
-        -1 reverses it.
+        Polarity of the pulse; -1 reverses it.
 
     Returns
     -------
@@ -834,7 +837,7 @@ def equivalent(
     MechanismError
         If the structure has no critical rotation or no uplift acceleration.
     SolverError
-        If a motion cannot be followed to its end.
+        If a motion cannot be simulated to its end.
 
     Notes
     -----
@@ -862,24 +865,24 @@ def fragility(
     threads: int | None = None,
     rank_measures: bool = False,
 ) -> Answer[list[Fragility]]:
-    """Run a fragility study, or go on with it, and fit its curves.
+    """Run a fragility study, or continue it, and fit its curves.
 
     Parameters
     ----------
     study : str, Path or mapping
-        Its YAML file, or the same in Python, with mechanisms among the structures if you like; docs/fragility.md has
-        the fields. What is given in Python is written as files beside the store, so that it can be run again.
+        YAML file of the study, or its fields in Python, in which structures may be mechanisms; docs/fragility.md lists
+        the fields. A study given in Python is written to files next to the store, so that it can be run again.
     store : str or Path, optional
-        Where the runs are kept; beside the study, unless given; of one given in Python study.db in this folder.
+        File in which the runs are stored; by default next to the study file, or study.db in this folder.
     threads : int, optional
-        Histories at a time; without it, one for each processor.
+        Number of time histories at a time; by default, one for each processor.
     rank_measures : bool
-        Whether to say which of all measures of intensity serves, too.
+        Whether to rank the intensity measures as well, by how well they predict the outcome.
 
     Returns
     -------
     Answer of list of Fragility
-        A curve each: structure, limit state, measure, what was fitted.
+        One per curve: structure, limit state, measure and fit.
 
     Raises
     ------
@@ -890,8 +893,8 @@ def fragility(
 
     Notes
     -----
-    The runs are those of `respond`, Eq. 8 or 16 of DeJong and Dimitrakopoulos (2014); docs/fragility.md says how
-    curves are fitted.
+    The runs are those of `respond`, Eq. 8 or 16 of DeJong and Dimitrakopoulos (2014); docs/fragility.md explains how
+    the curves are fitted.
     """
     from rocking_cli.studies.fragility import assess, campaign, engines, table
     from rocking_cli.studies.fragility.definition import Definition
@@ -955,7 +958,7 @@ def write_report(
     place: str | None = None,
     author: str | None = None,
 ) -> Answer[Any]:
-    """Write a report: one HTML file that opens in any browser and prints.
+    """Write a report: one HTML file that opens in any browser and can be printed.
 
     Parameters
     ----------
@@ -964,16 +967,16 @@ def write_report(
     motions
         None, one or several, as for `respond`.
     file : str or Path
-        Where to.
+        File to write.
     polarities : sequence of int
-        Of 1 and -1.
+        Polarities, of 1 and -1.
     project, place, author : str, optional
-        For the head of the report.
+        Entries for the heading of the report.
 
     Returns
     -------
     Answer of Assessment
-        All that the page says.
+        Contents of the report.
 
     Raises
     ------
@@ -982,11 +985,11 @@ def write_report(
     MechanismError
         If the structure has no critical rotation or no uplift acceleration.
     SolverError
-        If a motion cannot be followed to its end.
+        If a motion cannot be simulated to its end.
 
     Notes
     -----
-    What it says is that of `equiv`, `respond`, `margin`, `overturning_map` and `linearisation`.
+    The report contains the results of `equiv`, `respond`, `margin`, `overturning_map` and `linearisation`.
     """
     from datetime import UTC, datetime
 
@@ -1034,13 +1037,13 @@ def _scaled(given: Motion) -> Scaled:
 
 
 def _yaml(mechanism: Mechanism) -> str:
-    """A mechanism made in Python as the file that gives it again."""
+    """Return the YAML file of a mechanism made in Python."""
     fields = {"mechanism": mechanism.mechanism, **mechanism.model_dump(exclude_unset=True)}
     return "".join(f"{key}: {json_text(value)}\n" for key, value in fields.items())
 
 
 def _written(study: Mapping[str, Any], store: Path) -> Path:
-    """The file of a study given in Python, and those of its mechanisms: beside the store, with its name."""
+    """Write a study given in Python and its mechanisms to files next to the store, named after it."""
     from rocking_cli.io.files import write_whole
 
     def write(path: Path, text: str) -> Path:

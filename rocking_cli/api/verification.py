@@ -26,34 +26,34 @@ def verify(
     motions: Sequence[Motion] = (),
     polarities: Sequence[int] = (1,),
 ) -> Answer[Verification]:
-    """A rocking mechanism of masonry held against a code, such as the Italian: NTC 2018 and Circolare 7/2019.
+    """Verify a rocking mechanism of masonry by a code, such as the Italian: NTC 2018 and Circolare 7/2019.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
     site : mapping, str or Path
-        The fields of a site file, or the file.
+        Fields of a site file, or the file.
     control : tuple, optional
-        Control point x, y [m], and the body it is on; by default the barycentre of the weights that move.
+        Control point x, y [m], and the body it is on; by default the centroid of the moving weights.
     motions : sequence of GroundMotion, Pulse, str or Path
-        For the dynamic method: records that fit the spectrum of the site, as scaled.
+        Motions of the dynamic method: records that match the spectrum of the site, already scaled.
     polarities : sequence of int
-        Which way round these are, of 1 and -1; the worse of several counts.
+        Polarities of the motions, of 1 and -1; with both, the worse governs.
 
     Returns
     -------
     Answer of Verification
-        `directions` has what was found in each, with `methods`, `states` and `workings`.
+        `directions` holds the results of each direction, with `methods`, `states` and `workings`.
 
     Raises
     ------
     InputError
         If the site, the control point or a file cannot be used, or the structure has no capacity curve.
     MechanismError
-        If the structure does not stand.
+        If the structure is not stable at rest.
     SolverError
-        If a motion cannot be followed to its end.
+        If a motion cannot be simulated to its end.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""`rocking animate`: a structure moving under a ground motion."""
+"""`rocking animate`: animate a structure under a ground motion."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 
 from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Near
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Finite
 from rocking_cli.errors import INCOMPLETE, InputError, Problem, RockingError
 from rocking_cli.names import percent
@@ -24,48 +25,48 @@ if TYPE_CHECKING:
 
 # The names of the models stand here again so that `--help` needs no numpy.
 MODELS = ("nonlinear", "linear1", "linear2")
-LONGEST = 20.0  # s of a GIF whose speed nobody asked for
+LONGEST = 20.0  # s of a GIF whose speed is not given
 MOST_FRAMES = 3000
 FPS = 20.0
 
 
 def _fps(ctx: click.Context, param: click.Parameter, value: float) -> float:
     if not 1 <= value <= 50:
-        raise click.BadParameter(f"{value:g} is not between 1 and 50: a GIF can show no more.", ctx, param)
+        raise click.BadParameter(f"{value:g} is not between 1 and 50, the range of a GIF.", ctx, param)
     return value
 
 
 def _speed(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
     if value is not None and not 1e-3 <= value <= 1e3:
-        raise click.BadParameter(f"{value:g} is not between 0.001 and 1000 s of motion a second.", ctx, param)
+        raise click.BadParameter(f"{value:g} is not between 0.001 and 1000 s of motion per second.", ctx, param)
     return value
 
 
 @dataclass(frozen=True)
 class Pace:
-    """How fast a motion is shown, and in how many frames."""
+    """Playback speed and number of frames per second."""
 
     speed: float | None
     fps: float
 
 
-@click.command(short_help="The mechanism moving under a ground motion: GIF or page.")
+@click.command(cls=Command, short_help="Animate a structure under a ground motion (GIF or HTML).")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1")
-@click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help="Which history.")
+@click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help=options.HELP["model"])
 @options.out(
     ".gif", ".html", required=True, metavar="FILE.html",
-    what="Where to: an animated GIF, or a page of its own with a slider (.html).",
+    what="Output file: an animated GIF (.gif), or a self-contained page with a slider (.html).",
 )  # fmt: skip
 @click.option(
     "--speed", type=Finite(positive=True), callback=_speed, metavar="TIMES",
-    help="Seconds of motion a second.  [default: 1; a GIF faster, so as to last 20 s at most]",
+    help="Playback speed: seconds of motion per second.  [default: 1; a GIF is sped up to last at most 20 s]",
 )  # fmt: skip
 @click.option(
     "--fps", type=Finite(positive=True), default=FPS, show_default=True, callback=_fps, metavar="FRAMES",
-    help="Frames a second of a GIF.",
+    help="Frames per second of a GIF.",
 )  # fmt: skip
 @options.around
 @options.as_json
@@ -81,16 +82,17 @@ def command(
     near: Near,
     as_json: bool,
 ) -> None:
-    """Show a structure moving under a ground motion, with the traces of rotation and ground below it.
+    """Animate a structure under a ground motion, with the traces of rotation and ground below it.
 
-    A GIF goes into slides and mails; it shows the time between uplift and rest or overturning. A page (.html) has a
-    slider, works without a network, and shows all of the motion. Bodies move as they are, not enlarged; what is shown
-    is their motion relative to the ground.
+    A GIF is for slides and mails; it shows the time between uplift and rest or overturning. A page (.html) has a
+    slider, works without a network, and shows the whole motion. The motion of the bodies is relative to the ground and
+    drawn to scale, not enlarged.
 
-    Several motions get a file each, with the motion in its name, a row each, and with --json an object a line. One that
-    cannot be used is reported, the others are shown, and the exit code is 5.
+    With several motions, each is written to a file with its name in the file name, and the output has one row per
+    motion (with --json, one object per line). A motion that cannot be used is reported and skipped, and the exit code
+    is 5.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
@@ -142,13 +144,13 @@ def command(
 
 def _check(asked: GroundMotions) -> None:
     if bool(asked.records) == bool(asked.pulses):
-        raise click.UsageError("Give --record FILE or --pulse PULSE, and not both.")
+        raise click.UsageError("Give either --record FILE or --pulse PULSE.")
     asked.check()
 
 
 @dataclass(frozen=True, eq=False)
 class _Camera:
-    """What moves, and how it is shown."""
+    """A structure in motion, and the settings of its animation."""
 
     model: Model
     picture: Picture
@@ -158,7 +160,7 @@ class _Camera:
     def shoot(
         self, motion: GroundMotion, title: str, out: Path | None
     ) -> tuple[Film, dict[str, float | int | None], Neighbours | None]:
-        """Follow a motion, write what is to be seen, and follow its neighbours."""
+        """Simulate a motion, write its animation, and simulate its neighbours."""
         from rocking_cli.dynamics.history import follow
         from rocking_cli.studies.film import Film
         from rocking_cli.studies.neighbours import neighbours
@@ -197,8 +199,8 @@ def _write_gif(out: Path, film: Film, title: str, speed: float, fps: float) -> i
     step = speed * frame_time(fps)
     count = int((film.end - film.start) / step) + 1
     if count > MOST_FRAMES:
-        problem = f"{count:,} frames are too many for a GIF (at most {MOST_FRAMES:,})"
-        raise InputError(Problem(problem, field="--speed", hint="show it faster, with fewer frames, or as .html"))
+        problem = f"a GIF of {count:,} frames is too long (at most {MOST_FRAMES:,})"
+        raise InputError(Problem(problem, field="--speed", hint="raise --speed, lower --fps, or write .html"))
     times = np.append(film.start + step * np.arange(count), film.end)
     if speed != 1:
         terminal.note(f"shown at {speed:.3g} times its speed, from {film.start:.4g} to {film.end:.4g} s")

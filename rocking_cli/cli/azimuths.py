@@ -1,4 +1,4 @@
-"""`rocking respond --azimuth all`: a pair of components, turned into every direction."""
+"""`rocking respond --azimuth all`: rotate a pair of components into every direction."""
 
 from __future__ import annotations
 
@@ -23,16 +23,17 @@ COMMANDLINE = ParameterSource.COMMANDLINE
 
 
 def check(asked: GroundMotions, history: History, count: int, *, impacts: bool, contact: bool) -> None:
-    """Refuse what is of one direction beside all of them."""
+    """Refuse options that apply to a single direction."""
     if count != 1 or asked.pulses:
-        raise click.UsageError("--azimuth all is of one pair of components: give one --record FILE.")
+        raise click.UsageError("--azimuth all takes a single pair of components: give one --record FILE.")
     if asked.polarity != "1":
-        raise click.UsageError("--azimuth all has both polarities in it: leave --polarity out.")
+        raise click.UsageError("--azimuth all already covers both polarities: leave out --polarity.")
     context = click.get_current_context()
     typed = [name for name in ("tail", "neighbours") if context.get_parameter_source(name) is COMMANDLINE]
     if history.with_pulse is not None or impacts or contact or typed:
         raise click.UsageError(
-            "--with-pulse, --impacts, --contact, --tail and --neighbours are of one direction: give one --azimuth."
+            "--with-pulse, --impacts, --contact, --tail and --neighbours apply to one direction: "
+            "give a single --azimuth."
         )
 
 
@@ -45,7 +46,7 @@ def respond(
     history: History,
     output: Output,
 ) -> None:
-    """Follow a structure in all directions under a pair, and show what became of it."""
+    """Simulate a structure in all directions under a pair of components, and show the outcomes."""
     from rocking_cli.cli import structures
     from rocking_cli.excitation.measures import measure
     from rocking_cli.plotting import style

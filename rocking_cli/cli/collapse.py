@@ -1,4 +1,4 @@
-"""`rocking collapse`: the weakest mechanism of an assembly of blocks."""
+"""`rocking collapse`: find the weakest mechanism of an assembly of blocks."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import click
 from rocking_cli.cli import options, terminal
 
 
-@click.command(short_help="The weakest mechanism of an assembly of blocks, with hinges, thrust and friction.")
+@click.command(short_help="Find the weakest mechanism of an assembly of blocks.")
 @click.argument("file", required=False, type=click.Path())
-@options.plot("Draw the mechanism and a line of thrust to")
+@options.plot("Plot the mechanism and a line of thrust")
 @options.as_json
 def command(file: str | None, plot: Path | None, as_json: bool) -> None:
-    """The weakest mechanism of an assembly of rigid blocks in either direction, by limit analysis.
+    """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
 
-    Joints bear no tension. It shows lambda, where it hinges, which blocks move as one and which rest, a line of thrust,
-    the friction that it needs, and how far it can be displaced before another joint opens.
+    Joints carry no tension. The output gives lambda, the hinges, the blocks that move together and those at rest, a
+    line of thrust, the friction required, and the rotation at which another joint would open.
 
     \b
     Example:

@@ -1,4 +1,4 @@
-"""What a shell can complete of a command line, besides commands and options; plugins are listed and never loaded."""
+"""Completion of values on a command line, besides commands and options; plugins are listed and never loaded."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]
 
 
 def files(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Names of files, which the shell knows."""
+    """Complete names of files, as the shell does."""
     return [CompletionItem(incomplete, type="file")]
 
 
 def mechanisms(*more: str) -> Completer:
-    """Names of installed mechanisms, and others that stand in their place."""
+    """Complete names of installed mechanisms, and the given others."""
     return _plugins("rocking.mechanisms", more=more)
 
 
 def shapes(ending: str = "") -> Completer:
-    """Names of installed pulse shapes, with what follows them."""
+    """Complete names of installed pulse shapes, each with a suffix."""
     return _plugins("rocking.pulses", ending=ending)
 
 
 def listed(words: Sequence[str]) -> Completer:
-    """Words with commas between them, of which the last is completed with one that is not there yet."""
+    """Complete the last of several words separated by commas, with one not given before."""
 
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
         before, comma, begun = incomplete.rpartition(",")

@@ -1,4 +1,4 @@
-"""`rocking completion`: what a shell needs to complete command lines."""
+"""`rocking completion`: print the shell completion script."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import click
 from rocking_cli.cli import options, terminal
 
 VARIABLE = "_ROCKING_COMPLETE"
-"""Of the environment: by it the shell asks, and the program answers, as click does for a program of this name."""
+"""Variable of the environment by which the shell requests completions, named as click expects it."""
 
 
-@click.command(short_help="Print what makes a shell complete commands, options and names.")
+@click.command(short_help="Print the shell completion script.")
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 @options.as_json
 def command(shell: str, as_json: bool) -> None:
-    """Print a script that makes a shell complete commands, options, mechanisms, shapes of pulses, models and files.
+    """Print a script for the shell that completes commands, options, mechanisms, pulse shapes, models and files.
 
     \b
     Example:

@@ -1,7 +1,7 @@
-"""Defaults of a person or a folder for options: from the environment, `rocking.toml` here, and the user's own file.
+"""Defaults for options, set by a user or in a folder: in the environment, in `rocking.toml` here or in the user's file.
 
-The command line goes before the environment, that before the file of this folder, that before the user's, and a table
-of a command in a file before what the same file says of all.
+The command line overrides the environment, which overrides the file of this folder, which overrides the user's file.
+Within a file, the table of a command overrides the values for all commands.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ EVERYWHERE = (
     "units", "dt", "channel", "neighbours", "within-amplitude", "within-restitution", "tail", "rtol", "points",
     "fractiles", "fps", "speed", "jobs", "format", "project", "place", "author", "logo",
 )  # fmt: skip
-"""Options that mean the same in every command that has them. Those that say what is asked, read or written are none."""
+"""Options with one meaning in all commands; none that choose the question, the input or the output."""
 IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")
-"""Options that differ from command to command: only the table of a command gives them."""
+"""Options whose meaning differs between commands: only the table of a command may set them."""
 OTHERS = ("DEBUG", "BROWSER")
-"""Other variables of the environment that mean something."""
+"""Other variables of the environment that the program reads."""
 
 
 class Default(NamedTuple):
-    """One default that somebody set.
+    """A default that a user or a folder sets.
 
     Parameters
     ----------
     option : str
-        Its name without dashes in front.
+        Name without leading dashes.
     command : str or None
-        The command that it is for; None for all that have the option.
+        The only command with this default; None for all that have the option.
     value : str
-        As it would be typed.
+        Value, as it would be typed.
     place : str
         The file, or the variable of the environment.
     key : str
-        What to call it in messages: the place, and in a file the key.
+        Name in messages: the place, and in a file also the key.
     """
 
     option: str
@@ -59,24 +59,24 @@ class Default(NamedTuple):
 
 
 def user_file() -> Path:
-    """The user's own file, there or not."""
+    """Return the path of the user's own file, which may not exist."""
     import platformdirs
 
     return platformdirs.user_config_path("rocking-cli", appauthor=False, roaming=True) / FILE
 
 
 def files() -> list[Path]:
-    """The files that are there, that of this folder first."""
+    """Return the existing files, that of this folder first."""
     return [each for each in (Path(FILE), user_file()) if each.is_file()]
 
 
 def in_force(commands: tuple[str, ...]) -> list[Default]:
-    """Every default that is set, those that go before others first.
+    """Return all defaults that are set, in descending priority.
 
     Raises
     ------
     InputError
-        With every key of a file that is no option, and every value that can be none.
+        With every key of a file that is not an option, and every invalid value.
     """
     found = [
         Default(option, None, value, variable, variable)
@@ -92,13 +92,13 @@ def in_force(commands: tuple[str, ...]) -> list[Default]:
 
 
 def unknown_variables() -> list[str]:
-    """Variables of the environment that look like ours and mean nothing."""
+    """Return variables of the environment with our prefix that the program does not read."""
     known = {PREFIX + each.upper().replace("-", "_") for each in EVERYWHERE} | {PREFIX + each for each in OTHERS}
     return sorted(each for each in os.environ if each.startswith(PREFIX) and each not in known)
 
 
 def for_command(command: click.Command, name: str, commands: tuple[str, ...]) -> dict[str, Default]:
-    """The defaults that hold for the options of one command, by the name of its parameter. Raises as `in_force`."""
+    """Return the defaults for the options of one command, by name of parameter. Raises as `in_force`."""
     options = {max(each.opts, key=len)[2:]: each for each in command.params if isinstance(each, click.Option)}
     found: dict[str, Default] = {}
     for each in in_force(commands):
@@ -111,25 +111,25 @@ def for_command(command: click.Command, name: str, commands: tuple[str, ...]) ->
 
 
 def of_run(context: click.Context) -> dict[str, Default]:
-    """The defaults that a command runs with, by the name of its parameter: those that nothing typed replaces."""
+    """Return the defaults that the command line does not replace, by name of parameter."""
     defaults: Mapping[str, Default] = context.meta.get(__name__, {})
     return {name: each for name, each in defaults.items() if from_default(name, context)}
 
 
 def set_for(context: click.Context, defaults: dict[str, Default]) -> None:
-    """Have a command take these where its options are not typed."""
+    """Set the defaults of a command for the options that are not typed."""
     context.meta[__name__] = defaults
     context.default_map = {name: each.value for name, each in defaults.items()}
 
 
 def from_default(name: str, context: click.Context | None = None) -> bool:
-    """Whether the value of a parameter of the running command is such a default, and was not typed."""
+    """Return whether the value of a parameter of the running command is such a default, and was not typed."""
     context = context or click.get_current_context(silent=True)
     return context is not None and context.get_parameter_source(name) is ParameterSource.DEFAULT_MAP
 
 
 def say(context: click.Context) -> None:
-    """Say, once, which of them change what this run does."""
+    """Print a note on the defaults that change this run."""
     usual = {each.name: each.default for each in context.command.params}
     changed = [each for name, each in of_run(context).items() if each.value != str(usual[name])]
     if changed:
@@ -137,7 +137,7 @@ def say(context: click.Context) -> None:
 
 
 def blame(error: click.BadParameter) -> InputError | None:
-    """What to say of a default that its option refuses: which file or variable has it; None for what was typed."""
+    """Return the error of a default that its option refuses, naming its file or variable; None if it was typed."""
     if error.ctx is None or error.param is None:
         return None
     default = of_run(error.ctx).get(error.param.name or "")
@@ -145,20 +145,20 @@ def blame(error: click.BadParameter) -> InputError | None:
 
 
 def whose(error: click.UsageError) -> str:
-    """Which options that an error names nobody typed, to be said after it; empty if there are none."""
+    """Return sentences on the options named in an error that were not typed; empty if all were."""
     taken = of_run(error.ctx).values() if error.ctx is not None else ()
     named = [each for each in taken if re.search(rf"--{each.option}(?![\w-])", error.message)]
-    return "".join(f" Nobody typed --{each.option} {each.value}: it is a default, {each.key}." for each in named)
+    return "".join(f" --{each.option} {each.value} was not typed; it is a default from {each.key}." for each in named)
 
 
 def _of_file(file: Path, commands: tuple[str, ...], problems: list[Problem]) -> Iterator[Default]:
-    """What a file says, the tables of commands first; what is wrong with it is added to the problems."""
+    """Yield the defaults of a file, the tables of commands first; add what is wrong to the problems."""
     shown = one_line(str(file))
     data = _read(file)
     tables = {key: value for key, value in data.items() if isinstance(value, dict)}
     for table, pairs in tables.items():
         if table not in commands:
-            problems.append(Problem(f"no command is called {cut(table)}", shown, field=f"[{cut(table)}]",
+            problems.append(Problem(f"{cut(table)} is not a command", shown, field=f"[{cut(table)}]",
                                     hint=did_you_mean(table, list(commands))))  # fmt: skip
             continue
         for key, value in pairs.items():
@@ -174,13 +174,17 @@ def _one(
     place = f"[{command}] {key}" if command else key
     if option not in known:
         only = option in IN_TABLES
-        hint = "it differs between commands: put it below one of them, such as [respond]" if only else None
-        problems.append(Problem("this is no option that can have a default", file, field=cut(one_line(place)),
+        hint = (
+            "its meaning differs between commands: put it in the table of a command, such as [respond]"
+            if only
+            else None
+        )
+        problems.append(Problem("this option cannot have a default", file, field=cut(one_line(place)),
                                 hint=hint or did_you_mean(option, list(known))))  # fmt: skip
         return
     values = value if isinstance(value, list) else [value]
     if not values or any(isinstance(each, bool) or not isinstance(each, (str, int, float)) for each in values):
-        problems.append(Problem("this is neither a text nor a number, nor a list of them", file, field=place))
+        problems.append(Problem("the value is neither a text nor a number, nor a list of them", file, field=place))
         return
     yield Default(option, command, ",".join(map(str, values)), file, f"{file}: {place}")
 
@@ -195,5 +199,5 @@ def _read(file: Path) -> dict[str, Any]:
     except UnicodeDecodeError:
         raise InputError(Problem("not UTF-8 text", str(file), hint="save the file as UTF-8")) from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:
-        hint = "it is written as `option = value` lines, such as tail = 5, and tables of a command, such as [respond]"
-        raise InputError(Problem(f"not TOML: {error}", str(file), hint=hint)) from None
+        hint = "write `option = value` lines, such as tail = 5, and tables of commands, such as [respond]"
+        raise InputError(Problem(f"not valid TOML: {error}", str(file), hint=hint)) from None

@@ -1,4 +1,4 @@
-"""`rocking design`: for which values of one of its numbers a structure meets a requirement."""
+"""`rocking design`: find the values of one field for which a structure meets a requirement."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 
 from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Near, Output
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Parsed
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -30,28 +31,28 @@ def _aim() -> Callable[[str], Any]:
     return Aim.parse
 
 
-@click.command(short_help="The least thickness, the largest load: where a requirement holds.")
+@click.command(cls=Command, short_help="Find the values of a field that meet a requirement.")
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--vary", required=True, type=Parsed("field", _span), metavar="FIELD=LOW:HIGH",
-    help="A number of the structure, and its range: width=0.2m:0.8m, ties.bar.prestress=0:50kN, loads.0.mass=1t:9t.",
+    help="Field to vary and its range: width=0.2m:0.8m, ties.bar.prestress=0:50kN, loads.0.mass=1t:9t.",
 )  # fmt: skip
 @click.option(
     "--until", required=True, type=Parsed("requirement", _aim), metavar="'METRIC OP NUMBER'",
-    help="What is to hold: lambda, phi_cr, p, peak_ratio, overturned, alpha0, zeta_damage, zeta_linear or "
-    "zeta_nonlinear, <, <=, > or >=, and a number.",
+    help="Requirement: one of lambda, phi_cr, p, peak_ratio, overturned, alpha0, zeta_damage, zeta_linear or "
+    "zeta_nonlinear; one of <, <=, > or >=; and a number.",
 )  # fmt: skip
 @click.option(
     "--points", type=click.IntRange(2, 10_000), default=41, show_default=True, metavar="N",
-    help="Values tried first, at equal steps.",
+    help=options.HELP["points"],
 )  # fmt: skip
 @options.ground_motions
 @options.reading
-@options.scaling("1", "-1", "both", both="the worse of the two")
+@options.scaling("1", "-1", "both")
 @options.around
 @options.site
-@options.out(".csv", ".parquet", what="Write the values tried and the metric there (.csv or .parquet).")
-@options.plot("Draw the metric over the field")
+@options.out(".csv", ".parquet", what="Write the scanned values and the metric at each (.csv or .parquet).")
+@options.plot("Plot the metric against the field")
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, near=Near, output=Output)
@@ -68,15 +69,17 @@ def command(
 ) -> None:
     """Find the least thickness, width or tie force, or the largest load, for which a requirement holds.
 
-    The metrics are lambda, phi_cr and p of `rocking equiv`, the smaller phi_cr and lambda and the larger p of both
-    directions; and, with a ground motion, of the motions next to it the share that overturn (overturned) and the peak
-    over the critical rotation that half of them do not exceed (peak_ratio). Of several motions the worst counts.
-    alpha0 and, with --site, the zeta_E of a method are those of `rocking verify`, the smaller of both directions.
+    The metrics are lambda, phi_cr and p of `rocking equiv`: of the two directions, the smaller phi_cr and lambda and
+    the larger p. With a ground motion, the metric may also be the share of its neighbours that overturn (overturned),
+    or the median of their peak rotation over the critical rotation (peak_ratio). With several motions, or with
+    --polarity both, the worst case governs. alpha0 and, with --site, the zeta_E of a method are those of
+    `rocking verify`, the smaller of both directions.
 
-    The range is scanned first. Where the metric never turns over it, there is one answer, found closely; where it does,
-    every range in which the requirement holds is given. That it holds nowhere, or everywhere, is a result.
+    First, the range is scanned at --points values. If the metric is monotonic over it, the single threshold value is
+    computed accurately; otherwise every interval in which the requirement is met is listed. "Met nowhere" and "met
+    everywhere" are valid results.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
@@ -88,13 +91,19 @@ def command(
     if until.metric.shaken and not asked:
         raise click.UsageError(f"{until.metric.name} needs a ground motion: give --record PLACE or --pulse PULSE.")
     if not until.metric.shaken and asked:
-        raise click.UsageError(f"{until.metric.name} is of the structure alone: leave out --record and --pulse.")
+        raise click.UsageError(
+            f"{until.metric.name} does not depend on a ground motion: leave out --record and --pulse."
+        )
     if until.metric.shaken and not near.neighbours:
-        raise click.UsageError(f"{until.metric.name} is of neighbours: --neighbours must be at least 1 here.")
+        raise click.UsageError(
+            f"{until.metric.name} is computed from neighbouring motions: --neighbours must be at least 1."
+        )
     if until.metric.sited and site is None:
-        raise click.UsageError(f"{until.metric.name} is of a site: give --site FILE; `rocking new site` prints one.")
+        raise click.UsageError(
+            f"{until.metric.name} depends on the site: give --site FILE. `rocking new site` prints a template."
+        )
     if site is not None and not until.metric.sited:
-        raise click.UsageError(f"{until.metric.name} asks for no site: leave --site out.")
+        raise click.UsageError(f"{until.metric.name} does not depend on the site: leave out --site.")
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table

@@ -1,4 +1,4 @@
-"""`rocking draw`: a structure at rest and displaced."""
+"""`rocking draw`: draw a structure at rest and displaced."""
 
 from __future__ import annotations
 
@@ -19,26 +19,28 @@ if TYPE_CHECKING:
 
 def _ratio(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
     if value is not None and not value > 0:
-        raise click.BadParameter(f"{value:g} is not a multiple of phi_cr above 0.", ctx, param)
+        raise click.BadParameter(f"{value:g} is not a valid multiple of phi_cr: give a number above 0.", ctx, param)
     return value
 
 
-@click.command(short_help="The structure at rest and displaced, with hinges and dimensions.")
+@click.command(short_help="Draw a structure at rest and displaced, with dimensions.")
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--at", "ratio", type=Finite(), metavar="RATIO", callback=_ratio,
-    help="How far it is displaced, as a multiple of phi_cr, or of the limit where there is none.  [default: 1, 0.1]",
+    help="Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr.  "
+    "[default: 1, 0.1]",
 )  # fmt: skip
-@options.plot("Where to", "[default: FILE with .png, in this folder; none with --json]")
+@options.plot("Output file", "[default: FILE with .png, in this folder; none with --json]")
 @options.as_json
 def command(file: str | None, ratio: float | None, plot: Path | None, as_json: bool) -> None:
     """Draw a structure at rest with its dimensions, and displaced in both directions, to scale.
 
-    Look at it before you trust a number: is this the mechanism you mean, and were your dimensions read right? Bodies,
-    hinges with the paper's letters, centroids, R and alpha or the angles of the linkage, and for an arch its voussoirs
-    and the line of thrust at uplift; loads, ties (dashed where slack), and the walls of what rocks to one side only.
+    Check the drawing before you trust a number: is this the intended mechanism, and were the dimensions read correctly?
+    It shows the bodies, the hinges with the letters of the paper, the centroids, and R and alpha or the angles of the
+    linkage; for an arch, the voussoirs and the line of thrust at uplift; the loads, the ties (dashed if slack), and the
+    walls behind a structure that rocks in one direction only.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
@@ -59,7 +61,9 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
     if ratio is not None and ratio > shown.furthest:
         of = "the limit" if None in shown.phi_cr.values() else "phi_cr"
         hint = f"at most {shown.furthest:.4g} times {of}"
-        raise InputError(Problem(f"{ratio:g} times {of} is beyond the end of the mechanism", field="--at", hint=hint))
+        raise InputError(
+            Problem(f"{ratio:g} times {of} is beyond the kinematic limit of the mechanism", field="--at", hint=hint)
+        )
     if plot is not None:
         from rocking_cli.plotting.structure import draw_structure
 

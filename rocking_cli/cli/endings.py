@@ -1,4 +1,4 @@
-"""How a command ends when the system asks it to: in order, as after Ctrl-C, so that nothing half-made stays behind."""
+"""End a command in order on a signal of the system, as after Ctrl-C, so that no partial files remain."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ AGAIN = 0.05  # s after which a signal that was lost is given again
 
 
 class Stopped(KeyboardInterrupt):
-    """A signal that asks the program to end."""
+    """Signal that ends the program."""
 
     def __init__(self, number: int) -> None:
         super().__init__(signal.Signals(number).name)
@@ -23,7 +23,7 @@ class Stopped(KeyboardInterrupt):
 
 
 def exit_code(stopped: KeyboardInterrupt) -> int:
-    """The exit code that shells give a program that a signal ended: 130 for Ctrl-C."""
+    """Return the exit code that shells give a program ended by a signal: 130 for Ctrl-C."""
     return 128 + _number(stopped)
 
 
@@ -33,11 +33,11 @@ def _number(stopped: BaseException | None) -> int:
 
 @contextmanager
 def in_order() -> Iterator[None]:
-    """Make of the signals that ask for an end a `Stopped`; not of those that somebody ignores, as `nohup` does."""
+    """Raise `Stopped` on the signals that end a program, except those that are ignored, as `nohup` does."""
     kept, unraisable = {}, sys.unraisablehook
 
     def not_lost(what: sys.UnraisableHookArgs) -> None:
-        """Give a signal again that came where Python drops exceptions, such as while an object is deleted."""
+        """Send a signal again if it came where Python drops exceptions, such as while an object is deleted."""
         if isinstance(what.exc_value, KeyboardInterrupt):
             threading.Timer(AGAIN, _give, [_number(what.exc_value)]).start()
         else:
@@ -57,7 +57,7 @@ def in_order() -> Iterator[None]:
 
 
 def _give(number: int) -> None:
-    """Give the main thread a signal: one that is raised in another thread would not wake it."""
+    """Send a signal to the main thread; a signal raised in another thread would not wake it."""
     main = threading.main_thread().ident
     if hasattr(signal, "pthread_kill") and main is not None:
         signal.pthread_kill(main, number)

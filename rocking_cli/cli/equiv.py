@@ -1,4 +1,4 @@
-"""`rocking equiv`: the equivalent single rocking block."""
+"""`rocking equiv`: compute the equivalent rocking block."""
 
 from __future__ import annotations
 
@@ -9,17 +9,19 @@ import click
 from rocking_cli.cli import options, terminal
 
 
-@click.command(short_help="The equivalent single rocking block of structures.")
+@click.command(short_help="Compute the equivalent rocking block of each structure.")
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @options.as_json
-@click.option("--csv", "as_csv", is_flag=True, help="Print comma-separated values, a line for each direction.")
+@click.option("--csv", "as_csv", is_flag=True, help="Print comma-separated values, one line per direction.")
 @click.pass_context
 def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
-    """Parameters of the single rocking block that a structure is equivalent to.
+    """Compute the parameters of the equivalent single rocking block of each structure.
 
-    One column where the two directions agree, two where they differ; positive is clockwise. With --json, several
-    files give one object a line. A file that cannot be used is reported, the others are shown, and the exit code is 5.
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    The table has one column if both directions agree and two if they differ; positive is clockwise. With --json, each
+    file gives one object on a line of its own. A file that cannot be used is reported and skipped, and the exit code
+    is 5.
+
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
@@ -29,7 +31,7 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 9-20.
     """
     if as_json and as_csv:
-        raise click.UsageError("--json and --csv exclude each other: give the one or the other.")
+        raise click.UsageError("--json and --csv cannot be combined: choose one.")
     from rocking_cli.cli import structures
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.errors import INCOMPLETE, MechanismError

@@ -1,4 +1,4 @@
-"""`rocking equivalent`: the pulses to which different structures are equivalently vulnerable."""
+"""`rocking equivalent`: find the pulses to which several structures are equally vulnerable."""
 
 from __future__ import annotations
 
@@ -22,28 +22,34 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
     except ValueError:
         eta = 0.0
     if not 0 < eta <= 1:
-        raise click.BadParameter(f"{value!r} is neither a number above 0 and at most 1 nor 'first' or 'own'.")
+        raise click.BadParameter(f"{value!r} is not valid: give a number above 0 and at most 1, 'first' or 'own'.")
     return eta
 
 
 @click.command(
     cls=options.Renamed,
     renamed={"--pulse": "--shape"},
-    short_help="Pulses to which several structures are equally vulnerable.",
+    short_help="Find the equivalent pulses of several structures.",
 )
 @click.argument("files", metavar="FILE FILE...", nargs=-1, type=click.Path())
 @options.sized_pulse("1", "-1", required=True)
-@click.option("--kappa", type=click.Choice(["1", "2"]), default="2", show_default=True, help="Scaling of the pulses.")
+@click.option(
+    "--kappa",
+    type=click.Choice(["1", "2"]),
+    default="2",
+    show_default=True,
+    help="Equivalent block by which the pulses are scaled: 1 for kappa1, 2 for kappa2.",
+)
 @click.option(
     "--eta",
     default="first",
     show_default=True,
-    metavar="ETA",
+    metavar="ETA|first|own",
     callback=_eta,
-    help="Restitution of all: a number, that of the first FILE, or each its own.",
+    help=options.HELP["eta"],
 )
-@options.out(".csv", what="Write the responses over p t.")
-@options.plot("Draw them")
+@options.out(".csv", what="Write the responses against p t.")
+@options.plot("Plot the responses")
 @options.as_json
 @click.pass_context
 @options.grouped(pulse=SizedPulse, output=Output)
@@ -55,14 +61,16 @@ def command(
     eta: float | Literal["first", "own"],
     output: Output,
 ) -> None:
-    """Pulses to which different structures are equivalently vulnerable.
+    """Find the pulses to which several structures are equally vulnerable.
 
-    The pulse given is for the first FILE. Every other structure gets the pulse with the same a = a_g/(g lambda) and
-    omega = omega_g/p, and the nonlinear responses are compared in phi/phi_cr over p t: how equal are they?
+    The given pulse is for the first FILE. Every other structure gets the pulse with the same a = a_g/(g lambda) and
+    omega = omega_g/p, and the nonlinear responses are compared as phi/phi_cr against p t: the output shows how closely
+    they agree.
 
-    Restitution must be the same for that; unless --eta says otherwise all get that of the first FILE. Of a structure
-    with two different directions p and lambda are those of the direction that the pulse lifts first. A FILE that cannot
-    be used is reported, the others are compared, and the exit code is 5.
+    The comparison requires the same coefficient of restitution. --eta is a number for all structures, `first` for that
+    of the first FILE, or `own` for each structure's own. If the directions of a structure differ, p and lambda are
+    those of the direction that the pulse uplifts first. A FILE that cannot be used is reported and skipped, and the
+    exit code is 5.
 
     \b
     Example:
@@ -71,7 +79,10 @@ def command(
     Source: DeJong and Dimitrakopoulos (2014), Section 6.2 and Fig. 15.
     """
     if len(files) < 2:
-        raise click.UsageError("Equivalent to what? Give two FILEs or more; the pulse is for the first.")
+        raise click.UsageError(
+            "Give at least two FILEs: the pulse applies to the first, and equivalent pulses are computed for the "
+            "others."
+        )
     from rocking_cli.cli import structures, waiting
     from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.io.files import keep_apart

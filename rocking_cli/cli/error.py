@@ -1,4 +1,4 @@
-"""`rocking error`: how far to trust the equivalent block of a structure."""
+"""`rocking error`: compute the errors of the equivalent block of a structure."""
 
 from __future__ import annotations
 
@@ -27,29 +27,30 @@ def _checked(
 @click.command(
     cls=options.Renamed,
     renamed={"--accel": "--a"},
-    short_help="Error of the equivalent block: period, uplift, overturning.",
+    short_help="Compute the errors of the equivalent block.",
 )
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--at", "amplitudes", type=Finite(), multiple=True, default=(0.5,), show_default="0.5", metavar="RATIO",
-    callback=_checked, help="Amplitude phi/phi_cr of interest; may be repeated.",
+    callback=_checked, help="Amplitude phi/phi_cr at which to evaluate the error. Repeatable.",
 )  # fmt: skip
 @click.option(
     "--a", "accelerations", type=Finite(), multiple=True, default=(2.0,), show_default="2",
-    metavar="RATIO", callback=_checked, help="Constant acceleration over that at uplift; may be repeated.",
+    metavar="RATIO", callback=_checked,
+    help="Constant acceleration, as a multiple of the uplift acceleration. Repeatable.",
 )  # fmt: skip
-@options.plot("Draw the errors over their ranges")
+@options.plot("Plot the errors against amplitude and acceleration")
 @options.as_json
 def command(
     file: str | None, amplitudes: tuple[float, ...], accelerations: tuple[float, ...], plot: Path | None, as_json: bool
 ) -> None:
-    """How far to trust the equivalent block of a structure, in each direction.
+    """Compute the errors of the equivalent block of a structure, in each direction.
 
-    Errors of its free rocking period, of its uplift acceleration, and of its overturning time under a constant
-    acceleration, with kappa1 and kappa2, against the mechanism itself: exact integrals of its energy, no time steps.
-    Positive: the block's value is too large.
+    The errors are those of its free rocking period, of its uplift acceleration, and of its overturning time under a
+    constant acceleration, with kappa1 and kappa2. They are relative to the mechanism itself and come from exact energy
+    integrals, without time stepping. A positive error means that the block's value is too large.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
     \b
     Example:

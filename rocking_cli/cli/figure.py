@@ -1,4 +1,4 @@
-"""`rocking figure`: the figures of the paper, computed anew."""
+"""`rocking figure`: recompute the figures of the paper."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.studies.paper_figures import PaperFigure
 
-# The numbers stand here again so that `--help` needs no numpy; a test holds them together.
+# The numbers are repeated here so that `--help` needs no numpy; a test compares them.
 NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
 OF_HISTORIES = {14, 15}
 
@@ -22,7 +22,7 @@ OF_HISTORIES = {14, 15}
 @click.command(
     cls=options.Renamed,
     renamed={"--folder": "--out"},
-    short_help="The paper's figures, computed anew: picture and data.",
+    short_help="Recompute the figures of the paper: plots and data.",
 )
 @click.argument("number", type=click.Choice([*NUMBERS, "all"]))
 @click.option(
@@ -31,7 +31,7 @@ OF_HISTORIES = {14, 15}
     multiple=True,
     type=click.Path(),
     metavar="FILE",
-    help="For Figure 14; else the shipped example, a synthetic motion.",
+    help="Record for Figure 14.  [default: the shipped synthetic example]",
 )
 @options.reading
 @click.option(
@@ -41,7 +41,7 @@ OF_HISTORIES = {14, 15}
     default=".",
     show_default="this one",
     metavar="FOLDER",
-    help="Where to; made if absent.",
+    help="Folder for the figures, created if missing.",
 )
 @click.option(
     "--format",
@@ -49,7 +49,7 @@ OF_HISTORIES = {14, 15}
     type=click.Choice(["png", "svg", "pdf"]),
     default="png",
     show_default=True,
-    help="Of pictures.",
+    help="File format of the plots.",
 )
 @options.as_json
 @options.grouped(reading=Reading)
@@ -61,7 +61,7 @@ def command(
     suffix: str,
     as_json: bool,
 ) -> None:
-    """Compute a figure of the paper anew, or all of them: figureN.png and its data, figureN.csv.
+    """Recompute a figure of the paper, or all of them: figureN.png and its data, figureN.csv.
 
     \b
     Example:
@@ -69,12 +69,13 @@ def command(
       rocking figure 14 --record accel.csv
       rocking figure all --out figures --format svg
 
-    Source: DeJong and Dimitrakopoulos (2014). Geometries that the scan has lost are our choice; the captions say so.
+    Source: DeJong and Dimitrakopoulos (2014). Geometries that are illegible in the scan are our choice;
+    the captions say so.
     """
     if number not in ("14", "all") and records:
-        raise click.UsageError("--record is for Figure 14.")
+        raise click.UsageError("--record applies to Figure 14 only: leave it out.")
     if len(records) > 1:
-        raise click.UsageError(f"Figure 14 is of one record, and {len(records)} are given: {', '.join(records)}.")
+        raise click.UsageError(f"Figure 14 uses a single record, but {len(records)} are given: {', '.join(records)}.")
     record = records[0] if records else None
     motion = _motion(record, reading) if number in ("14", "all") else None
     from rocking_cli.io.files import folder as make_folder
@@ -99,7 +100,7 @@ def command(
 
 
 def _motion(record: str | None, reading: Reading) -> GroundMotion:
-    """The record of Figure 14: the user's, or the shipped example, which a wheel has and a checkout has elsewhere."""
+    """Return the record of Figure 14: the user's, or the shipped example, which is elsewhere in a checkout."""
     from rocking_cli.excitation.records import read_record
     from rocking_cli.processing.listed import Listed
 
@@ -121,7 +122,7 @@ def _compute(number: int, motion: GroundMotion | None) -> PaperFigure:
 
 
 def _write(paper: PaperFigure, folder: Path, suffix: str) -> list[Path]:
-    """Write the picture and the data; their paths."""
+    """Write the plot and the data, and return their paths."""
     import csv
     import io
 

@@ -25,7 +25,7 @@ NAMED = 10  # bad records or samples named one by one
 
 @dataclass(frozen=True)
 class Running:
-    """Where the runs are made and kept."""
+    """Computer and store of the runs."""
 
     jobs: int | None
     scheduler: str | None
@@ -34,10 +34,12 @@ class Running:
 
     def __post_init__(self) -> None:
         if self.scheduler is not None and self.jobs is not None and not from_default("jobs"):
-            raise click.UsageError("--jobs is for this machine: a cluster has as many workers as it has.")
+            raise click.UsageError(
+                "--jobs applies to this machine only: on a cluster, the number of workers is set there."
+            )
 
     def engine(self) -> AbstractContextManager[Engine]:
-        """What makes them."""
+        """Return the engine of the runs."""
         from rocking_cli.studies.fragility import engines
 
         return engines.cluster(self.scheduler) if self.scheduler is not None else engines.threads(self.jobs)
@@ -46,16 +48,18 @@ class Running:
 @click.command(
     cls=options.Renamed,
     renamed={"--pictures": "--plot"},
-    short_help="Run a study of many records and intensities, and fit fragility curves.",
+    short_help="Run a fragility study and fit its curves.",
 )
 @click.argument("file", metavar="STUDY.yaml", type=click.Path())
-@click.option("--check", is_flag=True, help="Say what would be run, and run nothing.")
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processors to use.  [default: all]")
-@click.option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the dask.distributed cluster of this scheduler.")
-@click.option("--store", metavar="FILE.db", help="Where the runs are kept.  [default: beside the study]")
-@click.option("--restart", is_flag=True, help="Begin anew; the present store is kept under another name.")
-@click.option("--rank-measures", is_flag=True, help="Also say which of all measures serves: `rocking measures`.")
-@click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
+@click.option("--check", is_flag=True, help="Show what would be run, without running it.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help=options.HELP["jobs"])
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="Address of a dask.distributed scheduler, to run there.")
+@click.option(
+    "--store", metavar="FILE.db", help="File in which the runs are stored.  [default: next to the study file]"
+)
+@click.option("--restart", is_flag=True, help="Start from scratch; the existing store is kept under another name.")
+@options.rank_measures
+@options.curve_plots
 @options.nrml
 @options.quantiles
 @options.as_json
@@ -69,13 +73,14 @@ def command(
     shown: Shown,
     as_json: bool,
 ) -> None:
-    """Run a fragility study, and fit its curves.
+    """Run a fragility study and fit its curves.
 
-    STUDY.yaml names structures, records, intensity levels and limit states; docs/fragility.md has the fields. Every
-    finished run is kept in a store, an SQLite file beside the study. Stop the work at any time, in any way: the same
-    command goes on with what is missing, and ends with the same store. `rocking results` shows and exports it.
+    STUDY.yaml names structures, records, intensity levels and limit states; docs/fragility.md lists its fields. Every
+    finished run is kept in a store, an SQLite file next to the study file. You may stop the command at any time: the
+    same command continues with the missing runs, and the final store is the same. `rocking results` shows and exports
+    it; `rocking measures` lists the intensity measures of --rank-measures.
 
-    A record that cannot be used is reported, the others are run, and the exit code is 5.
+    A record that cannot be used is reported and skipped, and the exit code is 5.
 
     \b
     Example:
@@ -113,14 +118,14 @@ def command(
             with Store.reading(place) as kept:
                 complete = show_study(kept, shown, as_json=as_json)
     except KeyboardInterrupt as stopped:
-        terminal.error("interrupted: what was finished is kept, and the same command goes on from there")
+        terminal.error("interrupted: finished runs are kept; run the same command again to continue")
         ctx.exit(endings.exit_code(stopped))
     if not complete:
         ctx.exit(INCOMPLETE)
 
 
 def _check(study: Study, *, as_json: bool) -> bool:
-    """Examine the records and structures of a study, and say what it would run; whether all of them can be used."""
+    """Show what a study would run, and return whether all of its records and structures can be used."""
     from rocking_cli.studies.fragility.campaign import survey
     from rocking_cli.views.fragility import left_out, planned
 
@@ -132,7 +137,7 @@ def _check(study: Study, *, as_json: bool) -> bool:
 
 
 def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measures: bool) -> None:
-    """Run what the store does not hold; to begin anew all, and the old store is kept under another name."""
+    """Run what the store does not hold; to restart, run all and keep the old store under another name."""
     from rocking_cli.cli import waiting
     from rocking_cli.studies.fragility.campaign import prepare, run, steps
     from rocking_cli.studies.fragility.store import Store
@@ -156,22 +161,22 @@ def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measu
 
 
 def _report(prepared: Prepared) -> None:
-    """Say what cannot be used, what is doubtful, and where the work goes on."""
+    """Report unusable and doubtful inputs, and how many runs are finished."""
     plan = prepared.plan
     _report_left_out(plan)
     doubtful = [each.name for each in plan.records if each.doubts]
     if doubtful:
         named = ", ".join(doubtful[:3]) + (" ..." if len(doubtful) > 3 else "")
         count = "1 record is" if len(doubtful) == 1 else f"{len(doubtful)} records are"
-        terminal.warning(f"{count} doubtful: `rocking record FILE` says why: {named}")
+        terminal.warning(f"{count} doubtful; run `rocking record FILE` to see why: {named}")
     for name in prepared.mended:
-        terminal.note(f"{name}: could not be used when the study was begun, and is run now")
+        terminal.note(f"{name}: could not be used when the study was started; it is run now")
     if prepared.finished:
         terminal.note(f"{prepared.finished} of {plan.total} runs are in the store already")
 
 
 def _report_left_out(plan: Plan) -> None:
-    """Name the records and the samples that cannot be run."""
+    """Report the records and the samples that cannot be run."""
     from rocking_cli.views.fragility import left_out
 
     bad = left_out(plan)

@@ -1,4 +1,4 @@
-"""Options that belong together, as objects that check themselves; `options.grouped` hands them to a command."""
+"""Groups of options as objects that check themselves; `options.grouped` hands them to a command."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SPELLED = {"quantity": "from", "other": "with"}  # options by the names of their
 
 @dataclass(frozen=True)
 class Reading:
-    """How records are read, and what is made of them."""
+    """Options for reading and processing records."""
 
     units: str | None
     dt: float | None
@@ -53,30 +53,30 @@ class Reading:
 
     def __post_init__(self) -> None:
         if self.other is None and (self.azimuth is not None or self.other_channel is not None):
-            raise click.UsageError("--azimuth and --with-channel are of a pair of components: give --with FILE.")
+            raise click.UsageError("--azimuth and --with-channel require a second component: give --with FILE.")
         if self.other is not None and self.azimuth is None:
-            raise click.UsageError("--with FILE is one of a pair: give --azimuth, 0 for the record and 90 for FILE.")
+            raise click.UsageError("--with FILE requires --azimuth: 0 is the direction of the record, 90 that of FILE.")
 
     @property
     def placed(self) -> list[Placed]:
-        """The corrections, in their order."""
+        """Corrections, in the order of the command line."""
         given = (getattr(self, name) for name in options.CORRECTIONS)
         return sorted((each for each in given if each is not None), key=lambda each: each.place)
 
     @property
     def all_azimuths(self) -> bool:
-        """Whether a pair is turned into all directions."""
+        """Whether a pair of components is rotated into all directions."""
         return self.azimuth == Azimuth.ALL
 
     @property
     def reading(self) -> processing.Reading:
-        """How to read a record, in one direction."""
+        """Options for reading a record, in one direction."""
         if self.all_azimuths:
-            raise click.UsageError("--azimuth all is for `rocking respond`: give one angle here.")
+            raise click.UsageError("--azimuth all works with `rocking respond` only: give one angle here.")
         return self.towards(self.azimuth or 0.0)
 
     def towards(self, azimuth: float | str) -> processing.Reading:
-        """How to read a record, in the direction of an azimuth [deg]."""
+        """Return the options for reading a record, in the direction of an azimuth [deg]."""
         from rocking_cli.processing.reading import Reading as Made
 
         return Made(
@@ -87,7 +87,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Scaling:
-    """How ground motions are scaled, and which way round they are."""
+    """Scale factor and polarity of ground motions."""
 
     scale: float | None
     target_pga: float | None
@@ -96,7 +96,7 @@ class Scaling:
 
     def __post_init__(self) -> None:
         if sum(value is not None for value in self.scaling) > 1:
-            raise click.UsageError("--scale, --target-pga and --target-pgv exclude each other: give one of them.")
+            raise click.UsageError("--scale, --target-pga and --target-pgv cannot be combined: give one of them.")
         if self.scale is not None and self.scale < 0:
             terminal.note(f"--scale {self.scale:g} is negative: it reverses the motion, as --polarity -1 does")
 
@@ -107,7 +107,7 @@ class Scaling:
 
     @property
     def is_scaled(self) -> bool:
-        """Whether a factor is asked for."""
+        """Whether a scale factor or a target is given."""
         return any(value is not None for value in self.scaling)
 
     @property
@@ -118,7 +118,7 @@ class Scaling:
 
 @dataclass(frozen=True)
 class GroundMotions(Scaling, Reading):
-    """Which ground motions, how records are read, and how both are scaled."""
+    """Ground motions, with the options for reading and scaling them."""
 
     records: tuple[str, ...]
     pulses: tuple[str, ...]
@@ -128,11 +128,11 @@ class GroundMotions(Scaling, Reading):
         Scaling.__post_init__(self)
 
     def __bool__(self) -> bool:
-        """Whether there is any."""
+        """Return whether any ground motion is given."""
         return bool(self.records or self.pulses)
 
     def check(self, vertical: str | None = None) -> None:
-        """Refuse what says nothing; `units` and `dt` also read the vertical component, if there is one, of a pulse."""
+        """Raise if an option has no effect; `units` and `dt` also apply to the vertical component beside a pulse."""
         reading = ("units", "dt", "channel") if vertical is None else ("channel",)
         if not self.records and any(getattr(self, name) is not None and not from_default(name) for name in reading):
             raise click.UsageError("--units, --dt and --channel describe a record: give --record FILE.")
@@ -141,7 +141,7 @@ class GroundMotions(Scaling, Reading):
             named = " and ".join(f"--{SPELLED.get(name, name)}" for name in of_records)
             raise click.UsageError(f"{named} change{'s' * (len(of_records) == 1)} a record: give --record FILE.")
         if not self and self.floor is not None:
-            raise click.UsageError("--floor is shaken by a ground motion: give --record FILE or --pulse PULSE.")
+            raise click.UsageError("--floor requires a ground motion: give --record FILE or --pulse PULSE.")
         if not self and self.is_scaled:
             raise click.UsageError(
                 "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
@@ -149,13 +149,13 @@ class GroundMotions(Scaling, Reading):
 
 
 def polarities(polarity: str) -> tuple[int, ...]:
-    """Of 1 and -1, those that an option asks for."""
+    """Return the polarities of an option, of 1 and -1."""
     return (1, -1) if polarity == "both" else (int(polarity),)
 
 
 @dataclass(frozen=True)
 class SizedPulse:
-    """One pulse by its shape, amplitude [g] and period [s], and which way round it is."""
+    """One pulse by its shape, amplitude [g], period [s] and polarity."""
 
     shape: str
     ag: float | None
@@ -164,7 +164,7 @@ class SizedPulse:
 
     @property
     def pulse(self) -> Pulse:
-        """The pulse itself, of which both sizes are given."""
+        """Pulse of this amplitude and period; both must be given."""
         from rocking_cli.excitation.base import STANDARD_GRAVITY
         from rocking_cli.studies.under_pulses import parse_shape
 
@@ -187,12 +187,14 @@ class Vertical:
 
     def __post_init__(self) -> None:
         if self.vertical is None and (self.vertical_dt is not None or self.vertical_channel is not None):
-            raise click.UsageError("--vertical-dt and --vertical-channel describe one: give --vertical FILE.")
+            raise click.UsageError(
+                "--vertical-dt and --vertical-channel require a vertical component: give --vertical FILE."
+            )
 
 
 @dataclass(frozen=True)
 class Near:
-    """The motions next to the one asked for."""
+    """Options of the neighbouring motions."""
 
     neighbours: int
     within_amplitude: float
@@ -200,7 +202,7 @@ class Near:
 
     @property
     def around(self) -> Around:
-        """How to draw them."""
+        """Ranges from which the neighbours are drawn."""
         from rocking_cli.studies.neighbours import Around
 
         return Around(self.neighbours, self.within_amplitude, self.within_restitution)
@@ -208,7 +210,7 @@ class Near:
 
 @dataclass(frozen=True)
 class History:
-    """Which equations of motion, from where, how long and how exactly."""
+    """Models, initial state, length and accuracy of time histories."""
 
     models: tuple[str, ...]
     release: Release | None
@@ -218,13 +220,13 @@ class History:
 
     @property
     def by_default(self) -> bool:
-        """Whether nobody asked for these models: the option was left out."""
+        """Whether the models are the default: the option was left out."""
         context = click.get_current_context()
         return context.get_parameter_source("models") is ParameterSource.DEFAULT
 
     @property
     def names(self) -> tuple[ModelName, ...]:
-        """Of the models."""
+        """Names of the models."""
         return cast("tuple[ModelName, ...]", self.models)
 
 
@@ -237,7 +239,7 @@ class Output:
     as_json: bool
 
     def write(self, table: Callable[[], Iterable[Columns]], draw: Callable[[], Figure]) -> None:
-        """Write the table and the picture that are asked for, each made only then, and say so."""
+        """Write the requested table and plot, make each only if needed, and report them."""
         if self.out is not None:
             from rocking_cli.cli import table_files
 

@@ -1,4 +1,4 @@
-"""What stands at the head of a document that is handed over, and the command that wrote it."""
+"""Heading of a document, and the command that wrote it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _today() -> date:
 
 @dataclass(frozen=True)
 class Head:
-    """What stands at the head of a document."""
+    """Heading of a document."""
 
     project: str | None
     place: str | None
@@ -36,11 +36,11 @@ class Head:
 
     @property
     def inputs(self) -> list[str]:
-        """The files that it reads."""
+        """Files that the heading reads."""
         return [str(self.logo)] if self.logo is not None else []
 
     def block(self, command: str) -> TitleBlock:
-        """With the command and the day."""
+        """Return the title block, with the command and the date."""
         from rocking_cli.studies.assessment import TitleBlock
 
         today = _today().strftime("%d %B %Y").lstrip("0")
@@ -54,7 +54,7 @@ class Head:
 
 @dataclass(frozen=True)
 class SheetAsked(Head):
-    """Whether a calculation sheet is asked for, where it goes, in which language, and its head."""
+    """Options of a calculation sheet: its file, if one is requested, its language and its heading."""
 
     sheet: Path | None
     language: str
@@ -65,26 +65,31 @@ class SheetAsked(Head):
         given = [name for name in ("project", "place", "author", "logo") if getattr(self, name) is not None]
         typed = [f"--{name}" for name in given if not from_default(name)]
         if typed:
-            word = "stands" if len(typed) == 1 else "stand"
-            raise click.UsageError(f"{' and '.join(typed)} {word} at the head of a sheet: give --sheet FILE.html.")
+            word = "belongs" if len(typed) == 1 else "belong"
+            raise click.UsageError(f"{' and '.join(typed)} {word} to the heading of a sheet: give --sheet FILE.html.")
 
     @property
     def spoken(self) -> Language:
-        """The language."""
+        """Language of the sheet."""
         from rocking_cli.views.sheet.language import Language
 
         return Language(self.language)
 
     def title(self, command: str) -> TitleBlock:
-        """The head, with the day in the language of the sheet."""
+        """Return the title block, with the date in the language of the sheet."""
         return replace(self.block(command), date=self.spoken.day(_today()))
 
 
 head: options.Decorator = options.in_order(
-    click.option("--project", metavar="TEXT", help="Of the document: its head names it."),
-    click.option("--place", metavar="TEXT", help="Where the structure stands."),
-    click.option("--author", metavar="TEXT", help="Who hands it over."),
-    click.option("--logo", type=click.Path(path_type=Path), metavar="FILE", help="Their logo (.png, .jpg or .svg)."),
+    click.option("--project", metavar="TEXT", help="Project name, for the heading of the document."),
+    click.option("--place", metavar="TEXT", help="Location of the structure, for the heading."),
+    click.option("--author", metavar="TEXT", help="Author of the document, for the heading."),
+    click.option(
+        "--logo",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="Author's logo (.png, .jpg or .svg), for the heading.",
+    ),
 )
 """The options of a head: `project`, `place`, `author` and `logo`."""
 
@@ -93,16 +98,18 @@ sheet: options.Decorator = options.in_order(
     click.option(
         "--sheet", callback=options.output_path(".html", ".docx", ".pdf"), metavar="FILE.html",
         shell_complete=complete.files,
-        help="Write the calculation sheet (.html, .pdf by a browser, .docx by an extra package).",
+        help="Write the calculation sheet (.html; .pdf needs a browser, .docx an extra package).",
     ),
-    click.option("--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Of the sheet."),
+    click.option(
+        "--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Language of the sheet."
+    ),
     head,
 )  # fmt: skip
 """The options of a calculation sheet: `sheet`, `language` and those of its head."""
 
 
 def file_of(structure: Prepared, given: str | None) -> File:
-    """The content of the file that a structure stands in."""
+    """Return the file of a structure, with its content."""
     from rocking_cli.cli import structures
     from rocking_cli.excitation.records.opening import original
     from rocking_cli.studies.assessment import File
@@ -113,7 +120,7 @@ def file_of(structure: Prepared, given: str | None) -> File:
 
 
 def command_line(ctx: click.Context) -> str:
-    """The command as it was given, for a POSIX shell, with the user's defaults, which hold nowhere else."""
+    """Return the command as it was given, for a POSIX shell, with the user's defaults written out."""
     from click.core import ParameterSource
 
     said = ["rocking", ctx.info_name or ""]
@@ -132,12 +139,12 @@ def command_line(ctx: click.Context) -> str:
 
 
 def _typed(value: object) -> tuple[object, ...]:
-    """What was typed for a parameter, one for each time: of a point, its parts joined."""
+    """Return the values typed for a parameter, the parts of a point joined."""
     if isinstance(value, tuple) and value and isinstance(value[0], float):
         return (",".join(str(each) for each in value if each is not None),)
     return value if isinstance(value, tuple) else (value,)
 
 
 def _place(value: object) -> int:
-    """Where an option stands among the others: corrections in their order, all else before them."""
+    """Return the place of an option: corrections in their order, all others before them."""
     return value.place if isinstance(value, options.Placed) else 0

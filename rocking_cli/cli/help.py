@@ -1,4 +1,4 @@
-"""The texts of --help in the width of the terminal, up to one that is easy to read."""
+"""Lay out the texts of --help in the width of the terminal, up to a width that is easy to read."""
 
 from __future__ import annotations
 
@@ -11,26 +11,27 @@ import click
 from rocking_cli.cli.prose import HANG, wrapped
 
 WIDEST = 100  # columns
-READABLE = 24  # columns that what an option means needs beside it, and its longest word; else it stands below
+READABLE = 24  # columns, at least, of a meaning beside its option; if fewer are free, it stands below the option
 MARGIN = 2  # columns that stay free, as in click
-LEAST = 18  # columns: even less is asked of nobody
+LEAST = 18  # columns of the narrowest text
+OPTIONS, OF_RECORDS = "Options", "Reading and processing of records"  # headings
 
 
 class HelpFormatter(click.HelpFormatter):
-    """As click's, but in a narrow terminal too: click takes 50 columns at least, and breaks words."""
+    """Formatter for narrow terminals too: that of click takes at least 50 columns, and breaks words."""
 
     def __init__(self, indent_increment: int = 2, width: int | None = None, max_width: int | None = None) -> None:
         room = min(get_terminal_size().columns, max_width or WIDEST) - MARGIN
         super().__init__(indent_increment, width or max(room, LEAST), max_width)
 
     def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
-        """How the command is called."""
+        """Write how the command is called."""
         before = "Usage: " if prefix is None else prefix
         called = f"{' ' * self.current_indent}{before}{prog} {args}".rstrip()
         self.write(f"{wrapped(called, self.width, hang=len(before))}\n")
 
     def write_text(self, text: str) -> None:
-        r"""Paragraphs, of which those after a `\b` keep their lines."""
+        r"""Write paragraphs; those after a `\b` keep their lines."""
         indent = " " * self.current_indent
         for k, paragraph in enumerate(re.split(r"\n\s*\n", text)):
             kept = paragraph.startswith("\b")
@@ -41,7 +42,7 @@ class HelpFormatter(click.HelpFormatter):
                 self.write(f"{wrapped(indent + line, room, hang=HANG if kept else 0)}\n")
 
     def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
-        """Options, or commands, and what they mean."""
+        """Write options, or commands, and what they mean."""
         rows = list(rows)
         longest = max((len(word) for _, meaning in rows for word in meaning.split()), default=0)
         if self.width - col_max - 2 * col_spacing >= max(READABLE, longest):
@@ -51,6 +52,27 @@ class HelpFormatter(click.HelpFormatter):
             below = " " * (self.current_indent + 2 * self.indent_increment)
             self.write(f"{wrapped(' ' * self.current_indent + term, self.width + MARGIN)}\n")
             self.write(f"{wrapped(below + meaning, self.width, hang=0)}\n" if meaning else "")
+
+
+class RecordOption(click.Option):
+    """Option that reads or processes records; the help lists it under a heading of its own."""
+
+    heading = OF_RECORDS
+
+
+class Command(click.Command):
+    """Command whose help lists the options of records under a heading of their own."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options, heading by heading."""
+        listed: dict[str, list[tuple[str, str]]] = {OPTIONS: [], OF_RECORDS: []}
+        for param in self.get_params(ctx):
+            if isinstance(param, click.Option) and (record := param.get_help_record(ctx)) is not None:
+                listed[getattr(param, "heading", OPTIONS)].append(record)
+        for heading, records in listed.items():
+            if records:
+                with formatter.section(heading):
+                    formatter.write_dl(records)
 
 
 class Context(click.Context):

@@ -1,4 +1,4 @@
-"""`rocking info`: what is installed here, and what is taken for granted."""
+"""`rocking info`: show the installation and the defaults in force."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import click
 from rocking_cli.cli import defaults, options, terminal
 
 OURS = ("ROCKING_", "NUMBA_")
-"""How variables of the environment begin that change what a command does."""
+"""Prefixes of variables of the environment that change what a command does."""
 
 
-@click.command(short_help="What is installed here: versions, plugins, cache, defaults.")
+@click.command(short_help="Show the installation: versions, plugins, cache, defaults.")
 @options.as_json
 def command(as_json: bool) -> None:
-    """What is installed here: versions, extras, plugins and what is wrong with them, compiled code, own defaults.
+    """Show the installation: versions, extras, plugins and their faults, compiled code, and your defaults.
 
-    It works whatever is broken, and is what a report of a fault should begin with.
+    The command works even if parts of the installation are broken. Put its output at the head of a bug report.
 
     \b
     Example:
@@ -32,7 +32,7 @@ def command(as_json: bool) -> None:
 
 
 def _defaults() -> dict[str, Any]:
-    """The user's defaults, and what is wrong with them."""
+    """Return the user's defaults, and what is wrong with them."""
     from rocking_cli.cli.main import COMMANDS
     from rocking_cli.errors import InputError
 

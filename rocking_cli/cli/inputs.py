@@ -1,4 +1,4 @@
-"""A structure and the ground motions that shake it: read or made, judged, scaled, and responded to."""
+"""Structure and ground motions of a command: read or made, checked and scaled."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
-    """The one structure that a command is of, made ready."""
+    """Return the single structure of a command, prepared."""
     import click
 
     from rocking_cli.cli import structures
@@ -27,7 +27,7 @@ def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
 
     if len(files) > 1:
         motion_files.check_strays(files, records)
-        raise click.UsageError(f"This is of one structure, and {len(files)} are given: {', '.join(files)}.")
+        raise click.UsageError(f"This command takes one structure, but {len(files)} are given: {', '.join(files)}.")
     try:
         return structures.prepared(files)
     except InputError:
@@ -36,14 +36,14 @@ def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
 
 
 def read(what: str, record: Listed, reading: Reading) -> GroundMotion:
-    """Read a motion and say what was read; `what` it is to be called."""
+    """Read a motion and report it under the name `what`."""
     motion = motion_files.read(record, reading)
     introduce(what, motion)
     return motion
 
 
 def introduce(what: str, motion: GroundMotion) -> None:
-    """Say what was read; `what` it is to be called."""
+    """Report a motion under the name `what`."""
     ground = motion.of_ground
     terminal.note(
         f"{what}: {motion.name} ({motion.format}), {ground.npts} points, dt = {ground.dt:g} s, "
@@ -52,7 +52,7 @@ def introduce(what: str, motion: GroundMotion) -> None:
 
 
 def read_vertical(vertical: Vertical, reading: Reading) -> GroundMotion:
-    """Read a vertical component; its interval and channel are its own, the rest as that of the horizontal one."""
+    """Read a vertical component: interval and channel of its own, all else as for the horizontal one."""
     from rocking_cli.errors import InputError, Problem, renamed
 
     arguments = {"channel": "vertical_channel"}
@@ -73,7 +73,7 @@ def read_vertical(vertical: Vertical, reading: Reading) -> GroundMotion:
 
 
 def make(specification: str) -> tuple[Pulse, GroundMotion]:
-    """Make a pulse from its specification, and say what it is."""
+    """Make a pulse from its specification, and report it."""
     from rocking_cli.excitation.base import STANDARD_GRAVITY
     from rocking_cli.excitation.pulses import parse_pulse
 
@@ -90,7 +90,7 @@ def judge(
     target_pga: float | None,
     target_pgv: float | None,
 ) -> float:
-    """The factor on the motion, after saying what is doubtful about a record, for this structure too."""
+    """Return the factor on the motion, after warnings about the record, also for this structure."""
     from rocking_cli.excitation.doubts import doubts
     from rocking_cli.excitation.measures import measure
 
@@ -107,7 +107,7 @@ def judge(
 
 
 def warn(motion: GroundMotion, p: float) -> None:
-    """Say what is doubtful about a record, also for a structure of a frequency parameter `p`."""
+    """Warn of doubts about a record, also for a structure of a frequency parameter `p`."""
     from rocking_cli.excitation.doubts import coarse_for, doubts
     from rocking_cli.excitation.measures import measure
 
@@ -118,10 +118,10 @@ def warn(motion: GroundMotion, p: float) -> None:
 def gather(
     records: Sequence[Listed], asked: GroundMotions, p: float, vertical: Vertical | None = None, *, several: bool
 ) -> tuple[list[Scaled], int]:
-    """The motions that shake a structure of a frequency parameter `p`, and how many of those asked for cannot be used.
+    """Return the motions for a structure of a frequency parameter `p`, and the number of unusable ones.
 
-    A single one is introduced in full, and an error in it ends the command. Of `several` each is reported by itself.
-    `vertical` may be the vertical component of a single one.
+    A single motion is reported in full, and an error in it ends the command. Of `several`, each is reported by itself.
+    `vertical` may be the vertical component of a single motion.
     """
     if several:
         return motion_files.gather(records, asked.pulses, asked.reading, asked.scaling, p, "this structure")

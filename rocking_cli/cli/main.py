@@ -27,11 +27,11 @@ COMMANDS = (
     "completion",
 )  # fmt: skip
 DO_WITHOUT = ("info",)
-"""Commands that run whatever is wrong with the user's defaults."""
+"""Commands that run even if the user's defaults are invalid."""
 
 
 class _Context(Context):
-    """The context of a command: its options have the user's defaults, and only results go to standard output."""
+    """Context of a command: its options have the user's defaults, and only results go to standard output."""
 
     def __init__(self, *args: Any, **more: Any) -> None:
         super().__init__(*args, **more)
@@ -54,7 +54,7 @@ class _Context(Context):
 
 
 def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """Show warnings about plugins, and about what is compiled, as all others of this program."""
+    """Show warnings about plugins and the cache of compiled code as the other warnings of this program."""
 
     def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
         if not issubclass(category, (PluginWarning, CacheWarning)):
@@ -67,12 +67,12 @@ def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
 
 
 class LazyGroup(click.Group):
-    """Commands live in a module of their name; errors of the package become a message and an exit code."""
+    """Group of commands, each in a module of its name; errors of the package become a message and an exit code."""
 
     context_class = Context
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names in the order in which a newcomer needs them."""
+        """Return the names in the order in which a newcomer needs them."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -86,7 +86,7 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Say what a mistyped command may have meant."""
+        """Resolve a command; if it does not exist, suggest a similar name."""
         from difflib import get_close_matches
 
         close = get_close_matches(args[0], COMMANDS, n=1)
@@ -95,19 +95,19 @@ class LazyGroup(click.Group):
         return super().resolve_command(ctx, args)
 
     def main(self, *args: Any, **extra: Any) -> Any:
-        """Run the program; what the system refuses ends it with a message, in help too."""
+        """Run the program; a system error ends it with a message, in help too."""
         try:
             return super().main(*args, **extra)  # a reader that has seen enough ends it quietly there
         except OSError as error:
             if error.errno == errno.ENAMETOOLONG:  # of a file that was named: wrong input
-                terminal.error(f"{one_line(cut(str(error.filename)))}: no file can have a name as long as this")
+                terminal.error(f"{one_line(cut(str(error.filename)))}: the file name is too long: shorten it")
                 sys.exit(InputError.exit_code)
-            terminal.error(f"the system refused: {error.strerror or error}")
+            terminal.error(f"the operating system reported an error: {error.strerror or error}")
             sys.exit(1)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; a known error ends it with a message on standard error."""
-        os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is asked for
+        os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is needed
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="replace")  # a name that an old code page cannot spell ends nothing
@@ -135,10 +135,10 @@ class LazyGroup(click.Group):
             terminal.debug_traceback(error)
             ctx.exit(error.exit_code)
         except MemoryError as error:
-            terminal.error("there is not enough memory for this on this machine")
+            terminal.error("not enough memory on this machine")
             terminal.debug_traceback(error)
             ctx.exit(1)
-        except OSError as error:  # what became of it is said further out
+        except OSError as error:  # `main` reports it
             terminal.debug_traceback(error)
             raise
         finally:
@@ -147,18 +147,20 @@ class LazyGroup(click.Group):
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="rocking")
-@click.option("-v", "--verbose", is_flag=True, help="Say more: where things come from, and how long they take.")
+@click.option(
+    "-v", "--verbose", is_flag=True, help="Show more detail: where inputs come from and how long each step takes."
+)
 @click.option(
     "--debug",
     is_flag=True,
     default=lambda: os.environ.get("ROCKING_DEBUG") == "1",
-    help="Show the traceback of any error.",
+    help="Show the Python traceback of any error.",
 )
 def main(verbose: bool, debug: bool) -> None:
-    """Rocking structures under earthquakes.
+    """Rocking response of structures in earthquakes.
 
-    A structure is a YAML file. From it come the equivalent single rocking block, the response to a ground motion,
-    and the response to a pulse.
+    Describe a structure in a YAML file and compute its equivalent rocking block, its response to ground motions and
+    pulses, its margin to overturning, and its verification by code.
 
     \b
     Start with:
@@ -176,9 +178,10 @@ def main(verbose: bool, debug: bool) -> None:
       rocking verify block.yaml --site site.yaml
       rocking report block.yaml --record accel.csv -o report.html
 
-    Exit codes: 0 done (an overturned structure is a result), 1 refused by the system (a full disk), 2 wrong input,
-    3 mechanism or plugin, 4 solver, 5 done except for records or runs that are reported; 128 + n ended by signal n.
+    Exit codes: 0 success (also if the structure overturns or fails a verification), 1 system error (such as a full
+    disk), 2 invalid input, 3 mechanism or plugin error, 4 solver error, 5 completed, but the records or runs named in
+    the output were skipped; 128 + n terminated by signal n.
 
-    -v and --debug stand before the command: rocking --debug equiv block.yaml. ROCKING_DEBUG=1 in the environment is
-    --debug for every command.
+    Put -v and --debug before the command: rocking --debug equiv block.yaml. ROCKING_DEBUG=1 in the environment has the
+    same effect as --debug.
     """

@@ -1,4 +1,4 @@
-"""`rocking margin`: how close ground motions are to overturning a structure."""
+"""`rocking margin`: compute how close ground motions are to overturning a structure."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import click
 
 from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Near
+from rocking_cli.cli.help import Command
 from rocking_cli.errors import INCOMPLETE, InputError
 from rocking_cli.views.view import heading
 
@@ -18,27 +19,29 @@ if TYPE_CHECKING:
     from rocking_cli.studies.neighbours import Around
 
 
-@click.command(short_help="How close motions are to overturning, as shares over the factor.")
+@click.command(cls=Command, short_help="Compute how close ground motions are to overturning.")
 @click.argument("file", required=False, type=click.Path())
 @options.ground_motions
 @options.reading
-@options.scaling("1", "-1", "both", both="the worse of the two", default="both")
+@options.scaling("1", "-1", "both", default="both")
 @options.around
-@options.plot("Draw the shares")
+@options.plot("Plot the shares against the scale factor")
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, near=Near)
 def command(
     ctx: click.Context, file: str | None, asked: GroundMotions, near: Near, plot: Path | None, as_json: bool
 ) -> None:  # fmt: skip
-    """How close ground motions are to overturning a structure: the share of overturning over the factor on each.
+    """Compute how close ground motions are to overturning a structure.
 
-    Overturning comes and goes with the factor, so there is no least one. At each of 60 factors from 0.2 to 5 the
-    motions next to it are followed, a little stronger or weaker and with a little more or less restitution, and the
-    share of them that overturn is given: where it first reaches 10, 50 and 90 %, and where it is last below them.
+    A structure may overturn at one scale factor and survive a larger one, so there is no single critical factor. At
+    each of 60 factors from 0.2 to 5, neighbouring motions with slightly different amplitude and restitution are
+    simulated, and the share of them that overturn is computed. The output gives the factors at which this share first
+    reaches 10, 50 and 90 %, and the last factors at which it is below them. With --polarity both, the worse of the two
+    polarities governs.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m. A motion that cannot be used is
-    reported, the others are run, and the exit code is 5.
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m. A motion that
+    cannot be used is reported and skipped, and the exit code is 5.
 
     \b
     Example:
@@ -47,10 +50,10 @@ def command(
       rocking margin --pulse sine:0.5g:0.8s --neighbours 1000
     """
     if not asked:
-        raise click.UsageError("Nothing to vary: give --record PLACE or --pulse PULSE, each as often as you like.")
+        raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
     if not near.neighbours:
-        raise click.UsageError("A share needs neighbours: --neighbours must be at least 1 here.")
+        raise click.UsageError("rocking margin needs neighbouring motions: --neighbours must be at least 1.")
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
     from rocking_cli.views.margin import view
@@ -74,7 +77,7 @@ def command(
 
 
 def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], around: Around) -> list[Any]:
-    """The margin of each motion, and the share next to the motion itself."""
+    """Return the margin of each motion, with the share of its own neighbours that overturn."""
     from rocking_cli.cli import waiting
     from rocking_cli.studies.margin import FACTORS, margin
     from rocking_cli.views.margin import Row

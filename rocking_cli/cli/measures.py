@@ -1,4 +1,4 @@
-"""`rocking measures`: the measures of intensity that are installed."""
+"""`rocking measures`: list the installed intensity measures."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import click
 from rocking_cli.cli import options, terminal
 
 
-@click.command(short_help="List the installed measures of intensity.")
+@click.command(short_help="List the installed intensity measures.")
 @options.as_json
 def command(as_json: bool) -> None:
-    """List the measures of intensity that are installed: form, unit, and how each goes with the factor on a record.
+    """List the installed intensity measures: their form, unit and dependence on the scale factor of a record.
 
-    `rocking record --measures` prints them of records; `measures`, `levels`, `bivariate` and `hazard` of fragility
-    studies take them, in any case and spacing.
+    `rocking record --measures` computes them for records. In fragility studies, `measures`, `levels`, `bivariate` and
+    `hazard` accept their names, in any case and spacing.
 
     \b
     Example:

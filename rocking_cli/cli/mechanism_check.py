@@ -1,4 +1,4 @@
-"""`rocking mechanisms --check`: what the contract says of an installed mechanism."""
+"""`rocking mechanisms --check`: check an installed mechanism against the contract."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ MADE = "The file that `rocking new` prints is a structure."
 
 
 def check(name: str, file: str | None, registry: Registry, as_json: bool) -> None:
-    """Print which checks of the contract a mechanism passes; exits with that of a `MechanismError` if it fails one.
+    """Print which checks of the contract a mechanism passes; exit with the code of `MechanismError` if one fails.
 
     Parameters
     ----------
     name : str
-        The mechanism.
+        Name of the mechanism.
     file : str or None
-        A structure of it; without one, its examples.
+        A structure of the mechanism; without one, its examples are checked.
     registry : Registry
-        Where it is looked up.
+        Registry of mechanisms.
     as_json : bool
         Whether to print one JSON object.
 
     Raises
     ------
     InputError
-        If there is no such mechanism, or the file is no structure of it.
+        If the mechanism does not exist, or the file is not a structure of it.
     """
     from rocking_cli.views.mechanisms import checked
 

@@ -1,4 +1,4 @@
-"""`rocking mechanisms`: what is installed."""
+"""`rocking mechanisms`: list, describe or check the installed mechanisms."""
 
 from __future__ import annotations
 
@@ -8,24 +8,30 @@ import click
 
 from rocking_cli.cli import complete, options, terminal
 
-PARTS = ("loads", "ties", "interlock", "strength", "crushing")  # what hangs on any mechanism, and has fields of its own
+PARTS = ("loads", "ties", "interlock", "strength", "crushing")  # additions to any mechanism, with fields of their own
 
 if TYPE_CHECKING:
     from rocking_cli.core.registry import Registry
 
 
-@click.command(short_help="List the installed mechanisms, show the fields of one, or check it.")
+@click.command(short_help="List, describe or check the installed mechanisms.")
 @click.argument("name", required=False, shell_complete=complete.mechanisms())
 @click.argument("file", required=False, type=click.Path())
-@click.option("--check", "checked", is_flag=True, help="Hold NAME to the contract: of its examples, or of FILE.")
+@click.option(
+    "--check",
+    "checked",
+    is_flag=True,
+    help="Check NAME against the contract of mechanisms, on its examples or on FILE.",
+)
 @options.as_json
 def command(name: str | None, file: str | None, checked: bool, as_json: bool) -> None:
-    """List the mechanisms that are installed and the package each comes from; with NAME, its fields.
+    """List the installed mechanisms and the package of each; with NAME, show the fields of one.
 
-    `loads`, `ties`, `interlock`, `strength` and `crushing` are no mechanisms, and go with any: their fields, by NAME.
+    NAME may also be `loads`, `ties`, `interlock`, `strength` or `crushing`, which can be added to any mechanism.
 
-    `--check` holds what a mechanism says to its bodies and their motion, prints what passes and what fails with the
-    traceback of an error of its own, and ends with 3 if anything fails. FILE is a structure to check it on.
+    With --check, the command compares the coefficients of the mechanism with its bodies and their motion, and prints
+    which checks pass and which fail, with the traceback of an error in the mechanism. The exit code is 3 if a check
+    fails. FILE is a structure on which to check the mechanism.
 
     \b
     Example:
@@ -38,7 +44,7 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
     if checked and name is None:
         raise click.UsageError("--check needs the NAME of a mechanism.")
     if file is not None and not checked:
-        raise click.UsageError("FILE goes with --check.")
+        raise click.UsageError("FILE requires --check.")
     registry = Registry()
     if name is not None and checked:
         from rocking_cli.cli.mechanism_check import check

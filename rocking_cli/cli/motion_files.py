@@ -1,4 +1,4 @@
-"""Which ground motions a command works on, how they are scaled, and what to say of them."""
+"""Ground motions of a command: found, read, scaled and reported."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ if TYPE_CHECKING:
     from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.reading import Reading
 
-MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and past following in a reasonable time
+MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
 
 
 def factor(
     motion: GroundMotion, measured: Measures, scale: float | None, target_pga: float | None, target_pgv: float | None
 ) -> float:
-    """The factor on a motion as read that the options ask for, polarity apart.
+    """Return the factor on a motion as read that the options give, without the polarity.
 
     Parameters
     ----------
     motion, measured : GroundMotion, Measures
         The motion and its measures.
     scale : float, optional
-        The factor itself.
+        Scale factor.
     target_pga : float, optional
         PGA to reach [g].
     target_pgv : float, optional
@@ -49,12 +49,12 @@ def factor(
     Returns
     -------
     float
-        1 if nothing is asked for.
+        Scale factor; 1 if none of the three is given.
 
     Raises
     ------
     InputError
-        If there is nothing to scale, or what results is beyond any ground motion.
+        If the motion is zero, or the scaled motion is beyond any ground motion.
     """
     if target_pga is None and target_pgv is None:
         by = 1.0 if scale is None else scale
@@ -62,25 +62,25 @@ def factor(
         wanted, own = (target_pga, measured.pga) if target_pga is not None else (target_pgv, measured.pgv)
         assert wanted is not None
         if own == 0:
-            raise InputError(Problem("the record is zero throughout, and cannot be scaled to a peak", motion.name))
+            raise InputError(Problem("the record is zero throughout and cannot be scaled to a peak", motion.name))
         by = wanted / own
     pga, pgv = abs(by) * measured.pga, abs(by) * measured.pgv
     if not (pga <= MOST_PGA and pgv <= MOST_PGV):
         scaled = f" scaled by {by:.4g}" if by != 1 else ""
-        problem = f"PGA = {pga:.4g} g and PGV = {pgv:.4g} m/s{scaled} are no ground motion"
-        hint = f"at most {MOST_PGA:g} g and {MOST_PGV:g} m/s: are unit, interval and factor right?"
+        problem = f"PGA = {pga:.4g} g and PGV = {pgv:.4g} m/s{scaled} are not plausible for a ground motion"
+        hint = f"at most {MOST_PGA:g} g and {MOST_PGV:g} m/s: check unit, interval and factor"
         raise InputError(Problem(problem, motion.name, hint=hint))
     return by
 
 
 def warn(motion: GroundMotion, found: Iterable[Doubt]) -> None:
-    """Say on standard error what makes a motion doubtful."""
+    """Warn of doubts about a motion."""
     for doubt in found:
         terminal.warning(f"{motion.name}: {doubt.text}")
 
 
 def read(record: Listed, reading: Reading) -> GroundMotion:
-    """Read a record; what of its reading is a default, and was not typed, holds only where the file does not say."""
+    """Read a record; a default of an option that was not typed applies only if the file does not state the value."""
     from rocking_cli.excitation.records.opening import allow_again
 
     given, typed = _given_and_typed(record, reading)
@@ -92,7 +92,7 @@ def read(record: Listed, reading: Reading) -> GroundMotion:
 
 
 def settled(record: Listed, reading: Reading) -> Reading:
-    """How `read` read a file, not standard input: without the defaults, unless the file needs them."""
+    """Return how `read` read a file, not standard input: without the defaults, unless the file needs them."""
     given, typed = _given_and_typed(record, reading)
     if typed != given:
         with suppress(InputError):
@@ -102,7 +102,7 @@ def settled(record: Listed, reading: Reading) -> Reading:
 
 
 def _given_and_typed(record: Listed, reading: Reading) -> tuple[Reading, Reading]:
-    """How to read a record with the defaults of options, and without: what a list says of it is no default."""
+    """Return how to read a record with the defaults of options, and without; values of a list are not defaults."""
     from rocking_cli.excitation.records.sensor import size_of
 
     given = record.reading(reading)
@@ -121,18 +121,18 @@ def _given_and_typed(record: Listed, reading: Reading) -> tuple[Reading, Reading
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
-    """Refuse records in the place of a structure: the shell puts the files there that a bare pattern stands for."""
+    """Raise if records stand in the place of a structure: the shell puts the files of a bare pattern there."""
     endings = {Path(place).suffix.lower() for place in records} - {"", ".yaml", ".yml"}
     strays = [file for file in files if Path(file).suffix.lower() in endings]
     if strays:
         raise click.UsageError(
-            f"{strays[0]} stands where a structure is expected: is it a record? Give --record before each, or a "
-            f"pattern in quotes: --record '*{Path(strays[0]).suffix}'."
+            f"{strays[0]} is given where a structure is expected. If it is a record, put --record before each file, "
+            f"or use a quoted pattern: --record '*{Path(strays[0]).suffix}'."
         )
 
 
 def find(places: Sequence[str]) -> tuple[list[Listed], int]:
-    """The files of several names, patterns and lists, each once, and how many of these stand for none: is reported."""
+    """Find the files of names, patterns and lists, each once; report and count those that match no file."""
     found, bad = find_all(places)
     once: dict[object, Listed] = {}
     for one in found:
@@ -141,7 +141,7 @@ def find(places: Sequence[str]) -> tuple[list[Listed], int]:
 
 
 def find_all(places: Sequence[str]) -> tuple[list[Listed], int]:
-    """The same, as often as they are named."""
+    """Find all files of names, patterns and lists, in the given order, also those named several times."""
     from rocking_cli.excitation.selection import select
     from rocking_cli.processing.listed import Listed, is_list
 
@@ -172,7 +172,7 @@ def gather(
     p: float,
     whom: str = "the smallest size",
 ) -> tuple[list[Scaled], int]:
-    """Read records and make pulses; say what is doubtful about them, and report those that cannot be used.
+    """Read records and make pulses; warn of doubts, and report those that cannot be used.
 
     Parameters
     ----------
@@ -181,20 +181,20 @@ def gather(
     pulses : sequence of str
         Specifications such as `sine:0.6g:0.8s`.
     reading : Reading
-        How records are read, and the floor of all motions.
+        Options for reading records, and the floor for all motions.
     asked : tuple
-        `scale`, `target_pga` and `target_pgv` of `factor`.
+        Arguments `scale`, `target_pga` and `target_pgv` of `factor`.
     p : float
-        Frequency parameter of the smallest structure that they shake [rad/s].
+        Frequency parameter of the smallest structure under these motions [rad/s].
     whom : str
-        What to call that structure.
+        Name of that structure in messages.
 
     Returns
     -------
     list of Scaled
-        Those that can be used, each with a name of its own.
+        Usable motions, each with a unique name.
     int
-        How many cannot.
+        Number of unusable motions.
 
     Raises
     ------
@@ -232,14 +232,14 @@ def gather(
 
 
 def done(motion: GroundMotion) -> str:
-    """What was done to a motion, to go on a sentence with."""
+    """Return what was done to a motion, as the continuation of a sentence."""
     from rocking_cli.views.processing import in_words
 
     return f"; {said}" if (said := in_words(motion)) else ""
 
 
 def _introduce(found: Sequence[Scaled]) -> None:
-    """Say which ground motions these are."""
+    """Report the ground motions."""
     if len(found) <= FEW:
         for motion, by, *_ in found:
             pga = motion.of_ground.pga
@@ -255,7 +255,7 @@ def _introduce(found: Sequence[Scaled]) -> None:
 
 
 def _warn_of(doubtful: Sequence[tuple[GroundMotion, list[Doubt]]]) -> None:
-    """Say what makes motions doubtful; in a few words if there are many."""
+    """Warn of doubts about motions; briefly if there are many."""
     if len(doubtful) <= FEW:
         for motion, found in doubtful:
             warn(motion, found)
@@ -263,15 +263,18 @@ def _warn_of(doubtful: Sequence[tuple[GroundMotion, list[Doubt]]]) -> None:
     kinds = Counter(doubt.kind for _, found in doubtful for doubt in found)
     said = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
     names = shorten(", ".join(motion.name for motion, _ in doubtful), 200, placeholder=" ...")
-    terminal.warning(f"{len(doubtful)} records are doubtful: {said}; `rocking record` says why: {names}")
+    terminal.warning(f"{len(doubtful)} records are doubtful: {said}; run `rocking record` to see why: {names}")
 
 
 def separate(path: Path | None, chosen: Sequence[Scaled | None], *, several: bool) -> Sequence[Path | None]:
-    """Where the file of each motion goes: of several beside the one asked for, `out-accel.csv` for `out.csv`."""
+    """Return the output file of each motion; of several, `out-accel.csv` and so on for `out.csv`."""
     if path is None or not several:
         return [path] * len(chosen)
     if str(path) == STANDARD_OUTPUT:
-        raise click.UsageError("--out - is for one motion: of several give a file, and each has its own beside it.")
+        raise click.UsageError(
+            "--out - works for a single motion only: for several, give a file name; each motion is written to its own "
+            "file based on it."
+        )
     taken: dict[str, Path] = {}
     for each in chosen:
         assert each is not None

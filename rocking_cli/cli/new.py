@@ -1,4 +1,4 @@
-"""`rocking new`: a structure file to start from."""
+"""`rocking new`: print a template, or create a plugin package."""
 
 from __future__ import annotations
 
@@ -10,33 +10,34 @@ import click
 from rocking_cli.cli import complete, options, terminal
 
 STARTERS = ("facade", "parapet", "gable", "pinnacle", "corner", "bell_cell", "column_with_tendon", "statue")
-"""What people have, each a file in the data of the package. A mechanism that a package calls so comes first."""
+"""Common structures, each a file in the data of the package. A mechanism of the same name has priority."""
 STUDY = "study"
-"""Not a mechanism: a study file is printed for it. A mechanism that a package calls so works, and is not printed."""
+"""Name of the study file. A mechanism of the same name works, but is not printed."""
 SITE = "site"
-"""Nor is this: a site file for `rocking verify`."""
+"""Name of the site file for `rocking verify`."""
 
 
-@click.command(short_help="A structure file, study or site that works, or a plugin.")
+@click.command(short_help="Print a template file, or create a plugin package.")
 @click.argument("name", shell_complete=complete.mechanisms(STUDY, SITE, *STARTERS))
-@click.option("--plugin", is_flag=True, help="Write a package with a mechanism of your own instead; NAME is its name.")
+@click.option("--plugin", is_flag=True, help="Create a package for a mechanism of your own, called NAME.")
 @click.option(
     "-o",
     "--out",
     type=click.Path(),
     metavar="FOLDER",
     shell_complete=complete.files,
-    help="Where to write the package: a new folder.  [default: rocking-NAME, in this folder]",
+    help="New folder for the package.  [default: rocking-NAME, in this folder]",
 )
 @options.as_json
 def command(name: str, plugin: bool, out: str | None, as_json: bool) -> None:
-    """Print a commented structure file that works as it is: of the mechanism NAME, or of what people have.
+    """Print a commented template: a working structure file of the mechanism NAME, or a common structure.
 
-    These are facade, parapet, gable, pinnacle, corner, bell_cell, column_with_tendon and statue. `study` is a fragility
-    study, of block.yaml beside it, and `site` a site for `rocking verify`.
+    The common structures are facade, parapet, gable, pinnacle, corner, bell_cell, column_with_tendon and statue.
+    `study` is a fragility study of a block.yaml in the same folder, and `site` a site file for `rocking verify`.
 
-    `--plugin` writes a package for a mechanism of your own, called NAME: a commented one that works, to change into
-    yours, with its tests, a structure file and its picture. `pip install` makes it a mechanism like all others.
+    With --plugin, the command writes a package for a mechanism of your own, called NAME: a working mechanism with
+    comments for you to change, its tests, a structure file and its drawing. `pip install` makes it available like the
+    built-in mechanisms.
 
     \b
     Example:
@@ -52,7 +53,7 @@ def command(name: str, plugin: bool, out: str | None, as_json: bool) -> None:
         write(name, out, printed=(STUDY, SITE, *STARTERS), as_json=as_json)
         return
     if out is not None:
-        raise click.UsageError("--out goes with --plugin: a file is printed, for > FILE to take.")
+        raise click.UsageError("--out requires --plugin: without it the file is printed; redirect it with > FILE.")
     if name == STUDY:
         from rocking_cli.cli.new_study import TEMPLATE
 
@@ -75,13 +76,13 @@ def command(name: str, plugin: bool, out: str | None, as_json: bool) -> None:
         _print({"starter": name, "yaml": text}, as_json=as_json)
         return
     if name not in registry and (near := get_close_matches(name, STARTERS, n=1)):
-        raise InputError(Problem(f"there is no mechanism {name!r}", hint=f"did you mean {near[0]}?"))
+        raise InputError(Problem(f"the mechanism {name!r} does not exist", hint=f"did you mean {near[0]}?"))
     text = template(registry[name])
     try:
         parse_structure(text, f"rocking new {name}", name, registry)
     except RockingError as error:
         terminal.warning(
-            f"the examples of the mechanism {name} make no structure, and this file does not work as it is"
+            f"the examples of the mechanism {name} are not a valid structure: this file does not work as it is"
         )
         terminal.note(str(error))
         terminal.debug_traceback(error)

@@ -1,4 +1,4 @@
-"""`rocking new --plugin`: a package for a mechanism of one's own, to start from."""
+"""`rocking new --plugin`: create a package for a mechanism of one's own."""
 
 from __future__ import annotations
 
@@ -29,35 +29,35 @@ NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 LONGEST = 40  # characters of a name, so that no line of the package is too long
 DEVICE = re.compile(r"con|prn|aux|nul|com\d|lpt\d")  # no file can have such a name on Windows
 TEMPLATES = {
-    "pyproject.toml": "what pip installs, and the name that rocking finds it by",
+    "pyproject.toml": "package metadata, and the name by which rocking finds it",
     "rocking_my_mechanism.py": "the mechanism: change this",
-    "tests/test_my_mechanism.py": "the contract, and a formula by hand",
+    "tests/test_my_mechanism.py": "tests of the contract, and of a formula by hand",
     "README.md": "how to go on",
 }
-"""What each file of the package is; the words my_mechanism, MyMechanism and my-mechanism in it become the name."""
+"""Files of the package; the words my_mechanism, MyMechanism and my-mechanism in them become the name."""
 MODULE = "rocking_my_mechanism.py"
 IMPORTED = ("ClassVar", "MechanismContract", "Self", "Sequence")
-"""Classes that these files import, beside those of the core."""
+"""Classes that these files import, in addition to those of the core."""
 
 
 def write(name: str, out: str | None, *, printed: Collection[str], as_json: bool) -> None:
-    """Write the package, and say what it holds and what to type next.
+    """Write the package, and print its files and the next commands.
 
     Parameters
     ----------
     name : str
-        What the mechanism is called.
+        Name of the mechanism.
     out : str or None
-        Its folder; None: after the name, in this one.
+        Folder of the package; None for one with its name, in this folder.
     printed : collection of str
-        Names of other things that `rocking new` prints.
+        Names of other templates that `rocking new` prints.
     as_json : bool
         Whether to print one JSON object.
 
     Raises
     ------
     InputError
-        If no mechanism can have this name, or there can be no such folder.
+        If the name is not valid for a mechanism, or the folder cannot be made.
     """
     from rocking_cli.io.files import check_new_folder, write_folder
     from rocking_cli.views.plugin import view
@@ -83,7 +83,7 @@ def write(name: str, out: str | None, *, printed: Collection[str], as_json: bool
 
 
 def check_name(name: str, printed: Collection[str]) -> None:
-    """Refuse what cannot be the name of a mechanism in a package of its own: `InputError` says what can."""
+    """Raise `InputError` if a text cannot be the name of a mechanism in a package of its own."""
     from rocking_cli.core.registry import Registry
 
     registry = Registry()
@@ -91,35 +91,35 @@ def check_name(name: str, printed: Collection[str]) -> None:
         guess = _spelled(name)
         free = NAME.fullmatch(guess) and guess not in registry and _taken(guess, printed) is None
         problem = f"{cut(repr(name))} cannot be the name of a mechanism"
-        hint = f"take at most {LONGEST} of a-z, 0-9 and _, a letter first, such as {guess if free else 'leaning_pier'}"
+        hint = f"use at most {LONGEST} of a-z, 0-9 and _, a letter first, such as {guess if free else 'leaning_pier'}"
         raise InputError(Problem(problem, hint=hint))
     if name in registry:
         owner = registry.package_of(name)
         hint = "take another name" + ("" if owner.startswith("rocking-cli ") else f", or uninstall {owner} first")
-        raise InputError(Problem(f"there is a mechanism {name} already, of {owner}", hint=hint))
+        raise InputError(Problem(f"the mechanism {name} already exists, in {owner}", hint=hint))
     if (why := _taken(name, printed)) is not None:
         raise InputError(Problem(f"a mechanism cannot be called {name}: {why}", hint="take another name"))
 
 
 def _spelled(name: str) -> str:
-    """A name of the same letters, as far as there are any."""
+    """Return a valid name of the same letters, as far as possible."""
     plain = normalize("NFKD", name.lower()).encode("ascii", "ignore").decode()
     return re.sub(r"[^a-z0-9]+", "_", plain).lstrip("_0123456789")[:LONGEST].rstrip("_")
 
 
 def _taken(name: str, printed: Collection[str]) -> str | None:
-    """Why a well-spelled name is not free, or None if it is."""
+    """Return why a well-spelled name is not free, or None if it is."""
     import yaml
 
     from rocking_cli import core
     from rocking_cli.cli.mechanisms import PARTS
 
     if name == "cli":
-        return "its module would be rocking_cli, which is this program"
+        return "its module would be rocking_cli, the name of this program"
     if iskeyword(name) or issoftkeyword(name):
-        return "this is a word of Python"
+        return "it is a keyword of Python"
     if not isinstance(yaml.safe_load(name), str):
-        return "in a structure file this word is no text"
+        return "in a structure file this word is not read as text"
     if name in sys.stdlib_module_names:
         return "Python has a module of this name"
     if name in printed:
@@ -127,27 +127,27 @@ def _taken(name: str, printed: Collection[str]) -> str | None:
     if name in PARTS:
         return f"`rocking mechanisms {name}` shows something else"
     if DEVICE.fullmatch(name):
-        return "no file can be called so on Windows"
+        return "it is not a valid file name on Windows"
     cls = _of_class(name)
     if cls.startswith("Test"):
-        return f"its class would be {cls}, which pytest takes for tests"
+        return f"its class would be {cls}, which pytest collects as tests"
     if cls in IMPORTED or hasattr(core, cls) or hasattr(builtins, cls):
-        return f"its class would be {cls}, and there is another one"
+        return f"its class would be {cls}, which already exists"
     return None
 
 
 def package(name: str) -> dict[str, bytes]:
-    """The files of the package for a mechanism of this name, with the picture of its example.
+    """Return the files of the package for a mechanism of this name, with the drawing of its example.
 
     Parameters
     ----------
     name : str
-        Has passed `check_name`.
+        Name that has passed `check_name`.
 
     Returns
     -------
     dict of str to bytes
-        Content by the place in the folder.
+        Content of each file, by its path in the folder.
     """
     from rocking_cli.views.template import template
 
@@ -158,7 +158,7 @@ def package(name: str) -> dict[str, bytes]:
 
 
 def loaded(text: str, file: str) -> type[Mechanism]:
-    """The mechanism of a module that is not installed yet."""
+    """Return the mechanism of a module that is not installed yet."""
     from rocking_cli.core import Mechanism
 
     module = ModuleType(Path(file).stem)
@@ -176,7 +176,7 @@ def loaded(text: str, file: str) -> type[Mechanism]:
 
 
 def _drawn(cls: type[Mechanism], name: str) -> bytes:
-    """The picture that `rocking draw` makes of the structure of its examples."""
+    """Return the drawing by `rocking draw` of the structure of its examples."""
     from rocking_cli.plotting import style
     from rocking_cli.plotting.structure import draw_structure
     from rocking_cli.studies.picture import picture
@@ -195,7 +195,7 @@ def _text(file: str) -> str:
 
 
 def _named(text: str, name: str) -> str:
-    """A text of the package with its name in place of that of the template."""
+    """Return a text of the package with its name instead of that of the template."""
     words = {
         "my_mechanism": name,
         "MyMechanism": _of_class(name),
@@ -214,12 +214,12 @@ def _of_class(name: str) -> str:
 
 
 def _python() -> str:
-    """What to type for the Python that has rocking-cli: `python`, unless that is another one here."""
+    """Return the command of the Python that has rocking-cli: `python`, unless that is another one here."""
     found = shutil.which("python")
     same = found is not None and Path(found).parent == Path(sys.executable).parent
     return "python" if same or not sys.executable else _typed(sys.executable)
 
 
 def _typed(word: str) -> str:
-    """A word as it is typed in a shell."""
+    """Return a word as it is typed in a shell."""
     return subprocess.list2cmdline([word]) if os.name == "nt" else shlex.quote(word)

@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from rocking_cli.cli import complete, terminal
+from rocking_cli.cli.help import Command, RecordOption
 from rocking_cli.cli.quantities import (
     AMPLITUDE,
     INTERVAL,
@@ -28,27 +29,47 @@ from rocking_cli.cli.quantities import (
 STANDARD_OUTPUT = "-"
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-as_json: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
+HELP = {
+    "a": "Dimensionless amplitude a = a_g/(g lambda).",
+    "ag": "Amplitude of the pulse with its unit, such as 0.6g or 5.9m/s2.",
+    "damping": "Damping ratio of the response spectrum.",
+    "eta": "Coefficient of restitution.",
+    "jobs": "Number of processor cores to use.  [default: all]",
+    "model": "Model: nonlinear (the mechanism itself), or its equivalent block (linear1, linear2).",
+    "omega": "Dimensionless frequency omega = omega_g/p.",
+    "period": "Period of the pulse, in s.",
+    "points": "Number of values to compute along each axis.",
+    "site": "Site file: ground motion, confidence factor, floor. `rocking new site` prints a template.",
+}
+"""Texts of options that several commands declare, each with a type or a default of its own."""
+
+as_json: Decorator = click.option(
+    "--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else."
+)
 
 
 def restitution(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
-    """A callback for a coefficient of restitution."""
+    """Check a coefficient of restitution, as a callback of click."""
     if value is not None and not 0 < value <= 1:
-        raise click.BadParameter(f"{value:g} is not a coefficient of restitution: it is above 0 and at most 1.")
+        raise click.BadParameter(
+            f"{value:g} is not a valid coefficient of restitution: give a number above 0 and at most 1."
+        )
     return value
 
 
 def share(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
-    """A callback for a number from 0 to below 1."""
+    """Check a number from 0 to below 1, as a callback of click."""
     if value is not None and not 0 <= value < 1:
-        raise click.BadParameter(f"{value:g} is not a number from 0 to below 1.", ctx, param)
+        raise click.BadParameter(
+            f"{value:g} is out of range: give a number from 0 up to, but not including, 1.", ctx, param
+        )
     return value
 
 
 def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str | None], Path | None]:
-    """A callback for an output file: its suffix must be one of these, and its folder must take a file.
+    """Make a callback of click that checks an output file: one of these suffixes, and a folder that can be written to.
 
-    Of a table in text it may be - for standard output: `tables.write` knows.
+    A table in text may be written to - for standard output, as `tables.write` does.
     """
 
     def check(ctx: click.Context, param: click.Parameter, value: str | None) -> Path | None:
@@ -68,7 +89,7 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
 
 
 def out(*suffixes: str, what: str, required: bool = False, metavar: str | None = None) -> Decorator:
-    """Where to write what is made: `out`, of one of these suffixes; the help says what it is."""
+    """Declare the output file `out`, of one of these suffixes; `what` is its help."""
     return click.option(
         "-o",
         "--out",
@@ -81,7 +102,7 @@ def out(*suffixes: str, what: str, required: bool = False, metavar: str | None =
 
 
 def plot(what: str, more: str = "") -> Decorator:
-    """Where to draw a picture: `plot`; the help says what it shows, and what more there is to say."""
+    """Declare the file of a plot, `plot`; its help names what it shows, and then `more`."""
     return click.option(
         "--plot",
         callback=output_path(".png", ".svg", ".pdf"),
@@ -98,17 +119,33 @@ nrml: Decorator = click.option(
     shell_complete=complete.files,
     help="Write the lognormal curves for OpenQuake (NRML 0.5).",
 )
-"""Where fragility curves go that OpenQuake reads: `nrml`."""
+"""The file of fragility curves that OpenQuake reads: `nrml`."""
 
 
 quantiles: Decorator = click.option(
-    "--quantiles", is_flag=True, help="Show how far structures rock at each intensity: 16, 50 and 84 % of the runs."
+    "--quantiles",
+    is_flag=True,
+    help="Show quantiles of the peak rotation at each intensity: 16, 50 and 84 % of the runs.",
 )
 """Whether quantiles of the peak rotation are shown: `quantiles`."""
 
 
-class Renamed(click.Command):
-    """A command some of whose options had other names, which go on working with a word on the new one.
+rank_measures: Decorator = click.option(
+    "--rank-measures",
+    is_flag=True,
+    help="Rank the intensity measures as well, by how well they predict the outcome.",
+)
+"""Whether intensity measures are ranked: `rank_measures`."""
+
+
+curve_plots: Decorator = click.option(
+    "--plot", metavar="FOLDER", help="Plot every curve into this folder, created if missing."
+)
+"""The folder of the plots of a fragility study: `plot`."""
+
+
+class Renamed(Command):
+    """Command some of whose options had other names, which still work, with a note on the new one.
 
     Parameters
     ----------
@@ -121,7 +158,7 @@ class Renamed(click.Command):
         self.renamed = renamed
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Read the command line as if it had been typed today."""
+        """Replace old names of options by those of today, and read the command line."""
         end = args.index("--") if "--" in args else len(args)
         return super().parse_args(ctx, [*map(self._today, args[:end]), *args[end:]])
 
@@ -129,12 +166,12 @@ class Renamed(click.Command):
         old, equals, value = argument.partition("=")
         if old not in self.renamed:
             return argument
-        terminal.note(f"{old} is called {self.renamed[old]} now")
+        terminal.note(f"{old} has been renamed to {self.renamed[old]}")
         return f"{self.renamed[old]}{equals}{value}"
 
 
 def grouped(**groups: type) -> Decorator:
-    """Hand options to a command as objects: `asked=GroundMotions` makes one of the options that are its fields.
+    """Hand options to a command as objects: `asked=GroundMotions` makes one from the options that are its fields.
 
     The options themselves are declared by other decorators, above this one.
     """
@@ -154,7 +191,7 @@ def grouped(**groups: type) -> Decorator:
 
 
 def in_order(*decorators: Decorator) -> Decorator:
-    """Several options as one decorator; the help lists them in this order."""
+    """Join several options into one decorator; the help lists them in this order."""
 
     def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
         for decorator in reversed(decorators):
@@ -164,14 +201,19 @@ def in_order(*decorators: Decorator) -> Decorator:
     return decorate
 
 
+def record_option(*names: str, **more: Any) -> Decorator:
+    """Declare an option that reads or processes records, for their heading in the help."""
+    return click.option(*names, cls=RecordOption, **more)
+
+
 ground_motions: Decorator = in_order(
     click.option(
         "--record", "records", multiple=True, metavar="PLACE", shell_complete=complete.files,
-        help="A ground motion, - for standard input, or a pattern in quotes: 'records/*.AT2'. May be repeated.",
+        help="Ground motion file, - for standard input, or a quoted pattern such as 'records/*.AT2'. Repeatable.",
     ),
     click.option(
         "--pulse", "pulses", multiple=True, metavar="PULSE", shell_complete=complete.shapes(":"),
-        help="A pulse for one, NAME:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s. May be repeated.",
+        help="Pulse instead of a record, NAME:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s. Repeatable.",
     ),
 )  # fmt: skip
 """Ground motions, any number of them: `records` and `pulses`."""
@@ -179,7 +221,7 @@ ground_motions: Decorator = in_order(
 
 @dataclass(frozen=True)
 class Placed:
-    """A correction that was asked for, and its place among them: they are made in the order of the command line."""
+    """Correction of a record, and its place among them: they are made in the order of the command line."""
 
     place: int
     step: Any
@@ -189,7 +231,7 @@ class Placed:
 
 
 def _placed(ctx: click.Context, param: click.Parameter, value: tuple[Any, ...]) -> Placed | None:
-    """A callback that keeps the order of corrections: click calls callbacks in the order of what was typed."""
+    """Keep the order of corrections, as a callback: click calls callbacks in the order of what was typed."""
     if not value:
         return None
     if len(value) > 1:
@@ -210,7 +252,7 @@ def _parser_of(name: str) -> Callable[[], Callable[[str], Any]]:
 
 def _correction(name: str, metavar: str, what: str) -> Decorator:
     kind = Parsed(name, _parser_of(name))
-    return click.option(f"--{name}", multiple=True, type=kind, metavar=metavar, callback=_placed, help=what)
+    return record_option(f"--{name}", multiple=True, type=kind, metavar=metavar, callback=_placed, help=what)
 
 
 def _gain() -> Callable[[str], Any]:
@@ -227,78 +269,89 @@ def _floor() -> Callable[[str], Any]:
 
 CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
 corrections: Decorator = in_order(
-    _correction("baseline", "linear|quadratic", "Subtract the line, parabola or constant that fits the samples best."),
-    _correction("highpass", "HZ", "Take out what is slower (Butterworth, both ways)."),
-    _correction("lowpass", "HZ", "Take out what is faster."),
-    _correction("taper", "SHARE", "Bring both ends to zero, over this share of the duration each."),
-    _correction("trim", "FROM:TO", "Keep what is between two times, in s."),
-    _correction("resample", "TIME", "Another interval, in s; uneven times are put on a grid."),
+    _correction(
+        "baseline",
+        "linear|quadratic",
+        "Baseline correction: the best-fitting constant, line or parabola is subtracted.",
+    ),
+    _correction("highpass", "HZ", "High-pass corner frequency in Hz (Butterworth, zero phase)."),
+    _correction("lowpass", "HZ", "Low-pass corner frequency in Hz (Butterworth, zero phase)."),
+    _correction("taper", "SHARE", "Fraction of the duration over which each end is tapered to zero."),
+    _correction("trim", "FROM:TO", "Start and end of the part to keep, in s."),
+    _correction("resample", "TIME", "Resample to this interval, in s; uneven times are put on a regular grid."),
 )
 """Corrections of a record, made in the order in which they are given."""
 
 reading: Decorator = in_order(
-    click.option("--units", type=Unit(), help="Unit of the record, where the file does not say."),
-    click.option("--dt", type=Quantity(INTERVAL), metavar="TIME", help="Interval of a record without times, in s."),
-    click.option("--channel", metavar="CHANNEL", help="Which of several in the record: its place from 1, or its name."),
-    click.option(
+    record_option("--units", type=Unit(), help="Unit of the record, if the file does not state it."),
+    record_option(
+        "--dt", type=Quantity(INTERVAL), metavar="TIME", help="Sampling interval in s, if the file has no times."
+    ),
+    record_option("--channel", metavar="CHANNEL", help="Channel or column to read: its number, from 1, or its name."),
+    record_option(
         "--from", "quantity", type=click.Choice(("acceleration", "velocity", "displacement")),
-        help="What the record holds; others than accelerations are differentiated.",
+        help="Quantity in the record; velocities and displacements are differentiated.",
     ),
-    click.option(
+    record_option(
         "--gain", type=Parsed("gain", _gain), metavar="GAIN",
-        help="What one unit of the record stands for, such as 0.05m/V or 4.7e-6m/s2/count.",
+        help="Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.",
     ),
-    click.option(
+    record_option(
         "--with", "other", type=click.Path(), metavar="FILE", shell_complete=complete.files,
-        help="The component at right angles, turned with the record into the plane of the structure.",
+        help="Second horizontal component, perpendicular to the record; the two are rotated into the plane "
+        "of the structure.",
     ),
-    click.option("--with-channel", "other_channel", metavar="CHANNEL", help="Which of several that is in its file."),
-    click.option(
+    record_option(
+        "--with-channel", "other_channel", metavar="CHANNEL", help="Channel of the second component in its file."
+    ),
+    record_option(
         "--azimuth", type=Azimuth(), metavar="DEGREES",
-        help="Of the structure's plane, from the record (0) towards --with (90); `respond` takes all.",
+        help="Azimuth of the structure's plane, in degrees: 0 is the record, 90 is --with. `respond` also accepts all.",
     ),
     corrections,
-    click.option(
+    record_option(
         "--floor", type=Parsed("floor", _floor), metavar="T1=...",
-        help="Stand on a floor of a building: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
+        help="Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
     ),
 )  # fmt: skip
-"""How to read a record and what to make of it: the fields of `groups.Reading`."""
+"""The options for reading and processing records: the fields of `groups.Reading`."""
 
 
-def scaling(*polarities: str, both: str = "one after the other", default: str = "1") -> Decorator:
-    """How to change a record: `scale`, `target_pga`, `target_pgv` and `polarity`, which is one of these.
-
-    `both` says what becomes of both polarities, where they are one of them; `default` is what holds unless asked.
-    `motions.factor` turns the first three, of which a user may give one, into a number.
-    """
-    return in_order(
-        click.option("--scale", type=Finite(), metavar="FACTOR", help="Factor on the record.  [default: 1]"),
-        click.option(
-            "--target-pga",
-            type=Quantity(PGA),
-            metavar="ACCELERATION",
-            help="Scale the record to this peak, in g.",
-        ),
-        click.option(
-            "--target-pgv",
-            type=Quantity(PGV),
-            metavar="VELOCITY",
-            help="Scale it to this peak velocity, in m/s.",
-        ),
-        click.option(
-            "--polarity",
-            type=click.Choice(polarities),
-            default=default,
-            show_default=True,
-            help="-1 reverses the record." + (f" both: {both}." if "both" in polarities else ""),
-        ),
+def polarity(*choices: str, default: str = "1") -> Decorator:
+    """Declare the `polarity` of a motion, one of these; the text of a command says what becomes of both."""
+    return click.option(
+        "--polarity",
+        type=click.Choice(choices),
+        default=default,
+        show_default=True,
+        help="Polarity of the motion: 1 as given, -1 reversed.",
     )
 
 
-site: Decorator = click.option(
-    "--site", type=click.Path(), metavar="SITE.yaml", help="Where it stands, as for `rocking verify`."
-)
+def scaling(*polarities: str, default: str = "1") -> Decorator:
+    """Declare how to scale a motion: `scale`, `target_pga`, `target_pgv` and `polarity`, which is one of these.
+
+    `motion_files.factor` turns the first three, of which a user may give one, into a number.
+    """
+    return in_order(
+        record_option("--scale", type=Finite(), metavar="FACTOR", help="Scale factor on the motion.  [default: 1]"),
+        record_option(
+            "--target-pga",
+            type=Quantity(PGA),
+            metavar="ACCELERATION",
+            help="Peak ground acceleration to scale the motion to, in g.",
+        ),
+        record_option(
+            "--target-pgv",
+            type=Quantity(PGV),
+            metavar="VELOCITY",
+            help="Peak ground velocity to scale the motion to, in m/s.",
+        ),
+        polarity(*polarities, default=default),
+    )
+
+
+site: Decorator = click.option("--site", type=click.Path(), metavar="SITE.yaml", help=HELP["site"])
 
 shape: Decorator = click.option(
     "--shape",
@@ -306,31 +359,23 @@ shape: Decorator = click.option(
     show_default=True,
     metavar="SHAPE",
     shell_complete=complete.shapes(),
-    help="Of the pulse: sine, cosine, half_sine, rectangular, ricker, ... with what it takes besides.",
+    help="Pulse shape: sine, cosine, half_sine, rectangular, ricker, ..., followed by its parameters if it has any.",
 )
 
 
 def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
-    """One pulse: `shape`, `ag`, `period` and `polarity`, which is one of these."""
+    """Declare one pulse: `shape`, `ag`, `period` and `polarity`, which is one of these."""
     return in_order(
         click.option(
             "--ag",
             required=required,
             type=Quantity(AMPLITUDE),
             metavar="AMPLITUDE",
-            help="Amplitude of the pulse with its unit, such as 0.6g or 5.9m/s2.",
+            help=HELP["ag"],
         ),
-        click.option(
-            "--period", required=required, type=Quantity(PERIOD), metavar="PERIOD", help="Period of the pulse, in s."
-        ),
+        click.option("--period", required=required, type=Quantity(PERIOD), metavar="PERIOD", help=HELP["period"]),
         shape,
-        click.option(
-            "--polarity",
-            type=click.Choice(polarities),
-            default="1",
-            show_default=True,
-            help="-1 reverses the pulse." + (" both: one after the other." if "both" in polarities else ""),
-        ),
+        polarity(*polarities),
     )
 
 
@@ -341,7 +386,7 @@ around: Decorator = in_order(
         default=200,
         show_default=True,
         metavar="N",
-        help="Motions next to the one asked for that are followed too; 0 for none.",
+        help="Number of neighbouring motions to simulate as well; `respond` and `animate` accept 0 for none.",
     ),
     click.option(
         "--within-amplitude",
@@ -350,7 +395,7 @@ around: Decorator = in_order(
         show_default=True,
         metavar="SHARE",
         callback=share,
-        help="How far the factors on these are from 1, at most.",
+        help="Largest deviation of the neighbours' amplitude factors from 1.",
     ),
     click.option(
         "--within-restitution",
@@ -359,7 +404,7 @@ around: Decorator = in_order(
         show_default=True,
         metavar="ETA",
         callback=share,
-        help="How far their restitution is from the structure's, at most.",
+        help="Largest deviation of the neighbours' restitution from the structure's.",
     ),
 )
 """The neighbours of a motion: `neighbours`, `within_amplitude` and `within_restitution`."""

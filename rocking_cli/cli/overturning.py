@@ -1,4 +1,4 @@
-"""`rocking overturning`: what pulses of every amplitude and period do, and which of several structures goes first."""
+"""`rocking overturning`: map the pulses that overturn a structure, or compare several structures."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ETA = 0.9
 
 @dataclass(frozen=True)
 class Pulses:
-    """The pulses, and the equation of motion that they act on."""
+    """Shape and polarity of the pulses, and the model that they act on."""
 
     shape: str
     model: str | None
@@ -42,7 +42,7 @@ class Pulses:
 
 @dataclass(frozen=True)
 class Plane:
-    """Over what a map or a curve is drawn, and how finely."""
+    """Axes of a map or a curve, and the number of points."""
 
     dimensionless: bool
     period: tuple[float, float] | None
@@ -55,51 +55,53 @@ class Plane:
 @click.command(
     cls=options.Renamed,
     renamed={"--pulse": "--shape", "--periods": "--period", "--accelerations": "--ag"},
-    short_help="Which pulses overturn a structure; which of several goes first.",
+    short_help="Map the pulses that overturn a structure.",
 )
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
-@click.option("--compare", is_flag=True, help="The least overturning amplitude of several FILEs, in one picture.")
+@click.option(
+    "--compare", is_flag=True, help="Compare the smallest overturning amplitudes of several FILEs instead of a map."
+)
 @options.shape
-@click.option("--model", type=click.Choice(MODELS), help="[default: linear2; nonlinear with --compare]")
+@click.option(
+    "--model",
+    type=click.Choice(MODELS),
+    help=f"{options.HELP['model']}  [default: linear2; nonlinear with --compare]",
+)
 @click.option(
     "--eta",
     type=Finite(),
     callback=options.restitution,
-    help="Restitution.  [default: the structure's; 0.9 without FILE]",
+    help=f"{options.HELP['eta']}  [default: the structure's; {ETA} without FILE]",
 )
-@click.option(
-    "--polarity",
-    type=click.Choice(["1", "-1", "both"]),
-    default="1",
-    show_default=True,
-    help="-1 reverses the pulse. both: the worse of the two.",
-)
-@click.option("--dimensionless", is_flag=True, help="Over omega and a, also with FILE.")
-@click.option("--period", type=Range(PERIOD), metavar="LOW:HIGH", help="Periods in s, such as 0.2:4.")
-@click.option("--ag", type=Range(AMPLITUDE), metavar="LOW:HIGH", help="Amplitudes with units, such as 0.1g:2g.")
-@click.option("--omega", type=Range(NUMBER), metavar="LOW:HIGH", help="Dimensionless frequencies.  [default: 0.5:10]")
-@click.option("--a", type=Range(NUMBER), metavar="LOW:HIGH", help="Dimensionless amplitudes.  [default: 0.5:10]")
+@options.polarity("1", "-1", "both")
+@click.option("--dimensionless", is_flag=True, help="Use the dimensionless axes omega and a, also with FILE.")
+@click.option("--period", type=Range(PERIOD), metavar="LOW:HIGH", help=options.HELP["period"])
+@click.option("--ag", type=Range(AMPLITUDE), metavar="LOW:HIGH", help=options.HELP["ag"])
+@click.option("--omega", type=Range(NUMBER), metavar="LOW:HIGH", help=f"{options.HELP['omega']}  [default: 0.5:10]")
+@click.option("--a", type=Range(NUMBER), metavar="LOW:HIGH", help=f"{options.HELP['a']}  [default: 0.5:10]")
 @click.option(
     "--points",
     type=click.IntRange(2, 1000),
     metavar="N",
-    help=f"Points of each side of the map, or periods compared.  [default: {PLANE}, {CURVE}]",
+    help=f"{options.HELP['points']}  [default: {PLANE}; {CURVE} with --compare]",
 )
-@options.out(".csv", what="Write the map, a line a point, or the curves.")
-@options.plot("Draw it")
+@options.out(".csv", what="Write the map, one point per line, or the curves.")
+@options.plot("Plot the map, or the curves")
 @options.as_json
 @click.pass_context
 @options.grouped(pulses=Pulses, plane=Plane, output=Output)
 def command(
     ctx: click.Context, files: tuple[str, ...], compare: bool, pulses: Pulses, plane: Plane, output: Output
 ) -> None:
-    """Which pulses overturn a structure: a map over their periods and amplitudes.
+    """Map the pulses that overturn a structure, by their periods and amplitudes.
 
-    Each point of the map is a motion followed until it is decided: no uplift, rocking, or overturning after some
-    impacts or without any. Without FILE it is that of the linear block over omega = omega_g/p and a = a_g/(g lambda).
+    Each point of the map is a simulated motion that ends in no uplift, rocking, overturning after one or more impacts,
+    or overturning without impact. --period and --ag are ranges, such as 0.2:4 and 0.1g:2g. Without FILE, the map is
+    that of the linear block, with the axes omega = omega_g/p and a = a_g/(g lambda). With --polarity both, the worse
+    of the two polarities governs.
 
-    With --compare, the least amplitude that overturns each FILE, over the period: which of them goes first. A FILE that
-    cannot be used is reported, the others are compared, and the exit code is 5.
+    With --compare, the command computes the smallest amplitude that overturns each FILE as a function of the period,
+    and which structure overturns first. A FILE that cannot be used is reported and skipped, and the exit code is 5.
 
     \b
     Example:
@@ -120,7 +122,7 @@ def command(
     model = pulses.model or ("nonlinear" if compare else "linear2")
     loaded, good, bad = structures.load_each(files) if files else ([], [], 0)
     if compare and len(loaded) < 2:
-        raise InputError("only one of the FILEs can be used: --compare needs two or more")
+        raise InputError("only one of the FILEs can be used: --compare needs at least two")
     mechanisms = structures.told_apart(loaded, good)
     ready = [Prepared(each, file) for each, file in zip(mechanisms, good, strict=True)]
     subjects = [pulsed_model(each, cast("ModelName", model), shape, pulses.signs, pulses.eta) for each in ready]
@@ -146,7 +148,7 @@ def _compare(
     *,
     exact: bool,
 ) -> None:
-    """Find the least amplitudes that overturn several structures, and show them."""
+    """Compute the smallest amplitudes that overturn several structures, and show them."""
     from rocking_cli.cli import waiting
     from rocking_cli.studies import overturning as study
     from rocking_cli.views import overturning as views
@@ -176,7 +178,7 @@ def _map(
     *,
     exact: bool,
 ) -> None:
-    """Follow a plane of pulses on one structure, or on the linear block, and show the map."""
+    """Simulate pulses on one structure, or on the linear block, and show the map."""
     from rocking_cli.cli import waiting
     from rocking_cli.studies import overturning as study
     from rocking_cli.views import overturning as views
@@ -198,17 +200,17 @@ def _map(
 
 
 def _check(files: tuple[str, ...], compare: bool, model: str | None, plane: Plane) -> None:
-    """Refuse options that do not go together, before anything is read."""
+    """Raise if options cannot be combined, before anything is read."""
     if compare and len(files) < 2:
-        raise click.UsageError("--compare needs two structures or more: give their FILEs.")
+        raise click.UsageError("--compare needs at least two structures: give their FILEs.")
     if not compare and len(files) > 1:
-        raise click.UsageError("A map is of one structure: give one FILE, or --compare for the curves of several.")
+        raise click.UsageError("A map shows one structure: give one FILE, or --compare for the curves of several.")
     if not files and model not in (None, "linear2"):
         raise click.UsageError(
-            f"--model {model} is of a structure: give FILE. Without it the map is of a linear block."
+            f"--model {model} requires a structure: give FILE. Without FILE, the map is that of the linear block."
         )
     if compare and plane.dimensionless:
-        raise click.UsageError("--compare is over the period in s: leave --dimensionless out.")
+        raise click.UsageError("--compare uses the period in s as its axis: leave out --dimensionless.")
     scaled = plane.dimensionless or not files
     wrong, right = (("period", "ag"), ("omega", "a"))[:: 1 if scaled else -1]
     for option in wrong:
@@ -216,11 +218,11 @@ def _check(files: tuple[str, ...], compare: bool, model: str | None, plane: Plan
             instead = f"--{right[wrong.index(option)]}"
             why = "without FILE" if not files else "with --dimensionless" if scaled else "with FILE"
             more = "" if scaled or compare else ", or add --dimensionless"
-            raise click.UsageError(f"--{option} has no meaning {why}: give {instead}{more}.")
+            raise click.UsageError(f"--{option} has no effect {why}: give {instead}{more}.")
 
 
 def _plane(subject: PulsedModel, plane: Plane, *, dimensionless: bool) -> tuple[Reals, Reals]:
-    """omega and a of the columns and rows, even over what the map is drawn over."""
+    """Return omega and a of the columns and rows, equally spaced along the axes of the map."""
     import numpy as np
 
     from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -235,7 +237,7 @@ def _plane(subject: PulsedModel, plane: Plane, *, dimensionless: bool) -> tuple[
 
 
 def _curves(subjects: list[PulsedModel], plane: Plane) -> tuple[Reals, float]:
-    """Periods [s], and the largest amplitude to try [g]."""
+    """Return the periods [s], and the largest amplitude to try [g]."""
     import numpy as np
 
     from rocking_cli.studies import overturning as study

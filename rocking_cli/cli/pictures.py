@@ -1,4 +1,4 @@
-"""Writing a picture to the file that a user asked for."""
+"""Write plots to files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def save(path: Path, figure: Figure) -> None:
-    """Write a figure whole or not at all, in the format of the path's suffix."""
+    """Write a figure completely or not at all, in the format of the suffix of the path."""
     from rocking_cli.io.files import write_whole
     from rocking_cli.plotting import style
 
@@ -20,6 +20,6 @@ def save(path: Path, figure: Figure) -> None:
 
 
 def write_picture(path: Path, figure: Figure) -> None:
-    """Write a figure, and say so."""
+    """Write a figure, and report it."""
     save(path, figure)
     terminal.note(f"wrote {path}")

@@ -1,4 +1,4 @@
-"""Sentences broken into lines of a terminal's width: at blanks, and never inside a word, a quantity or a command."""
+"""Break sentences into lines of the terminal's width: at blanks, never inside a word, a quantity or a command."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _BLANK = "\0"  # stands for a blank at which no line ends: printable text has no
 
 
 def cells(text: str) -> int:
-    """How many columns of a terminal a line takes."""
+    """Return the width of a line, in columns of a terminal."""
     if text.isascii():
         return len(text)
     from rich.cells import cell_len
@@ -32,7 +32,7 @@ def cells(text: str) -> int:
 
 
 def words(text: str, most: int) -> list[str]:
-    """The pieces of a line between which it may be broken; what is held together is at most so wide."""
+    """Return the pieces of a line between which it may be broken, each at most `most` wide if possible."""
     held = _HELD.sub(lambda found: found[0].replace(" ", _BLANK), text).split()
     return [
         piece
@@ -42,24 +42,24 @@ def words(text: str, most: int) -> list[str]:
 
 
 def wrapped(text: str, width: int | None, *, start: int = 0, hang: int = HANG) -> str:
-    """A text in lines of a width.
+    """Return a text in lines of a width.
 
     Parameters
     ----------
     text : str
-        Its own line breaks stay.
+        Text; its own line breaks are kept.
     width : int or None
-        Columns of the terminal; None where there is none, and a line is as long as it is.
+        Columns of the terminal; None for no terminal, and lines of any length.
     start : int
-        Columns of the first line that are taken already.
+        Columns of the first line that are already in use.
     hang : int
-        Blanks before the lines that go on, more than before the first; below a label, such as `source:   ...`, as many
-        as it is wide.
+        Blanks before the continuation lines, in addition to those before the first; below a label, such as
+        `source:   ...`, the width of the label.
 
     Returns
     -------
     str
-        A longer line than this is one word, such as a path. A line of a file that is quoted, above a mark, is cut.
+        Lines; only a single word, such as a path, makes a line longer. A quoted line of a file above a mark is cut.
     """
     if width is None:
         return text
@@ -82,9 +82,9 @@ def wrapped(text: str, width: int | None, *, start: int = 0, hang: int = HANG) -
 
 
 def _labels(lines: list[str]) -> list[int]:
-    """Columns of the label before each text, as in `source:   ...`; 0 where there is none.
+    """Return the columns of the label before each text, as in `source:   ...`; 0 if a line has no label.
 
-    Two blanks tell a label from a word; of lines that stand below one another the longest label has but one.
+    Two blanks distinguish a label from a word; among consecutive lines, the longest label has only one.
     """
     wide = [len(found[0]) if (found := _LABEL.match(line)) else 0 for line in lines]
     sure = {each for each, line in zip(wide, lines, strict=True) if line[:each].endswith("  ")}
@@ -92,7 +92,7 @@ def _labels(lines: list[str]) -> list[int]:
 
 
 def _filled(line: str, width: int, taken: int, label: int, deeper: int) -> Iterator[str]:
-    """One line in several: what goes on hangs below the text after its label, or so much deeper than it begins."""
+    """Yield one line as several; continuation lines are indented below the text after its label, or `deeper`."""
     blanks = label or len(line) - len(line.lstrip())
     hang = min(label or blanks + deeper, width // 2)
     shown = line[:blanks]
@@ -107,7 +107,7 @@ def _filled(line: str, width: int, taken: int, label: int, deeper: int) -> Itera
 
 
 def _around(line: str, mark: str, width: int) -> list[str]:
-    """A quoted line and the mark below it, cut where they are wider than the terminal."""
+    """Return a quoted line and the mark below it, cut if they are wider than the terminal."""
     if cells(line) <= width and len(mark) <= width:
         return [line, mark]
     place, blanks = len(mark) - 1, len(line) - len(line.lstrip())

@@ -1,4 +1,4 @@
-"""`rocking pulse`: a pulse on the dimensionless block, or on a structure; by the closed form and exactly."""
+"""`rocking pulse`: compute the response to a pulse, of the dimensionless block or of a structure."""
 
 from __future__ import annotations
 
@@ -15,32 +15,31 @@ ETA = 0.9
 
 @dataclass(frozen=True)
 class Dimensionless:
-    """A pulse on the dimensionless block, and its restitution."""
+    """Pulse on the dimensionless block, and its coefficient of restitution."""
 
     a: float | None
     omega: float | None
     eta: float | None
 
 
-@click.command(short_help="Response to a pulse: closed form, exact and nonlinear.")
+@click.command(short_help="Compute the response to a pulse.")
 @click.argument("file", required=False, type=click.Path())
 @options.sized_pulse("1", "-1", "both")
-@click.option("--a", type=Finite(positive=True), help="Without a structure: amplitude a = a_g/(g lambda).")
-@click.option("--omega", type=Finite(positive=True), help="Frequency omega = omega_g/p.")
-@click.option(
-    "--eta", type=click.FloatRange(0, 1, min_open=True), help=f"Coefficient of restitution.  [default: {ETA}]"
-)
+@click.option("--a", type=Finite(positive=True), help=options.HELP["a"])
+@click.option("--omega", type=Finite(positive=True), help=options.HELP["omega"])
+@click.option("--eta", type=click.FloatRange(0, 1, min_open=True), help=f"{options.HELP['eta']}  [default: {ETA}]")
 @options.as_json
 @options.grouped(real=SizedPulse, bare=Dimensionless)
 def command(file: str | None, real: SizedPulse, bare: Dimensionless, as_json: bool) -> None:
-    """Response of a structure, or of the dimensionless linear block, to a pulse.
+    """Compute the response of a structure, or of the dimensionless linear block, to a pulse.
 
-    With --a and --omega: the linear block. The closed form (Eqs. 41-42) is for one full sine and holds only under
-    three conditions. Each is tested, and the exact answer of the same equation stands beside it. Rotations are over the
-    critical one; times are tau = p t, counted from uplift.
+    With --a and --omega, the command computes the response of the linear block. The closed form (Eqs. 41-42) is for one
+    full sine and is valid only under three conditions. Each condition is checked, and the exact solution of the same
+    equation is given for comparison. Rotations are divided by the critical rotation; times are tau = p t from uplift.
 
-    With --ag and --period: the structure of FILE, by its equivalent blocks with kappa1 and kappa2, and by its
-    nonlinear history. Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    With --ag and --period, the command computes the response of the structure in FILE, by its equivalent blocks with
+    kappa1 and kappa2 and by its nonlinear time history; --polarity both gives one polarity after the other.
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
@@ -58,7 +57,7 @@ def command(file: str | None, real: SizedPulse, bare: Dimensionless, as_json: bo
         )
     )
     if for_block and for_structure:
-        eta = "." if bare.eta is None else " (eta is the restitution in its file)."
+        eta = "." if bare.eta is None else " (eta is `restitution` in its file)."
         raise click.UsageError(
             f"{for_block[0]} is for the dimensionless block, {for_structure[0]} for a structure: give --a and --omega, "
             f"or FILE with --ag and --period{eta}"
@@ -68,7 +67,7 @@ def command(file: str | None, real: SizedPulse, bare: Dimensionless, as_json: bo
         return
     if real.ag is None or real.period is None:
         missing = "--ag, such as 0.6g" if real.ag is None else "--period in seconds"
-        raise click.UsageError(f"A pulse on a structure needs {missing}.")
+        raise click.UsageError(f"A pulse on a structure requires {missing}.")
     from rocking_cli.cli import pulse_on_structure
 
     pulse_on_structure.run(file, real, as_json=as_json)
@@ -80,14 +79,16 @@ def _on_block(bare: Dimensionless, shape: str, *, as_json: bool) -> None:
 
     a, omega, eta = bare.a, bare.omega, ETA if bare.eta is None else bare.eta
     if a is None or omega is None:
-        missing = " and ".join(name for name, value in (("--a", a), ("--omega", omega)) if value is None)
+        missing = (
+            "--a is" if a is None and omega is not None else "--omega is" if a is not None else "--a and --omega are"
+        )
         raise click.UsageError(
-            f"Missing {missing}: give --a and --omega for the dimensionless block, or FILE with --ag and --period."
+            f"{missing} missing: give --a and --omega for the dimensionless block, or FILE with --ag and --period."
         )
     if shape not in SHAPES:
         raise click.UsageError(
-            f"The dimensionless block takes the shapes {', '.join(SHAPES)}, not {shape!r}: "
-            "for another one give FILE, --ag and --period."
+            f"The dimensionless block accepts the shapes {', '.join(SHAPES)}, not {shape!r}: "
+            "for other shapes, give FILE, --ag and --period."
         )
     closed = closed_form(a, omega, eta) if shape == "sine" else None
     terminal.show(view(shape, a, omega, eta, closed, exact_pulse(a, omega, eta, shape)), as_json=as_json)

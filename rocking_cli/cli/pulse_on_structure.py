@@ -1,4 +1,4 @@
-"""`rocking pulse FILE`: a pulse on a structure, by its equivalent blocks and by its nonlinear history."""
+"""`rocking pulse FILE`: compute the response of a structure to a pulse, by all models."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rocking_cli.views.pulse_on_structure import view
 
 
 def run(file: str | None, given: SizedPulse, *, as_json: bool) -> None:
-    """Do all that is asked for and print it."""
+    """Compute the responses and print them."""
     pulse = given.pulse
     structure = structures.prepared([file] if file else [])
     found = {sign: _answers(structure, pulse, sign) for sign in given.signs}
@@ -20,12 +20,12 @@ def run(file: str | None, given: SizedPulse, *, as_json: bool) -> None:
 
 
 def _answers(structure: Prepared, pulse: Pulse, polarity: int) -> dict[str, Answer]:
-    """What the models say, with a warning of those that no sampling settles."""
+    """Return the responses of the models; warn of those that do not converge with the sampling."""
     compile_first()
     sampled = sampled_histories(structure, pulse, polarity)
     for name, found in sampled.items():
         if not found.converged:
             terminal.warning(
-                f"{name}: {found.per_period} samples to a period do not settle it: it is close to another motion"
+                f"{name}: not converged with {found.per_period} samples per period: another motion is close"
             )
     return answers(structure, pulse, polarity, sampled)

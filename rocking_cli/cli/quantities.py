@@ -1,6 +1,6 @@
-"""What can be typed for an option: numbers, quantities and ranges of them, by one grammar for all commands.
+"""Types of options: numbers, quantities and ranges of them, by one grammar for all commands.
 
-A number with its unit. Where the help says which unit a bare number has, the unit may be left out.
+A quantity is a number with its unit. If the help names the unit of a bare number, the unit may be left out.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
 
 
 class Finite(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A finite number; `positive` ones more than zero."""
+    """Finite number; above zero if `positive`."""
 
     name = "number"
 
@@ -27,7 +27,7 @@ class Finite(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
         self.positive = positive
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Turn a text into the number, or fail naming the option."""
+        """Return the number of a text, or fail naming the option."""
         try:
             number = float(value)
         except ValueError:
@@ -38,16 +38,16 @@ class Finite(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
 
 
 class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A unit of acceleration, in any spelling that the header of a record may have: `m/s^2` is `m/s2`.
+    """Unit of acceleration, in any spelling that the header of a record may have: `m/s^2` is `m/s2`.
 
-    Units of velocities and lengths are taken too, for records `--from` these, and not listed.
+    Units of velocity and length are accepted too, for records `--from` these, but not listed.
     """
 
     def __init__(self) -> None:
         super().__init__(UNITS)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Turn a spelling into the name, or fail naming the option and the choices."""
+        """Return the name of a spelling, or fail naming the option and the choices."""
         if value in UNITS:
             return value
         from rocking_cli.excitation.records.sensor import quantity_of
@@ -60,21 +60,21 @@ class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in 
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """What a parser of a lower layer makes of a text; the parser is fetched when there is one to read.
+    """Object that a parser of a lower layer makes from a text; the parser is imported only when needed.
 
     Parameters
     ----------
     name : str
-        What it is, for the help.
+        Name of the value, for the help.
     parser : callable
-        Gives the parser, which raises `InputError`.
+        Returns the parser, which raises `InputError`.
     """
 
     def __init__(self, name: str, parser: Callable[[], Callable[[str], Any]]) -> None:
         self.name, self._parser = name, parser
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Turn a text into the object, or fail naming the option and what would be right."""
+        """Return the object of a text, or fail naming the option and a valid example."""
         if not isinstance(value, str):
             return value
         from rocking_cli.errors import InputError
@@ -88,20 +88,20 @@ class Parsed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
 
 @dataclass(frozen=True)
 class Kind:
-    """What is measured.
+    """Kind of a quantity, with its unit and bounds.
 
     Parameters
     ----------
     name : str
-        As messages call it.
+        Name in messages.
     unit : str
-        Of the number that is given back; none of a pure number.
+        Unit of the returned number; empty for a pure number.
     example, ranged : str
-        A quantity, and a range, as one would type them.
+        A quantity, and a range, as typed.
     least, most : float
-        Bounds of what is followed: past these a motion would take hours, or is none.
+        Bounds of what can be simulated: beyond them a simulation would take hours, or is impossible.
     zero : bool
-        Whether it may be zero.
+        Whether the quantity may be zero.
     """
 
     name: str
@@ -123,12 +123,12 @@ TAIL = Kind("time", "s", "10s", most=3600, zero=True)
 
 
 class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A quantity above zero, in the unit of its kind.
+    """Quantity above zero, in the unit of its kind.
 
     Parameters
     ----------
     kind : Kind
-        What is measured.
+        Kind of the quantity.
     """
 
     name = "quantity"
@@ -137,33 +137,34 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # gene
         self.kind = kind
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Turn a text into the number, or fail naming the option and what would be right."""
+        """Return the number of a text, or fail naming the option and a valid example."""
         if isinstance(value, float):
             return value
         return self.checked(str(value), self.kind.example, param, ctx)
 
     def checked(self, text: str, example: str, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """One number."""
+        """Return one number, checked."""
         try:
             number = self._number(text)
         except UnitError as error:
-            self.fail(f"{error.message}: {error.hint + ', ' if error.hint else 'give '}such as {example}.", param, ctx)
+            remedy = f"{error.hint}," if error.hint else "give a value"
+            self.fail(f"{error.message}: {remedy} such as {example}.", param, ctx)
         kind = self.kind
         if not (0 < number < inf or (kind.zero and number == 0)):
             turn = "; --polarity -1 reverses the pulse" if kind is AMPLITUDE and number < 0 else ""
-            self.fail(f"{text!r} is not positive: give such as {example}{turn}.", param, ctx)
+            self.fail(f"{text!r} is not positive: give a value such as {example}{turn}.", param, ctx)
         if not kind.least <= number <= kind.most:
             bounds = f"{kind.least:g} to {kind.most:g} {kind.unit}".strip()
-            self.fail(f"{text!r} is beyond what is followed: {bounds}.", param, ctx)
+            self.fail(f"{text!r} is outside the supported range: {bounds}.", param, ctx)
         return number
 
     def _number(self, text: str) -> float:
         parts, kind = split(text), self.kind
         if parts is None:
-            raise UnitError(f"{text!r} is no {kind.name}")
+            raise UnitError(f"{text!r} is not a valid {kind.name}")
         number, unit = parts
         if not unit:
-            if kind is AMPLITUDE:  # of 6 nobody knows whether it is in g
+            if kind is AMPLITUDE:  # a bare 6 may be in g or in m/s2
                 raise UnitError(f"{text!r} has no unit", f"give one of {', '.join(UNITS)}")
             return float(number)
         if kind.unit == "g":
@@ -174,24 +175,24 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # gene
 
 
 def _acceleration(number: float, spelling: str) -> float:
-    """An acceleration in g, its unit in any spelling that the header of a record may have."""
+    """Return an acceleration in g; its unit may have any spelling found in the headers of records."""
     from rocking_cli.excitation.base import STANDARD_GRAVITY
     from rocking_cli.excitation.records import units
 
     unit = units.canonical(spelling)
     if unit is None:
-        raise UnitError(f"{spelling!r} is no unit of acceleration", f"give one of {', '.join(UNITS)}")
+        raise UnitError(f"{spelling!r} is not a unit of acceleration", f"give one of {', '.join(UNITS)}")
     return number if unit == "g" else number * units.UNITS[unit] / STANDARD_GRAVITY
 
 
 class Azimuth(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """An angle in degrees; or the word `all`, where a command takes all of them."""
+    """Angle in degrees; or the word `all`, for the commands that accept it."""
 
     name = "angle"
     ALL = "all"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Turn a text into the angle, or fail naming the option."""
+        """Return the angle of a text, or fail naming the option."""
         if isinstance(value, float) or value == self.ALL:
             return value
         try:
@@ -209,12 +210,12 @@ def _is_plain(text: str) -> bool:
 
 
 class Tilt(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A tilt: a fraction of the critical rotation between -1 and 1, or an angle with its unit; not zero."""
+    """Tilt: a fraction of the critical rotation between -1 and 1, or an angle with its unit; not zero."""
 
     name = "tilt"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Turn a text into a `Release`, or fail naming the option and what would be right."""
+        """Return the `Release` of a text, or fail naming the option and a valid example."""
         if not isinstance(value, str):
             return value
         from rocking_cli.dynamics.release import Release
@@ -228,43 +229,45 @@ class Tilt(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic 
 
 
 class Share(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """A share: a number, or per cent with their sign."""
+    """Fraction: a number, or a percentage with its sign."""
 
     name = "share"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Turn a text into the number, or fail naming the option."""
+        """Return the number of a text, or fail naming the option."""
         text = str(value).strip()
         try:
             number = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
         except ValueError:
-            self.fail(f"{value!r} is not a share: give such as 0.02 or 2%.", param, ctx)
+            self.fail(f"{value!r} is not a fraction: give a number such as 0.02 or 2%.", param, ctx)
         if not abs(number) < float("inf"):
             self.fail(f"{value} is not a finite number.", param, ctx)
         return number
 
 
 class Range(Quantity):
-    """Two quantities, the smaller first, with a colon between them."""
+    """Range: two quantities, the smaller first, separated by a colon."""
 
     name = "range"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Turn a text into the two numbers, or fail naming the option and what would be right."""
+        """Return the two numbers of a text, or fail naming the option and a valid example."""
         if isinstance(value, tuple):
             return value
         example = self.kind.ranged
         words = str(value).split(":")
         if len(words) != 2:
-            self.fail(f"{value!r} is no range: give the least and the largest, such as {example}.", param, ctx)
+            self.fail(
+                f"{value!r} is not a range: give the smallest and the largest value, such as {example}.", param, ctx
+            )
         low, high = (self.checked(word, example, param, ctx) for word in words)
         if not low < high:
-            self.fail(f"{value!r} does not grow: give the smaller first, such as {example}.", param, ctx)
+            self.fail(f"{value!r} is not increasing: give the smaller value first, such as {example}.", param, ctx)
         return low, high
 
 
 class Sizes(Range):
-    """Two periods in s, the smaller first, and how many sizes there are between them if a third number says so."""
+    """Two periods in s, the smaller first, and optionally the number of sizes between them."""
 
     name = "sizes"
 
@@ -273,12 +276,14 @@ class Sizes(Range):
         self.count, self.most = count, most
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Turn a text into the two periods and the number, or fail naming the option and what would be right."""
+        """Return the two periods and the number of a text, or fail naming the option and a valid example."""
         if isinstance(value, tuple):
             return value
         *ends, last = str(value).split(":")
         if len(ends) != 2:
             return *super().convert(value, param, ctx), self.count
         if not (last.strip().isdecimal() and 2 <= int(last) <= self.most):
-            self.fail(f"{last!r} is no number of sizes from 2 to {self.most}: give such as 1:10:60.", param, ctx)
+            self.fail(
+                f"{last!r} is not a number of sizes from 2 to {self.most}: give a range such as 1:10:60.", param, ctx
+            )
         return *super().convert(":".join(ends), param, ctx), int(last)

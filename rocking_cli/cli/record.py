@@ -1,4 +1,4 @@
-"""`rocking record`: what a ground motion is, how strong it is, and what is doubtful about it."""
+"""`rocking record`: inspect records: their contents, strength and possible defects."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PATIENCE = 1.0  # s without a word
 
 @dataclass(frozen=True)
 class More:
-    """What is asked of records beside what is always said."""
+    """Additional results of `rocking record`."""
 
     structure: str | None
     fit_pulse: bool
@@ -42,7 +42,7 @@ class More:
 
     def __post_init__(self) -> None:
         if self.spectrum is None and (self.period is not None or self.damping is not None):
-            raise click.UsageError("--period and --damping are of a response spectrum: give --spectrum FILE.csv.")
+            raise click.UsageError("--period and --damping require a response spectrum: give --spectrum FILE.csv.")
         if self.measures is not None:  # before any record is read
             from rocking_cli.processing.intensity import parse_measures
 
@@ -50,7 +50,7 @@ class More:
 
     @property
     def prepared(self) -> Prepared | None:
-        """The structure, made ready."""
+        """Structure of --structure, prepared."""
         if self.structure is None:
             return None
         from rocking_cli.cli import structures
@@ -59,46 +59,56 @@ class More:
 
 
 def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
-    """`--to csv`, which wrote into this folder."""
+    """Accept `--to csv`, the old option that wrote into this folder."""
     if value is not None:
-        terminal.note("--to csv is called --out now, with a file or a folder: --out . is this one")
+        terminal.note("--to csv has been renamed to --out, with a file or a folder: --out . is this folder")
         ctx.params["out"] = Path()
 
 
 @click.command(
     cls=options.Renamed,
     renamed={"--pulse": "--fit-pulse"},
-    short_help="What records are, how strong, and what is doubtful about them.",
+    short_help="Inspect records: contents, strength and possible defects.",
 )
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path())
 @options.reading
-@options.scaling("1", "-1", "both", both="each after the other")
+@options.scaling("1", "-1", "both")
 @click.option(
-    "--structure", type=click.Path(), metavar="FILE.yaml", help="Check the sample interval against this structure."
+    "--structure",
+    type=click.Path(),
+    metavar="FILE.yaml",
+    help="Structure file, to check the sampling interval and for relative measures.",
 )
 @click.option(
-    "--fit-pulse", is_flag=True, help="Fit a sine, a Ricker and a near-fault pulse to each; --plot draws the best."
+    "--fit-pulse",
+    is_flag=True,
+    help="Fit a sine, a Ricker and a near-fault pulse to each record; --plot draws the best.",
 )
 @click.option(
     "-o",
     "--out",
     type=click.Path(path_type=Path),
     metavar="PLACE",
-    help="Write each as a clean file of t and a: FILE.csv, or a folder, made if absent, for NAME.csv.",
+    help="Write each record as a clean CSV file of time and acceleration: FILE.csv, or a folder (created if missing) "
+    "that receives NAME.csv.",
 )
-@click.option("--measures", metavar="M,M,...", help="Also these measures: `rocking measures` lists them; or all.")
+@click.option(
+    "--measures",
+    metavar="M,M,...",
+    help="Intensity measures to compute as well, or all; `rocking measures` lists them.",
+)
 @click.option(
     "--spectrum",
     callback=options.output_path(".csv"),
     metavar="FILE.csv",
-    help="Write the response spectrum of each; --plot draws it, --json has it.  - is standard output.",
+    help="Write the response spectrum of each record; --plot draws it and --json includes it.  - is standard output.",
 )
 @click.option(
     "--period", type=Range(PERIOD), metavar="LOW:HIGH", help="Periods of the spectrum, in s.  [default: 0.02:10]"
 )
-@click.option("--damping", type=Share(), callback=options.share, help="Damping of the spectrum.  [default: 5%]")
+@click.option("--damping", type=Share(), callback=options.share, help=f"{options.HELP['damping']}  [default: 5%]")
 @click.option("--to", type=click.Choice(["csv"]), hidden=True, expose_value=False, callback=_folder_of_today)
-@options.plot("Draw one record, or spectra")
+@options.plot("Plot one record, or the spectra")
 @options.as_json
 @click.pass_context
 @options.grouped(reading=Reading, scaling=Scaling, more=More, output=Output)
@@ -110,15 +120,16 @@ def command(
     more: More,
     output: Output,
 ) -> None:
-    """What was read of records, and how strong they are: peaks, Arias intensity, durations.
+    """Inspect records: what was read, and how strong it is (peaks, Arias intensity, durations).
 
-    The measures are those of the scaled record, exact for straight lines between its samples. A drift, an offset,
-    clipped peaks, a coarse interval and an odd unit are warned of, with the number that shows it. With --json,
-    several files give one object a line, as do both polarities. A file that cannot be used is reported, the others
-    are shown, and the exit code is 5.
+    The measures are those of the scaled record, exact for straight lines between its samples. Drifts, offsets, clipped
+    peaks, coarse sampling and implausible units are reported as warnings, with the number that reveals them. With
+    several files, or --polarity both, the results follow one another; with --json, each is one object on a line of its
+    own. A file that cannot be used is reported and skipped, and the exit code is 5.
 
-    FILE may be delimited text or a data centre's format, in a gzip file or zip archive too; - is standard input. Of
-    several columns, channels or files of an archive --channel chooses one; without it they are listed.
+    FILE may be delimited text or in the format of a data centre, also in a gzip file or zip archive; - is standard
+    input. If there are several columns, channels or files in an archive, choose one with --channel; without it they are
+    listed.
 
     \b
     Example:
@@ -134,7 +145,7 @@ def command(
     records, bad = motion_files.find_all(files)
     alone = len(records) + bad == 1 and scaling.polarity != "both"
     if plot is not None and more.spectrum is None and not alone:
-        raise click.UsageError("--plot draws one record: give one FILE and one polarity.")
+        raise click.UsageError("--plot draws a single record: give one FILE and one polarity.")
     from rocking_cli.io.files import keep_apart
     from rocking_cli.views.record import data, parts
     from rocking_cli.views.view import View
@@ -168,7 +179,7 @@ def command(
 def _clean_paths(
     out: Path, records: Sequence[Listed], channel: str | None, signs: Sequence[int], *, alone: bool
 ) -> dict[tuple[int, int], Path]:
-    """Where the clean file of each record goes, by its place and polarity: in a folder, by its name and channel."""
+    """Return the clean file of each record, by its place and polarity; in a folder, named after record and channel."""
     from rocking_cli.excitation.records.opening import name_of
 
     if _is_file(out):
@@ -183,7 +194,9 @@ def _clean_paths(
             turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
             path = out / f"{Path(name_of(record.path)).stem}{suffix}{turned}.csv"
             if path in paths.values():
-                raise InputError(Problem("two records would be written there", str(path), hint="write them one by one"))
+                raise InputError(
+                    Problem("two records would be written to the same file", str(path), hint="write them one by one")
+                )
             paths[k, sign] = path
     return paths
 
@@ -193,7 +206,7 @@ def _is_file(out: Path) -> bool:
 
 
 def _make_room(out: Path | None, paths: Iterable[Path]) -> None:
-    """See that the files can be written: what was not named, and is no clean record, is not replaced."""
+    """Check that the files can be written; files that were not named and are not clean records are kept."""
     from rocking_cli.excitation.record_csv import is_record_csv
     from rocking_cli.io.files import check_writable, folder
 
@@ -203,13 +216,13 @@ def _make_room(out: Path | None, paths: Iterable[Path]) -> None:
         folder(str(out))
     for path in paths:
         if not _is_file(out) and path.exists() and not is_record_csv(path):
-            hint = "move it away, or name another folder"
-            raise InputError(Problem("--out would replace a file that it did not write", str(path), hint=hint))
+            hint = "move it, or name another folder"
+            raise InputError(Problem("--out would overwrite a file that rocking did not write", str(path), hint=hint))
         check_writable(path)
 
 
 def _give_spectra(examined: Sequence[Examined], file: Path, plot: Path | None) -> None:
-    """Write the spectra of all records into one file, and draw them in one picture."""
+    """Write the spectra of all records into one file, and draw them in one plot."""
     from rocking_cli.cli import table_files
     from rocking_cli.views.response_spectrum import table
 
@@ -231,18 +244,18 @@ def _give_spectra(examined: Sequence[Examined], file: Path, plot: Path | None) -
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
-    """What is asked of every record.
+    """Options that apply to every record.
 
     Parameters
     ----------
     reading, scaling : Reading, Scaling
-        How it is read and scaled.
+        Options for reading and scaling.
     more : More
-        What is asked besides.
+        Additional results.
     structure : Prepared or None
-        What its interval is held against, and what relative measures refer to.
+        Structure for checking the sampling interval and for relative measures.
     plot : Path or None
-        Where its picture goes.
+        File of the plot.
     """
 
     reading: Reading
@@ -252,7 +265,7 @@ class _Asked:
     plot: Path | None
 
     def of(self, record: Listed, clean: Sequence[Path | None]) -> list[Examined]:
-        """Read a record, examine it in every polarity, and write what is to be written, each into its clean file."""
+        """Read a record, examine it in each polarity, and write its clean files."""
         from rocking_cli.excitation.records.opening import name_of
 
         motion = motion_files.read(record, self.reading.reading)
@@ -271,7 +284,7 @@ class _Asked:
         return found
 
     def _before(self, record: Listed) -> GroundMotion | None:
-        """The record without its corrections, to be shown beside it; None without any."""
+        """Return the record without its corrections, for comparison; None if it has none."""
         from rocking_cli.excitation.records.opening import allow_again
         from rocking_cli.processing.listed import Listed
         from rocking_cli.processing.steps import Resample
@@ -284,7 +297,7 @@ class _Asked:
         return motion_files.read(Listed(record.path), replace(asked, steps=grid, floor=None))
 
     def _examine(self, file: str, motion: GroundMotion, polarity: int) -> tuple[Examined, GroundMotion]:
-        """The record and its scaled motion; what is doubtful is looked for in the record as read."""
+        """Return the record and its scaled motion; the record as read is checked for doubts."""
         from rocking_cli.excitation.doubts import coarse_for, doubts
         from rocking_cli.excitation.measures import measure
         from rocking_cli.views.record import Examined
@@ -299,7 +312,7 @@ class _Asked:
         return seen._replace(asked=self._measured(scaled), spectrum=self._spectrum(scaled)), scaled
 
     def _measured(self, motion: GroundMotion) -> dict[Measure, float]:
-        """The measures that are asked for by name; of all there are those that can be had without a structure."""
+        """Compute the measures given by name; `all` without a structure means those that need none."""
         if self.more.measures is None:
             return {}
         from rocking_cli.processing.intensity import ALL, parse_measures
@@ -321,7 +334,7 @@ class _Asked:
 
 
 def _fit(motion: GroundMotion) -> list[PulseFit]:
-    """The best pulse of each shape by each criterion; says how far it is if that takes its time."""
+    """Fit the best pulse of each shape by each criterion; report progress if that takes long."""
     from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, fit_pulses
 
     fits: list[PulseFit] = []
@@ -357,7 +370,7 @@ def _draw(path: Path, motion: GroundMotion, examined: Examined, before: GroundMo
 
 
 def _shift(motion: GroundMotion) -> float:
-    """When a motion begins, on the time axis of what was read [s]."""
+    """Return the start of a motion, on the time axis of the record as read [s]."""
     from rocking_cli.processing.steps import Trim
 
     words = (each.split() for each in motion.processing)
@@ -365,6 +378,6 @@ def _shift(motion: GroundMotion) -> float:
 
 
 def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:
-    """Of the pulses fitted by each criterion the one that captures most, velocity first."""
+    """Return the fitted pulse that captures most, by each criterion, velocity first."""
     by_criterion = {fit.criterion: fit for fit in sorted(fits, key=lambda fit: fit.captured)}
     return [by_criterion["velocity"], by_criterion["acceleration"]]

@@ -1,4 +1,4 @@
-"""`rocking report`: a document of one file on a structure, to hand over."""
+"""`rocking report`: write a report on a structure as one HTML page."""
 
 from __future__ import annotations
 
@@ -10,22 +10,23 @@ import click
 from rocking_cli.cli import complete, heads, inputs, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Near
 from rocking_cli.cli.heads import Head
+from rocking_cli.cli.help import Command
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.scaled import Scaled
 
 
-@click.command(short_help="A document to hand over: one page with all that there is to say.")
+@click.command(cls=Command, short_help="Write a complete report on a structure as one HTML page.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @options.ground_motions
 @options.reading
-@options.scaling("1", "-1", "both", both="the worse is shown", default="both")
-@options.out(".html", what="Where to.  [default: FILE with .html, in this folder; none with --json]")
+@options.scaling("1", "-1", "both", default="both")
+@options.out(".html", what="Output file.  [default: FILE with the ending .html, in this folder; none with --json]")
 @heads.head
 @click.option(
     "--verify", "site_file", type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
-    help="Verify it too, by the code of this site: the calculation is a part of the report.",
+    help="Site file of a verification by code that becomes part of the report.",
 )  # fmt: skip
 @options.around
 @options.as_json
@@ -41,17 +42,19 @@ def command(
     site_file: str | None,
     as_json: bool,
 ) -> None:
-    """Write a report on a structure: one HTML file that opens in any browser, without a network, and prints.
+    """Write a report on a structure: one HTML file that opens in any browser, without a network, and can be printed.
 
-    A summary in words first: will it uplift, will it overturn, how close, which model to trust, what is doubtful. Then
-    the drawing, the parameters, the response to each ground motion, the pulses and the overturning map, the error of
-    the equivalent block, and the inputs and versions to compute it again. Without a ground motion, what needs none.
+    The report starts with a summary in words: whether the structure uplifts or overturns, how close it is to
+    overturning, which model is reliable, and what is doubtful. Then follow the drawing, the parameters, the response to
+    each ground motion (with --polarity both, that of the worse polarity), the pulses and the overturning map, the error
+    of the equivalent block, and the inputs and versions needed to reproduce the results. Without a ground motion, the
+    report contains only the parts that need none.
 
-    With --verify SITE.yaml also the verification by the code of the site, step by step as `rocking verify --sheet`
-    has it.
+    With --verify SITE.yaml, the report also contains the verification by the code of the site, step by step as in
+    `rocking verify --sheet`.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m. A record that cannot be used is
-    reported, the others are in the report, and the exit code is 5.
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m. A record that
+    cannot be used is reported and skipped, and the exit code is 5.
 
     \b
     Example:
@@ -60,7 +63,7 @@ def command(
     """
     asked.check()
     if not near.neighbours:
-        raise click.UsageError("A report says how close a result is: --neighbours must be at least 1 here.")
+        raise click.UsageError("The report shows how close the result is: --neighbours must be at least 1.")
     from rocking_cli.cli import sheets, structures
     from rocking_cli.cli.waiting import compile_first
     from rocking_cli.io.files import check_writable, keep_apart, write_whole

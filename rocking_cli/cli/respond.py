@@ -1,4 +1,4 @@
-"""`rocking respond`: time histories."""
+"""`rocking respond`: compute the response to a ground motion or a release."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 
 from rocking_cli.cli import complete, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, History, Near, Output, Vertical
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity, Tilt
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 from rocking_cli.excitation.scaled import Scaled
@@ -46,42 +47,49 @@ def _models(ctx: click.Context, param: click.Parameter, value: str) -> tuple[str
 def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     if not FINEST_RTOL <= value < 1:
         raise click.BadParameter(
-            f"{value:g} is not a number between 0 and 1 that is at least {FINEST_RTOL:g}: rounding allows no less.",
-            ctx,
-            param,
+            f"{value:g} is not a number from {FINEST_RTOL:g} to below 1: smaller errors are below rounding.", ctx, param
         )
     return value
 
 
-@click.command(short_help="Response to a ground motion: nonlinear and linear histories.")
+@click.command(cls=Command, short_help="Compute the response to a ground motion or a release.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @options.ground_motions
 @options.reading
-@click.option("--vertical", type=click.Path(), metavar="FILE", help="Its vertical component: g becomes g + v_g''.")
-@click.option("--vertical-dt", type=Quantity(INTERVAL), metavar="TIME", help="Its interval in s, if it has one column.")
-@click.option("--vertical-channel", metavar="CHANNEL", help="Which of several it is in its file.")
+@click.option(
+    "--vertical", type=click.Path(), metavar="FILE", help="Vertical component of the motion: g becomes g + v_g''."
+)
+@options.record_option(
+    "--vertical-dt",
+    type=Quantity(INTERVAL),
+    metavar="TIME",
+    help="Sampling interval of the vertical component in s, if its file has no times.",
+)
+@options.record_option("--vertical-channel", metavar="CHANNEL", help="Channel of the vertical component in its file.")
 @options.scaling("1", "-1", "both")
 @click.option(
     "--with-pulse",
     type=click.Choice((BEST, *FITTED)),
     is_flag=False,
     flag_value=BEST,
-    help="Also the response to the pulse in the record alone, of this shape or (with no value) the best.",
+    help="Shape of the pulse in the record whose response is computed as well; without a value, the best-fitting one.",
 )
 @click.option(
     "--release",
     type=Tilt(),
     metavar="TILT",
-    help="Start at rest from this fraction of phi_cr, or an angle such as 0.05rad; negative: anticlockwise.",
+    help="Initial tilt of a release from rest: a fraction of phi_cr, or an angle such as 0.05rad; negative is "
+    "anticlockwise.",
 )
 @click.option(
     "--model",
     "models",
     default=",".join(NAMES),
     show_default=True,
+    metavar="MODEL,...",
     callback=_models,
     shell_complete=complete.listed(NAMES),
-    help="Which histories.",
+    help=options.HELP["model"],
 )
 @click.option(
     "--tail",
@@ -89,7 +97,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     default=10.0,
     show_default=True,
     metavar="TIME",
-    help="How long the history goes on after the record, in s.",
+    help="Length of output after the end of the record, in s.",
 )
 @click.option(
     "--rtol",
@@ -98,13 +106,15 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     show_default=True,
     metavar="TOLERANCE",
     callback=_rtol,
-    help="Relative local error of a step of the nonlinear history.",
+    help="Relative error tolerance per step of the nonlinear integration.",
 )
 @options.around
-@click.option("--impacts", is_flag=True, help="List the impacts: times, and rates before and after.")
-@options.out(".csv", ".parquet", what="Write the histories (.csv or .parquet).")
-@options.plot("Draw them")
-@click.option("--contact", is_flag=True, help="Draw the friction needed too; a file with friction needs no asking.")
+@click.option("--impacts", is_flag=True, help="List the impacts: time, and angular velocity before and after.")
+@options.out(".csv", ".parquet", what="Write the time histories (.csv or .parquet).")
+@options.plot("Plot the time histories")
+@click.option(
+    "--contact", is_flag=True, help="Plot the friction required as well; automatic if the file gives friction."
+)
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, vertical=Vertical, history=History, near=Near, output=Output)
@@ -119,16 +129,18 @@ def command(
     impacts: bool,
     contact: bool,
 ) -> None:
-    """Rocking response of a structure to a ground motion, a release from a tilt, or both.
+    """Compute the rocking response of a structure to a ground motion, a release from a tilt, or both.
 
-    nonlinear is the mechanism itself; linear1 and linear2 are its equivalent block with kappa1 and kappa2. A
-    positive rotation is clockwise, and a ground acceleration to the left starts it. Every motion is followed until
-    the structure is at rest or certain to overturn, also after the end of the record.
+    The model nonlinear is the mechanism itself; linear1 and linear2 are its equivalent block with kappa1 and kappa2. A
+    positive rotation is clockwise and is started by a ground acceleration to the left. Every motion is simulated,
+    beyond the end of the record if necessary, until the structure is at rest or certain to overturn. With --polarity
+    both, the responses to the two polarities are computed one after the other.
 
-    Several motions get a row each, with --json an object a line, and a file each of --out and --plot, with the
-    motion in its name. One that cannot be used is reported, the others are shown, and the exit code is 5.
+    With several motions, the output has one row per motion (with --json, one object per line), and --out and --plot
+    write one file per motion, with its name in the file name. A motion that cannot be used is reported and skipped, and
+    the exit code is 5.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
@@ -142,11 +154,11 @@ def command(
     """
     _hold_together(asked, vertical, history)
     if contact and (output.plot is None or "nonlinear" not in history.names):
-        raise click.UsageError("--contact is a panel of the picture of the nonlinear history: give --plot FILE.")
+        raise click.UsageError("--contact adds a panel to the plot of the nonlinear history: give --plot FILE.")
     paths, missing = motion_files.find(asked.records)
     several = len(paths) + missing + len(asked.pulses) > 1
     if several and vertical.vertical is not None:
-        raise click.UsageError("--vertical is that of one motion: give one --record FILE or one --pulse PULSE.")
+        raise click.UsageError("--vertical applies to a single motion: give one --record FILE or one --pulse PULSE.")
     if asked and not paths and not asked.pulses:
         ctx.exit(InputError.exit_code)
     from rocking_cli.cli import inputs
@@ -191,26 +203,24 @@ def command(
 
 
 def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -> None:
-    """Refuse options that say nothing, or two things, beside each other."""
+    """Raise if options have no effect or cannot be combined."""
     if asked.records and asked.pulses:
-        raise click.UsageError("--record and --pulse exclude each other: give the one or the other.")
+        raise click.UsageError("--record and --pulse cannot be combined: choose one.")
     if not asked and history.release is None:
-        raise click.UsageError(
-            "Nothing to respond to: give --record FILE or --pulse PULSE, or --release TILT, or both."
-        )
+        raise click.UsageError("No excitation given: add --record FILE, --pulse PULSE or --release TILT.")
     if not asked and vertical.vertical is not None:
-        raise click.UsageError("--vertical goes with a horizontal component: give --record FILE or --pulse PULSE.")
+        raise click.UsageError("--vertical requires a horizontal component: give --record FILE or --pulse PULSE.")
     asked.check(vertical.vertical)
     if not asked and asked.polarity != "1":
         raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
     if history.with_pulse is not None and not asked.records:
-        raise click.UsageError("--with-pulse finds the pulse in a record: give --record FILE.")
+        raise click.UsageError("--with-pulse requires a record: give --record FILE.")
     if history.with_pulse is not None and asked.polarity == "both":
-        raise click.UsageError("--with-pulse and --polarity both exclude each other: ask for one after the other.")
+        raise click.UsageError("--with-pulse cannot be combined with --polarity both: run one polarity at a time.")
 
 
 def _names(structure: Prepared, history: History) -> tuple[ModelName, ...]:
-    """The models to follow: those asked for, else those that do not mislead, and a word on the others."""
+    """Return the models to run: those given, or else those that do not mislead, with a note on the others."""
     if not history.by_default:
         return history.names
     if len(structure.default_models) < len(history.names):
@@ -219,18 +229,18 @@ def _names(structure: Prepared, history: History) -> tuple[ModelName, ...]:
 
 
 class _Job:
-    """The motions of a structure, followed and shown one after the other; of several a table at the end.
+    """Motions of a structure, simulated and shown one after the other; of several, a table at the end.
 
     Parameters
     ----------
     structure : Prepared
         The structure.
     names : tuple of str
-        Of the models to follow.
+        Names of the models to run.
     asked : Question
-        What is asked of every motion.
+        Options that apply to every motion.
     polarity : str
-        As it was given.
+        Polarity, as given.
     several, impacts, contact, as_json : bool
         Whether there are several motions, and how each is shown.
     """
@@ -255,7 +265,7 @@ class _Job:
         self._details: list[Table | str] = []
 
     def follow(self, given: Scaled | None, out: Path | None, plot: Path | None) -> bool:
-        """Follow one motion, or a free release, and show it; false if it is one of several and cannot be followed."""
+        """Simulate one motion, or a free release, and show it; return false for an unusable motion of several."""
         from rocking_cli.cli import structures
         from rocking_cli.studies.response import answer
         from rocking_cli.views.response import view
@@ -301,9 +311,9 @@ def _say_which_pulse(fit: PulseFit | None) -> None:
 def _write(
     found: Answer, out: Path | None, plot: Path | None, title: str, structure: Prepared, *, contact: bool
 ) -> None:  # fmt: skip
-    """Write the histories and their picture to the files asked for.
+    """Write the time histories and their plot to the requested files.
 
-    In a table those of the second polarity, or to the pulse alone, stand last, under names that say so.
+    In a table, those of the second polarity, or of the pulse alone, are the last columns, and their names say so.
     """
     from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.movements import Watched

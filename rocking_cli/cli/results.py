@@ -1,4 +1,4 @@
-"""`rocking results`: what is in the store of a study."""
+"""`rocking results`: summarise and export the store of a study."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from rocking_cli.errors import INCOMPLETE
     cls=options.Renamed, renamed={"--pictures": "--plot"}, short_help="Summarise and export the store of a study."
 )
 @click.argument("file", metavar="STORE.db", type=click.Path())
-@options.out(".csv", ".parquet", what="Write every run (.csv, .parquet).")
+@options.out(".csv", ".parquet", what="Write all runs (.csv or .parquet).")
 @click.option(
     "--curves",
     callback=options.output_path(".csv", ".parquet"),
     metavar="FILE.csv",
     shell_complete=complete.files,
-    help="Write the curves, a line for each intensity (.csv, .parquet).  - is standard output.",
+    help="Write the curves, one line per intensity (.csv or .parquet).  - is standard output.",
 )
 @options.nrml
 @options.quantiles
-@click.option("--plot", metavar="FOLDER", help="Draw every curve into this folder, made if absent.")
-@click.option("--rank-measures", is_flag=True, help="Also say which of the measures that it knows serves.")
+@options.curve_plots
+@options.rank_measures
 @options.as_json
 @click.pass_context
 @options.grouped(shown=Shown, tables=Tables)
 def command(ctx: click.Context, file: str, shown: Shown, tables: Tables, as_json: bool) -> None:
-    """Fragility curves and runs of a study, from its store.
+    """Summarise and export the fragility curves and runs of a study, from its store.
 
-    It needs none of the study's other files, and can look at a study while it runs.
+    The command needs no other file of the study, and can read the store while the study runs.
 
     \b
     Example:
@@ -56,7 +56,7 @@ def command(ctx: click.Context, file: str, shown: Shown, tables: Tables, as_json
             terminal.warning(f"{file}: {each}")
         harmed = bool(store.damaged) or store.unreadable
         if harmed:
-            terminal.note("`rocking fragility STUDY.yaml` takes over what is sound, and runs the rest again")
+            terminal.note("run `rocking fragility STUDY.yaml` to keep the undamaged runs and repeat the others")
         complete = show_study(store, shown, tables, as_json=as_json) and not harmed
     if not complete:
         ctx.exit(INCOMPLETE)

@@ -1,4 +1,4 @@
-"""`rocking select`: a set of records whose mean response spectrum fits a target."""
+"""`rocking select`: select records whose mean response spectrum matches a target."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import click
 
 from rocking_cli.cli import complete, motion_files, options, terminal
 from rocking_cli.cli.groups import Output, Reading
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import PERIOD, Kind, Range, Share
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -29,7 +30,7 @@ MOST = 1000  # records of a set
 
 @dataclass(frozen=True)
 class Asked:
-    """What the set is to be."""
+    """Requirements on the set of records."""
 
     count: int
     band: tuple[float, float]
@@ -42,13 +43,13 @@ class Asked:
 
     @property
     def wanted(self) -> Wanted:
-        """The same for the study."""
+        """Requirements, in the form that the study needs."""
         from rocking_cli.studies.record_set import Wanted
 
         return Wanted(**vars(self))
 
 
-@click.command(short_help="Records whose mean spectrum fits a target.")
+@click.command(cls=Command, short_help="Select records whose mean spectrum matches a target.")
 @click.argument("records", metavar="RECORD...", nargs=-1, required=True, type=click.Path())
 @click.option(
     "--target",
@@ -56,19 +57,23 @@ class Asked:
     type=click.Path(path_type=Path),
     metavar="SPECTRUM.csv",
     shell_complete=complete.files,
-    help="The spectrum to fit: a column of periods in s, one of ordinates in g or as its heading says.",
+    help="Target spectrum: one column of periods in s, and one of ordinates in g or in the unit of its heading.",
 )
 @click.option(
-    "--band", required=True, type=Range(PERIOD), metavar="FROM:TO", help="Periods over which it is to fit, in s."
+    "--band",
+    required=True,
+    type=Range(PERIOD),
+    metavar="FROM:TO",
+    help="Period range over which the mean must match, in s.",
 )
-@click.option("--count", required=True, type=click.IntRange(1, MOST), metavar="N", help="How many records.")
+@click.option("--count", required=True, type=click.IntRange(1, MOST), metavar="N", help="Number of records to select.")
 @click.option(
     "--within",
     type=Range(RATIO),
     default="0.9:1.3",
     show_default=True,
     metavar="LOW:HIGH",
-    help="Limits on the mean over the target.",
+    help="Lower and upper limit on the ratio of mean to target.",
 )
 @click.option(
     "--damping",
@@ -77,7 +82,7 @@ class Asked:
     show_default=True,
     callback=options.share,
     metavar="SHARE",
-    help="Damping that the target is of.",
+    help=options.HELP["damping"],
 )
 @click.option(
     "--factors",
@@ -85,18 +90,23 @@ class Asked:
     default="0.2:5",
     show_default=True,
     metavar="LOW:HIGH",
-    help="Limits on the factor of each record.",
+    help="Lower and upper limit on the scale factor of each record.",
 )
 @click.option(
     "--one-per",
     type=click.Choice(["event", "station", "none"]),
     default="event",
     show_default=True,
-    help="Of what there is one record at most, where the files say.",
+    help="Origin from which at most one record is taken, if the files name it.",
 )
 @click.option("--same-factor", is_flag=True, help="Scale all records by the same factor.")
 @click.option(
-    "--seed", type=click.IntRange(0), default=0, show_default=True, metavar="N", help="Of the searches, if any."
+    "--seed",
+    type=click.IntRange(0),
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="Seed of the random searches, if any.",
 )
 @options.reading
 @click.option(
@@ -104,23 +114,24 @@ class Asked:
     "--out",
     type=click.Path(path_type=Path),
     metavar="FOLDER",
-    help="Write the scaled records there, and a list of them, set.yaml.",
+    help="Write the scaled records and a list of them, set.yaml, into this folder.",
 )
-@options.plot("Draw the spectra, their mean and the target")
+@options.plot("Plot the spectra, their mean and the target")
 @options.as_json
 @click.pass_context
 @options.grouped(asked=Asked, reading=Reading, output=Output)
 def command(
     ctx: click.Context, records: tuple[str, ...], target: Path, asked: Asked, reading: Reading, output: Output
 ) -> None:
-    """Choose records whose mean response spectrum fits a target, and the factor on each.
+    """Select records whose mean response spectrum matches a target, with a scale factor for each.
 
-    Of all sets of --count records it gives one whose mean lies within the limits all over the band, and of those the
-    one nearest to the target. Each record is brought to the target on average over the band, then all by one factor.
-    The usual limits are those of NTC 2018; EN 1998-1 asks for 0.9 alone, from 0.2 to 2 times the structure's period.
+    Among the sets of --count records whose mean stays within the limits over the whole band, the command selects the
+    one whose mean is closest to the target. Each record is first scaled to match the target on average over the band;
+    then one common factor is applied to all. The default limits are those of NTC 2018; EN 1998-1 requires the lower
+    limit of 0.9 only, from 0.2 to 2 times the period of the structure. The target has the damping ratio of --damping.
 
-    RECORD is a file or a pattern in quotes. One that cannot be used is reported, and the exit code is 5; where no set
-    fits, the nearest is shown, with the periods where it does not.
+    RECORD is a file or a quoted pattern. A record that cannot be used is reported and skipped, and the exit code is 5.
+    If no set stays within the limits, the closest one is shown, with the periods at which it exceeds them.
 
     \b
     Example:
@@ -142,7 +153,7 @@ def command(
     spectrum = read_target(target)
     spectrum.check(wanted.band)
     if spectrum.unit is None:
-        terminal.note(f"{target} names no unit: its ordinates are taken to be in g")
+        terminal.note(f"{target} does not name a unit: its ordinates are assumed to be in g")
     for doubt in doubts(spectrum):
         terminal.warning(doubt)
     chosen, refused = motion_files.gather(listed, (), reading.reading, (None, None, None), 0.0)
@@ -173,17 +184,17 @@ def command(
 
 
 def _without(target: Path, listed: list[Listed]) -> list[Listed]:
-    """The records without the target, which a pattern may stand for too."""
+    """Return the records without the target, which a pattern may also match."""
     kept = [each for each in listed if not (each.path.exists() and target.exists() and each.path.samefile(target))]
     if len(kept) < len(listed):
         if not kept:
-            raise click.UsageError(f"Nothing to choose from: {target} is the target, and no record is given beside it.")
-        terminal.note(f"{target} is the target, and not taken for a record")
+            raise click.UsageError(f"No records to choose from: {target} is the target. Add the record files.")
+        terminal.note(f"{target} is the target spectrum and is not used as a record")
     return kept
 
 
 def _results(chosen: list[Scaled], listed: list[Listed], target: TargetSpectrum, wanted: Wanted) -> Results:
-    """Choose among the records that were read."""
+    """Select among the records that were read."""
     from rocking_cli.views.record_set import Results
 
     read = {each.place for each in chosen}
@@ -193,7 +204,7 @@ def _results(chosen: list[Scaled], listed: list[Listed], target: TargetSpectrum,
 
 
 def _found(motions: list[GroundMotion], target: TargetSpectrum, wanted: Wanted) -> RecordSet:
-    """The set; bars show how far the spectra and the search are."""
+    """Select the set, with progress bars for the spectra and the search."""
     from rocking_cli.studies import record_set
 
     with terminal.progress(len(motions), "spectra") as advance:
@@ -202,8 +213,8 @@ def _found(motions: list[GroundMotion], target: TargetSpectrum, wanted: Wanted) 
         worst = max(motion.dt for motion in coarse)
         terminal.warning(
             f"the band begins at {wanted.band[0]:g} s, which is less than {record_set.FEWEST} intervals of "
-            f"{len(coarse)} of {len(motions)} records (dt up to {worst:g} s): their spectra miss there what their "
-            "samples miss"
+            f"{len(coarse)} of {len(motions)} records (dt up to {worst:g} s): at such periods their spectra lack the "
+            "motion between samples"
         )
     with ExitStack() as stack:
 

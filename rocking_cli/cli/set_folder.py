@@ -1,4 +1,4 @@
-"""A folder of a set of records: each scaled, as a clean file, and a list of them that says where they come from."""
+"""Folder of a set of records: each scaled, as a clean file, and a list that names their origins."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ if TYPE_CHECKING:
     from rocking_cli.views.record_set import Results
 
 LIST = "set.yaml"
-ELSEWHERE = "move it away, or name another folder"
+ELSEWHERE = "move it, or name another folder"
 MARK = "# A set of records, chosen by rocking select."
 
 
 def write_set(folder_: Path, results: Results, readings: Sequence[Reading | None]) -> None:
-    """Write the scaled records and their list; records of an earlier set in that folder are taken away.
+    """Write the scaled records and their list; records of an earlier set in that folder are removed.
 
     Parameters
     ----------
     folder_ : Path
-        Where to; made if it is not there.
+        Folder, created if missing.
     results : Results
         The set.
     readings : sequence of (Reading or None)
-        How each record of the set was read; None of one that cannot be read again: its scaled file stands in the list.
+        How each record of the set was read; None if it cannot be read again: the list then names its scaled file.
 
     Notes
     -----
-    What is there already has passed `check_folder`.
+    The existing files have passed `check_folder`.
     """
     from rocking_cli.excitation.record_csv import write_record_csv
     from rocking_cli.io.files import folder, write_whole
@@ -51,12 +51,12 @@ def write_set(folder_: Path, results: Results, readings: Sequence[Reading | None
         write_whole(path, lambda stream, motion=motion: write_record_csv(stream, motion))  # type: ignore[misc]
     text = _list(place, results, readings, paths)
     write_whole(place / LIST, lambda stream: stream.write(text.encode("utf-8", "surrogateescape")))
-    gone = f"; {len(stale)} of an earlier set taken away" if stale else ""
+    gone = f"; {len(stale)} of an earlier set removed" if stale else ""
     terminal.note(f"wrote {len(paths)} record{'s' * (len(paths) > 1)} and {LIST} to {place.resolve()}{gone}")
 
 
 def _paths(place: Path, motions: list[GroundMotion]) -> list[Path]:
-    """A file for each, of its name; where two are the same, the second has a number."""
+    """Return a file for each motion, after its name; if two names are equal, the second gets a number."""
     taken: dict[str, Path] = {}
     for motion in motions:
         name, _, channel = motion.name.partition(" channel ")
@@ -70,12 +70,12 @@ def _paths(place: Path, motions: list[GroundMotion]) -> list[Path]:
 
 
 def check_folder(folder_: Path, inputs: Sequence[Path]) -> None:
-    """See, before any work, that a set can be written into a folder; it is made if it is not there.
+    """Check, before any work, that a set can be written into a folder, which is created if missing.
 
     Raises
     ------
     InputError
-        If it holds what is read, or records that no such command wrote.
+        If the folder holds input files, or records not written by this command.
     """
     from rocking_cli.excitation.record_csv import is_record_csv
     from rocking_cli.io.files import check_writable, folder
@@ -83,28 +83,30 @@ def check_folder(folder_: Path, inputs: Sequence[Path]) -> None:
     place = folder(str(folder_))
     for each in inputs:
         if each.exists() and each.resolve().parent == place.resolve():
-            hint = "a set is written into a folder of its own: name another"
-            raise InputError(Problem("--out is the folder of what is read", str(each), hint=hint))
+            hint = "name a separate folder for the set"
+            raise InputError(Problem("--out is the folder of an input file", str(each), hint=hint))
     check_writable(place / LIST)
     earlier = _earlier(place / LIST)
     for each in sorted(place.glob("*.csv")):
         if not (each.name in earlier and is_record_csv(each)):
-            message = "this file is in the folder of the set, and would be replaced or taken for one of its records"
+            message = (
+                "this file is in the folder of the set, and would be overwritten or mistaken for one of its records"
+            )
             raise InputError(Problem(message, str(each), hint=ELSEWHERE))
 
 
 def _earlier(path: Path) -> set[str]:
-    """The names of the files of an earlier set."""
+    """Return the names of the files of an earlier set."""
     if not path.exists():
         return set()
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.is_file() else []
     if lines[:1] != [MARK]:
-        raise InputError(Problem("--out would replace a file that it did not write", str(path), hint=ELSEWHERE))
+        raise InputError(Problem("--out would overwrite a file that rocking did not write", str(path), hint=ELSEWHERE))
     return {line.removeprefix("#   ") for line in lines if line.startswith("#   ")}
 
 
 def _list(place: Path, results: Results, readings: Sequence[Reading | None], paths: Sequence[Path]) -> str:
-    """The list as YAML: the records where they are, the factor on each, and how they were read."""
+    """Return the list as YAML: the path of each record, its factor, and how it was read."""
     import yaml
 
     from rocking_cli.views.record_set import verdict
@@ -123,7 +125,7 @@ def _list(place: Path, results: Results, readings: Sequence[Reading | None], pat
 
 
 def _entry(place: Path, file: str | None, motion: GroundMotion, factor: float, reading: Reading) -> dict[str, Any]:
-    """One record of the list."""
+    """Return one record of the list."""
     from rocking_cli.processing.entry import of_reading, relative
 
     assert file is not None

@@ -1,4 +1,4 @@
-"""Calculation sheets of verifications, made and written."""
+"""Make and write the calculation sheets of verifications."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def check(asked: SheetAsked, site: SiteFile) -> None:
-    """Refuse, before any work, a sheet that cannot be written. Raises `InputError`."""
+    """Raise `InputError`, before any work, if a sheet cannot be written."""
     check_has_sheet(site)
     if _is_docx(asked.sheet):
         from rocking_cli.report.sheet_docx import check_package
@@ -44,7 +44,7 @@ def _is_docx(path: Path | None) -> bool:
 
 
 def made(structure: Prepared, given: str | None, site: Path, motions: Sequence[Scaled]) -> Made:
-    """What a sheet is made from: the structure, its file as it was given, the site, and ground motions."""
+    """Return the inputs of a sheet: the structure, its file as given, the site, and the ground motions."""
     return Made(
         heads.file_of(structure, given),
         File(str(site), original(site)),
@@ -54,8 +54,8 @@ def made(structure: Prepared, given: str | None, site: Path, motions: Sequence[S
 
 
 def write(asked: SheetAsked, found: Verification, site: SiteFile, title: TitleBlock, of: Made) -> None:
-    """Write the sheet, and say so."""
-    assert asked.sheet is not None  # else none is asked for
+    """Write the sheet, and report it."""
+    assert asked.sheet is not None  # the caller has checked
     content = sheet(found, site, asked.spoken, title, of)
     if _is_docx(asked.sheet):
         from rocking_cli.report.sheet_docx import render as render_docx
@@ -75,7 +75,7 @@ def of_report(
     structure: Prepared, site_path: Path, given: str | None, motions: Sequence[Scaled], signs: Sequence[int],
     title: TitleBlock,
 ) -> VerifiedReport:  # fmt: skip
-    """The verification that is part of a report, with histories under its ground motions."""
+    """Return the verification in a report, with time histories under its ground motions."""
     site = read_site(site_path)
     found = verify(structure, site)
     if motions:

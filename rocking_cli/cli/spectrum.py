@@ -1,4 +1,4 @@
-"""`rocking spectrum`: the peak rotation over the size of structures, and where the user's own lies."""
+"""`rocking spectrum`: compute the rocking spectrum: peak rotation against size."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import click
 
 from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Output
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Finite, Share, Sizes
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -23,12 +24,12 @@ if TYPE_CHECKING:
     from rocking_cli.views.spectrum import Results
 
 MODELS = ("nonlinear", "linear1", "linear2")
-SIZES, MOST = 60, 2000  # of a curve, unless asked otherwise and at most
-RIGHT = "no angle in rad between 0 and pi/2: alpha = atan(b/h) of a block 2b wide, 2h high"
+SIZES, MOST = 60, 2000  # of a curve: by default, and at most
+RIGHT = "not an angle in rad between 0 and pi/2: give alpha = atan(b/h) of a block 2b wide and 2h high"
 
 
 def _slenderness(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[float, ...]:
-    """Different angles between 0 and a right one, in rad unless a unit says otherwise."""
+    """Return the different angles between 0 and a right angle, in rad unless they have a unit."""
     from rocking_cli.units import UnitError, read, split
 
     found = []
@@ -45,7 +46,7 @@ def _slenderness(ctx: click.Context, param: click.Parameter, value: str | None) 
 
 
 def _numbers(low: float, high: float, what: str) -> Any:
-    """A callback for a list of different numbers between two bounds."""
+    """Make a callback of click for a list of different numbers between two bounds."""
 
     def read(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[float, ...]:
         number = Share()
@@ -61,7 +62,7 @@ def _numbers(low: float, high: float, what: str) -> Any:
 
 @dataclass(frozen=True)
 class Sizing:
-    """What there is a curve of besides the files, in which sizes, and by which equation of motion."""
+    """Rectangular blocks, sizes, model and restitution of a rocking spectrum."""
 
     slenderness: tuple[float, ...]
     sizes: tuple[float, float, int] | None
@@ -69,14 +70,14 @@ class Sizing:
     eta: float | None
 
 
-@click.command(short_help="Peak rotation and overturning over the size of structures.")
+@click.command(cls=Command, short_help="Compute the rocking spectrum: peak rotation against size.")
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @options.ground_motions
 @click.option(
     "--slenderness",
     metavar="A,B,...",
     callback=_slenderness,
-    help="Also rectangular blocks: alpha = atan(b/h) in rad, such as 0.1,0.2, or 10deg.",
+    help="Slendernesses of rectangular blocks to compute as well: alpha = atan(b/h) in rad, such as 0.1,0.2, or 10deg.",
 )
 @click.option(
     "--sizes",
@@ -84,26 +85,26 @@ class Sizing:
     metavar="FROM:TO[:COUNT]",
     help="Sizes, as 2 pi/p in s, such as 1:10:60.  [default: FILE scaled by 0.1 to 10; 1:10 for blocks alone]",
 )
-@click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help="Equation of motion.")
+@click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help=options.HELP["model"])
 @click.option(
     "--eta",
     type=Finite(),
     callback=options.restitution,
-    help="Restitution.  [default: the structure's, the block's]",
+    help=f"{options.HELP['eta']}  [default: that of the structure or block]",
 )
 @options.reading
-@options.scaling("1", "-1", "both", both="the worse of the two")
+@options.scaling("1", "-1", "both")
 @click.option(
     "--fractiles",
     default="0.16,0.84",
     show_default=True,
     metavar="Q,Q",
-    callback=_numbers(0, 1, "no fractile between 0 and 1"),
-    help="Beside the median, of several motions.",
+    callback=_numbers(0, 1, "not a fractile between 0 and 1"),
+    help="Fractiles to show in addition to the median, with several motions.",
 )
-@click.option("--jobs", type=click.IntRange(1, 1024), metavar="N", help="Processors to use.  [default: all]")
-@options.out(".csv", what="Write the curves, with every motion's.")
-@options.plot("Draw them")
+@click.option("--jobs", type=click.IntRange(1, 1024), metavar="N", help=options.HELP["jobs"])
+@options.out(".csv", what="Write the curves, including those of each motion.")
+@options.plot("Plot the curves")
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, sizing=Sizing, output=Output)
@@ -116,14 +117,15 @@ def command(
     jobs: int | None,
     output: Output,
 ) -> None:
-    """Rocking response spectrum: the peak rotation and overturning over the size, under one or more ground motions.
+    """Compute the rocking spectrum: peak rotation and overturning against size, under one or more ground motions.
 
-    There is a curve for each FILE, every length of which is multiplied by the scale, and one for rectangular blocks
-    of each slenderness. Sizes are 2 pi/p: it goes as the square root of the scale. FILE itself is marked. Of
-    several motions it gives median, fractiles and the share that overturns.
+    The spectrum has one curve per FILE, with all its lengths multiplied by a scale, and one per slenderness of
+    rectangular block. Size is expressed as 2 pi/p, which increases with the square root of the scale. The structure as
+    given is marked. With several motions, the spectrum gives the median, the fractiles and the share that overturn.
+    With --polarity both, the worse of the two polarities governs.
 
-    Without FILE and --slenderness it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m. A motion or a
-    FILE that cannot be used is reported, the others are run, and the exit code is 5.
+    Without FILE and --slenderness, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m. A
+    motion or a FILE that cannot be used is reported and skipped, and the exit code is 5.
 
     \b
     Example:
@@ -135,9 +137,7 @@ def command(
     Source: Makris and Konstantinidis (2003).
     """
     if not asked:
-        raise click.UsageError(
-            "Nothing to respond to: give --record PLACE or --pulse PULSE, each as often as you like."
-        )
+        raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
     motion_files.check_strays(files, asked.records)
     from rocking_cli.cli import waiting
@@ -165,7 +165,7 @@ def command(
 
 
 def _give(results: Results, output: Output) -> None:
-    """Write the files asked for, and show the result."""
+    """Write the requested files, and show the result."""
     from rocking_cli.views.spectrum import table, title, view
 
     def draw() -> Figure:
@@ -180,7 +180,7 @@ def _give(results: Results, output: Output) -> None:
 def _shapes(
     files: tuple[str, ...], slenderness: tuple[float, ...], model: ModelName, eta: float | None
 ) -> tuple[list[Shape], int]:
-    """What there is a curve of, the structures, then the blocks; and how many files cannot be used."""
+    """Return the shape of each curve, structures first, then blocks; and the number of unusable files."""
     from rocking_cli.cli import structures
     from rocking_cli.studies.spectrum import blocks_of, shape_of
 
@@ -193,7 +193,7 @@ def _shapes(
 
 
 def _sizes(shapes: list[Shape], asked: tuple[float, float, int] | None) -> Reals:
-    """2 pi/p of the sizes [s], at equal ratios."""
+    """Return 2 pi/p of the sizes, at equal ratios [s]."""
     import numpy as np
 
     from rocking_cli.studies.spectrum import usual_sizes

@@ -1,4 +1,4 @@
-"""Which structures a command works on, and what to say of them."""
+"""Structures of a command: read, checked and reported."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nhei
 
 
 def load(files: Sequence[str]) -> list[Mechanism]:
-    """The structures of files, - for standard input; without any, that of `rocking.yaml` here, else the default block.
+    """Return the structures of files, - for standard input; without any, `rocking.yaml` here or the default block.
 
     Raises
     ------
@@ -47,27 +47,27 @@ def load(files: Sequence[str]) -> list[Mechanism]:
 
 
 def warn(mechanism: Mechanism) -> None:
-    """Say what is doubtful about a structure, whatever is asked of it."""
+    """Warn of doubts about a structure, for any command."""
     if not mechanism.verified:
-        terminal.warning(f"nobody has verified the mechanism {mechanism.mechanism}: check its numbers yourself")
+        terminal.warning(f"the mechanism {mechanism.mechanism} has not been verified: check its results yourself")
     for doubt in doubts(mechanism):
         terminal.warning(doubt)
 
 
 def warn_misleading(structure: Prepared, model: str) -> None:
-    """Say of a linear model that was asked for that it misleads, where it does."""
+    """Warn if a requested linear model misleads for this structure."""
     if model != "nonlinear" and structure.misleading is not None:
         terminal.warning(f"{structure.name}: {structure.misleading}")
 
 
 def doubts(mechanism: Mechanism) -> list[str]:
-    """What is doubtful about the sizes that were read."""
+    """Return the doubts about the sizes that were read."""
     doubt = doubtful_size(mechanism)
     return [f"{mechanism.name}: {doubt}"] if doubt is not None else []
 
 
 def load_each(files: Sequence[str]) -> tuple[list[Mechanism], list[str], int]:
-    """The structures of several files, those files, and how many others were reported and left out.
+    """Return the structures of several files, these files, and the number of other files, which are reported.
 
     Raises
     ------
@@ -91,24 +91,24 @@ def load_each(files: Sequence[str]) -> tuple[list[Mechanism], list[str], int]:
 
 
 def place(file: str | None) -> str | None:
-    """The file that a structure stands in, as messages call it, given or found here; None for the default block."""
+    """Return the file of a structure, as named in messages; None for the default block."""
     return name_of(file) if file is not None else HERE if Path(HERE).exists() else None
 
 
 def prepared(files: Sequence[str]) -> Prepared:
-    """The one structure of a file or of none, as `load`, made ready."""
+    """Return the single structure of a file or of none, as `load`, prepared."""
     from rocking_cli.dynamics.prepared import Prepared
 
     return Prepared(load(files)[0], place(files[0] if files else None))
 
 
 def stem(file: str | None) -> str:
-    """What to call files that are made of a structure where nobody says."""
+    """Return the default name of files made from a structure, without suffix."""
     return "rocking" if file in (None, "", STANDARD_INPUT) else Path(str(file)).stem
 
 
 def _read(file: str) -> Mechanism:
-    """The structure of a file, or of standard input for `-`."""
+    """Return the structure of a file, or of standard input for `-`."""
     if file != STANDARD_INPUT:
         mechanism = load_structure(file)
         terminal.detail(f"structure: {mechanism.name} ({mechanism.mechanism}), of {Path(file).resolve()}")
@@ -126,7 +126,7 @@ def _unnamed() -> Mechanism:
 
 
 def told_apart(mechanisms: Sequence[Mechanism], files: Sequence[str]) -> list[Mechanism]:
-    """The structures, those that share a name called after their files too."""
+    """Return the structures; those with the same name are named after their files too."""
     names = [each.name for each in mechanisms]
     longer = [f"{name} ({one_line(Path(file).name)})" for name, file in zip(names, files, strict=True)]
     return [

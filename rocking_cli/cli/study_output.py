@@ -1,4 +1,4 @@
-"""What the store of a fragility study holds: shown, drawn, and written to a file."""
+"""Show, draw and write the contents of the store of a fragility study."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Shown:
-    """How curves are shown besides as a table: drawn in a folder, for OpenQuake, with quantiles and by measure."""
+    """Additional outputs of curves: plots, a file for OpenQuake, quantiles and a ranking of measures."""
 
     plot: str | None
     nrml: Path | None
@@ -30,7 +30,7 @@ class Shown:
 
 @dataclass(frozen=True)
 class Tables:
-    """Where the tables of runs and of curves are written."""
+    """Files of the tables of runs and of curves."""
 
     out: Path | None = None
     curves: Path | None = None
@@ -42,7 +42,7 @@ def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json
     Returns
     -------
     bool
-        Whether all records, samples and runs could be used, and all are there.
+        Whether the store is complete, and all records, samples and runs could be used.
     """
     from rocking_cli.studies.fragility.quantiles import all_quantiles
     from rocking_cli.views.fragility import left_out, view
@@ -66,15 +66,15 @@ def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json
     if shown.rank_measures:
         result = _with_ranking(result, store, plan, definition, shown)
     terminal.show(result, as_json=as_json)
-    if shown.nrml is not None:  # last: whatever OpenQuake does not take has been shown
+    if shown.nrml is not None:  # last: curves that OpenQuake cannot read have been shown
         _write_nrml(shown.nrml, store, str(result.parts[0]), curves)
     if failed:
-        terminal.error(f"{failed} runs could not be followed, and are left out of the curves")
+        terminal.error(f"{failed} runs could not be simulated and are left out of the curves")
     return finished == plan.total and not failed and not left_out(plan)
 
 
 def _definition(store: Store) -> Definition:
-    """What the study of a store asks for."""
+    """Return the definition of the study of a store."""
     from pydantic import ValidationError
 
     from rocking_cli.studies.fragility.definition import Definition
@@ -82,12 +82,14 @@ def _definition(store: Store) -> Definition:
     try:
         return Definition.model_validate(store.fact("definition"))
     except ValidationError:
-        hint = "`rocking fragility STUDY.yaml` says what, and keeps the runs"
-        raise InputError(Problem("its study asks for what is refused today", str(store.path), hint=hint)) from None
+        hint = "run `rocking fragility STUDY.yaml`: it names the problem and keeps the runs"
+        raise InputError(
+            Problem("the definition of its study is not valid in this version", str(store.path), hint=hint)
+        ) from None
 
 
 def _with_ranking(result: View, store: Store, plan: Plan, definition: Definition, shown: Shown) -> View:
-    """What is shown, and which measures serve; drawn too if there are to be pictures."""
+    """Add the ranking of measures to a view; draw it too if plots are requested."""
     from rocking_cli.studies.fragility.ranking import rank
     from rocking_cli.views.ranking import added
 
@@ -101,7 +103,7 @@ def _with_ranking(result: View, store: Store, plan: Plan, definition: Definition
 
 
 def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Fragility], list[Bivariate]]:
-    """Count the runs of a store, and fit what its study asks for."""
+    """Count the runs of a store, and fit the curves of its study."""
     import numpy as np
 
     from rocking_cli.studies.fragility import assess
@@ -131,13 +133,13 @@ def _write_curves(out: Path, curves: Sequence[Fragility]) -> None:
     for each in curves:
         if each.curve.kind == "none":
             terminal.warning(
-                f"{each.structure}, {limit_name(each.limit)} over {each.measure}: no curve: {each.curve.why}"
+                f"{each.structure}, {limit_name(each.limit)} against {each.measure}: no curve: {each.curve.why}"
             )
     table_files.write(out, blocks(curves))
 
 
 def _write_nrml(out: Path, store: Store, said: str, curves: Sequence[Fragility]) -> None:
-    """Write the curves that OpenQuake takes, and name the others."""
+    """Write the curves that OpenQuake can read, and name the others."""
     from rocking_cli.io.files import write_whole
     from rocking_cli.studies.fragility.openquake import chosen
     from rocking_cli.views.nrml import nrml

@@ -1,4 +1,4 @@
-"""The pictures of a fragility study, one file each in a folder."""
+"""Plots of a fragility study, one file each in a folder."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def draw_all(
     surfaces: Sequence[Bivariate],
     spread: Sequence[Quantiles],
 ) -> None:
-    """Draw the curves of each structure, the structures beside each other, what they are of, and surfaces."""
+    """Draw the curves of each structure, the comparison of structures, the data behind them, and surfaces."""
     from rocking_cli.plotting import fragility as plotting
     from rocking_cli.plotting.quantiles import draw_quantiles
     from rocking_cli.studies.fragility.intensity import label
@@ -74,11 +74,11 @@ def _save(folder: Path, drawn: Mapping[str, Figure]) -> None:
         for file, figure in drawn.items():
             save(folder / file, figure)
             advance(1)
-    terminal.note(f"wrote {len(drawn)} pictures to {folder}")
+    terminal.note(f"wrote {len(drawn)} plots to {folder}")
 
 
 def draw_rankings(folder: Path, rankings: Sequence[Ranking]) -> None:
-    """Draw which measures serve, a picture for each structure."""
+    """Draw the ranking of measures, one plot for each structure."""
     from rocking_cli.cli.pictures import save
     from rocking_cli.plotting.ranking import draw_ranking
 

@@ -1,4 +1,4 @@
-"""`rocking survey`: many structures of a table, ranked by how vulnerable they are."""
+"""`rocking survey`: rank the structures of a table by vulnerability."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import click
 
 from rocking_cli.cli import complete, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions
+from rocking_cli.cli.help import Command
 from rocking_cli.errors import INCOMPLETE, InputError, MechanismError
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ FEW = 3  # doubts about sizes, likewise
 
 @dataclass(frozen=True)
 class Results:
-    """What is made of a survey."""
+    """Outputs of a survey."""
 
     top: int
     out: Path | None
@@ -35,7 +36,7 @@ class Results:
     as_json: bool
 
     def write(self, found: Survey, file: str) -> None:
-        """Write the files that are asked for, and say so."""
+        """Write the requested files, and report them."""
         from rocking_cli.views.survey import blocks, title
 
         if self.out is not None:
@@ -62,36 +63,38 @@ class Results:
         terminal.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")
 
 
-@click.command(short_help="Many structures of a table, the most vulnerable first.")
+@click.command(cls=Command, short_help="Rank the structures of a table, the most vulnerable first.")
 @click.argument("file", metavar="TABLE.csv", type=click.Path())
 @options.ground_motions
 @options.reading
-@options.scaling("1", "-1", "both", both="the worse of the two")
+@options.scaling("1", "-1", "both")
 @options.site
 @click.option(
-    "--top", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="How many are shown."
+    "--top", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="Number of structures to show."
 )  # fmt: skip
-@options.out(".csv", ".parquet", what="Write all rows, ranked (.csv or .parquet).")
+@options.out(".csv", ".parquet", what="Write all rows in ranked order (.csv or .parquet).")
 @click.option(
     "--page", callback=options.output_path(".html"), metavar="FILE.html", shell_complete=complete.files,
-    help="Write a page: all rows in a table that sorts, and a picture.",
+    help="Write an HTML page with a plot and all rows in a sortable table.",
 )  # fmt: skip
-@options.plot("Draw the acceleration at uplift over the frequency parameter")
+@options.plot("Plot the uplift acceleration against the frequency parameter")
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, results=Results)
 def command(ctx: click.Context, file: str, asked: GroundMotions, site: str | None, results: Results) -> None:
-    """Rank many structures, a row of a table each, by how vulnerable they are.
+    """Rank many structures, one per table row, by vulnerability.
 
-    Columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for what is inside (loads.0.mass,
-    ties.bar.stiffness); any mechanism may stand in any row. A column `file` names YAML files, which the other columns
-    change. An empty cell is a field that is not given; units stand in cells (800 mm) or headings (width [mm]).
+    The columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for nested fields
+    (loads.0.mass, ties.bar.stiffness); each row may have any mechanism. A column `file` names YAML files, whose fields
+    the other columns replace. An empty cell means that the field is not given; give units in cells (800 mm) or in
+    headings (width [mm]). TABLE.csv may be - for standard input.
 
-    Without a ground motion they are ranked by the acceleration at uplift; with some by the share of the motions that
-    overturn them, then by the largest peak, by the nonlinear model. With --site each is verified by its code, and they
-    are ranked by the ratio. TABLE.csv may be - for standard input.
+    Without ground motions, structures are ranked by their uplift acceleration. With ground motions, they are ranked by
+    the share of motions that overturn them and then by their largest peak rotation, both from the nonlinear model; with
+    --polarity both, the worse of the two polarities governs. With --site, each is verified by the code of the site and
+    ranked by its ratio of capacity to demand.
 
-    A row that cannot be used is reported with its line, the others are done, and the exit code is 5.
+    A row that cannot be used is reported with its line number and skipped, and the exit code is 5.
 
     \b
     Example:
@@ -127,7 +130,7 @@ def command(ctx: click.Context, file: str, asked: GroundMotions, site: str | Non
 
 
 def _table(file: str) -> StructureTable:
-    """The table of a file or of standard input."""
+    """Return the table of a file or of standard input."""
     from rocking_cli.errors import Problem
     from rocking_cli.excitation.records.opening import name_of, original
     from rocking_cli.io.spreadsheet import parse_sheet, read_sheet
@@ -141,7 +144,7 @@ def _table(file: str) -> StructureTable:
         raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
     if short := table.short:
         lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
-        terminal.warning(f"{table.sheet.file}: fewer cells than headings in {lines}: what is missing counts as empty")
+        terminal.warning(f"{table.sheet.file}: fewer cells than headings in {lines}: missing cells are read as empty")
     return table
 
 
@@ -160,7 +163,7 @@ def _survey(table: StructureTable, chosen: list[Scaled], asked: GroundMotions, s
 
 
 def _processes(rows: int, shaken: bool) -> int | None:
-    """How many processes share the work; None where threads are as good."""
+    """Return the number of processes that share the work; None if threads are as fast."""
     from rocking_cli.dynamics.compiled import unwritable
     from rocking_cli.dynamics.processes import MOST
 
@@ -171,7 +174,7 @@ def _processes(rows: int, shaken: bool) -> int | None:
 
 
 def _report(found: Survey, file: str) -> None:
-    """Say which rows cannot be used, and which sizes are doubtful."""
+    """Report the unusable rows, and warn of doubtful sizes."""
     from rocking_cli.text import one_line
     from rocking_cli.views.survey import bad_lines
 
@@ -181,4 +184,4 @@ def _report(found: Survey, file: str) -> None:
     for each in doubtful[:FEW]:
         terminal.warning(f"{one_line(each.name)}: {each.doubt}")
     if len(doubtful) > FEW:
-        terminal.warning(f"{len(doubtful) - FEW:,} more structures are of doubtful size: --json says which")
+        terminal.warning(f"{len(doubtful) - FEW:,} more structures have doubtful sizes: --json lists them")

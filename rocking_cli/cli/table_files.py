@@ -1,4 +1,4 @@
-"""Where a table goes that is asked for with --out: into a file, or to standard output for `-`."""
+"""Write the table of --out into a file, or to standard output for `-`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def write(out: Path, blocks: Iterable[Columns]) -> None:
-    """Write a table to a file and say so, or as CSV to standard output, and from then on nothing else there."""
+    """Write a table to a file and report it, or write CSV to standard output and keep everything else off it."""
     from rocking_cli.io.tables import write_csv, write_table
 
     if str(out) == STANDARD_OUTPUT:

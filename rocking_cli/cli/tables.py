@@ -1,4 +1,4 @@
-"""How a table of the result is laid out in the width of a terminal: as a grid, or as a block of lines for each row."""
+"""Lay out a table of results in the width of a terminal: as a grid, or as a block of lines for each row."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ GAPS = (3, 2)  # blanks between its columns: as people like them, and close
 def grid(
     columns: Sequence[str], rows: Sequence[Sequence[str]], numbers: Collection[int], width: int | None
 ) -> tuple[int, list[list[str]]] | None:
-    """The gap between columns and the lines of cells, headings first, that fit a width; None if nothing does.
+    """Return the gap between columns, and the lines of cells, headings first, that fit a width; None if none do.
 
     Parameters
     ----------
     columns, rows : sequence
-        Headings, and cells; their line breaks stay.
+        Headings, and cells; their line breaks are kept.
     numbers : collection of int
-        Places of columns that never wrap, as the first does not.
+        Indices of columns that never wrap, like the first.
     width : int or None
-        Columns of the terminal; None where there is none, and a row is as long as it is.
+        Columns of the terminal; None for no terminal, and rows of any length.
     """
     lines = [list(columns), *(list(row) for row in rows)]
     needs = [max(_widest(line[k]) for line in lines) for k in range(len(columns))]
@@ -50,7 +50,7 @@ def grid(
 
 
 def stacked(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
-    """A block for each row: its first cell, and below it a line `heading: value` for each other that is not empty."""
+    """Return a block for each row: its first cell, then a line `heading: value` for each other non-empty cell."""
     heads = [each.replace("\n", " ").strip() for each in columns]
     made = []
     for row in rows:
@@ -75,12 +75,12 @@ def _widest(cell: str) -> int:
 
 
 def _longest(cell: str, most: int) -> int:
-    """How wide the widest word of a cell is."""
+    """Return the width of the widest word of a cell."""
     return max((cells(word) for line in cell.split("\n") for word in words(line, most)), default=0)
 
 
 def _folded(cell: str, width: int) -> list[str]:
-    """The lines of a cell in a width, without hanging."""
+    """Return the lines of a cell in a width, without indentation."""
     lines: list[str] = []
     for line in cell.split("\n"):
         if cells(line) <= width:

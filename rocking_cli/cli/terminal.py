@@ -1,6 +1,6 @@
-"""The one place that writes to the terminal: results on standard output, everything else on standard error.
+"""The only module that writes to the terminal: results on standard output, everything else on standard error.
 
-What it is given may quote files and their names: nothing in it commands the terminal.
+Texts may quote files and their names, so control characters for the terminal are removed.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ _results: TextIO | None = None
 
 @contextmanager
 def results_only() -> Iterator[None]:
-    """Keep standard output to what this module prints: whatever else is printed goes to standard error.
+    """Reserve standard output for this module; all other output goes to standard error.
 
-    Plugins print, on import or at work, and so may what they import, in any thread.
+    Plugins and their imports may print at any time and in any thread.
     """
     global _results
     before, _results = _results, _results or sys.stdout
@@ -45,7 +45,7 @@ def results_only() -> Iterator[None]:
 
 @contextmanager
 def results_as_bytes() -> Iterator[BinaryIO]:
-    """Standard output for one result as a file; all else that this module prints goes to standard error after it."""
+    """Give standard output to one result as a file; all later output of this module goes to standard error."""
     global _results
     text: Any = _results or sys.stdout
     text.flush()
@@ -55,24 +55,24 @@ def results_as_bytes() -> Iterator[BinaryIO]:
 
 
 def result(text: str = "") -> None:
-    """A line of the result as it is: of a file, or of what another program reads."""
+    """Print a line of the result unchanged: of a file, or for another program to read."""
     click.echo(printable(text), file=_results)
 
 
 def sentence(text: str) -> None:
-    """A sentence of the result, in lines of the terminal's width."""
+    """Print a sentence of the result, in lines of the terminal's width."""
     click.echo(wrapped(printable(text), width()), file=_results)
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """One JSON object on one line of standard output."""
+    """Print one JSON object on one line of standard output."""
     click.echo(json_text(data), file=_results)
 
 
 def as_typed(text: str, command: click.Command | None = None) -> str:
-    """A text in which arguments stand in backticks, with those that are options of a command as they are typed.
+    """Return a text with the arguments in backticks that are options of a command replaced by their typed form.
 
-    Without a command, of the one that runs.
+    Without a command, the running command is used.
     """
     context = click.get_current_context(silent=True)
     command = command or (context.command if context is not None else None)
@@ -83,45 +83,45 @@ def as_typed(text: str, command: click.Command | None = None) -> str:
 
 
 def note(text: str) -> None:
-    """Something to know that is not part of the result."""
+    """Print a note that is not part of the result."""
     _say(text)
 
 
 def warning(text: str) -> None:
-    """Something to be careful about."""
+    """Print a warning."""
     _say(text, "warning: ", "yellow")
 
 
 def error(text: str) -> None:
-    """What went wrong; a line each for several problems."""
+    """Print an error; several problems have a line each."""
     _say(text, "error: ", "red")
 
 
 def _say(text: str, prefix: str = "", colour: str | None = None) -> None:
-    """Sentences on standard error, in lines of its terminal's width."""
+    """Print sentences on standard error, in lines of its terminal's width."""
     said = beside(printable(as_typed(text)), prefix)
     click.echo((click.style(prefix, fg=colour, bold=True) if prefix else "") + said, err=True)
 
 
 def beside(text: str, prefix: str) -> str:
-    """A text in lines of the width of standard error, to be said after a prefix."""
+    """Return a text in lines of the width of standard error, to be printed after a prefix."""
     return wrapped(text, _columns(sys.stderr), start=len(prefix))
 
 
 def asked(switch: str) -> bool:
-    """Whether a switch of `rocking` itself is on: `debug` or `verbose`."""
+    """Return whether a switch of `rocking` itself is on: `debug` or `verbose`."""
     context = click.get_current_context(silent=True)
     return bool(context is not None and context.find_root().params.get(switch))
 
 
 def detail(text: str) -> None:
-    """Something that only some want to know: with --verbose."""
+    """Print a detail, with --verbose only."""
     if asked("verbose"):
         note(text)
 
 
 def debug_traceback(error: BaseException | None) -> None:
-    """The traceback of an error, with --debug; of what a plugin itself raised, if that is at the bottom of it."""
+    """Print the traceback of an error, with --debug; that of the plugin, if a plugin caused it."""
     from rocking_cli.plugins.errors import own_traceback
 
     if error is not None and asked("debug"):
@@ -131,12 +131,12 @@ def debug_traceback(error: BaseException | None) -> None:
 
 
 def width() -> int | None:
-    """Columns of the terminal that results go to; None if they go to a pipe or a file, where no line is broken."""
+    """Return the columns of the terminal for results; None for a pipe or a file, in which no line is broken."""
     return _columns(_results or sys.stdout)
 
 
 def _columns(stream: TextIO) -> int | None:
-    """Columns of a terminal; what COLUMNS in the environment says goes before, as in other programs."""
+    """Return the columns of a terminal; COLUMNS in the environment has priority, as in other programs."""
     said = os.environ.get("COLUMNS", "")
     if said.isdecimal() and int(said) > 0:
         return int(said)
@@ -147,29 +147,29 @@ def _columns(stream: TextIO) -> int | None:
 
 
 class Advance(Protocol):
-    """What moves a bar of work."""
+    """Function that advances a progress bar."""
 
     def __call__(self, count: int, failed: int = 0) -> None:
-        """Tell how many pieces are done since the last call, and how many of these failed."""
+        """Add pieces done since the last call, and those of them that failed."""
 
 
 @contextmanager
 def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterator[Advance]:
-    """A bar of work that takes more than a second, on standard error if that is a terminal.
+    """Show a progress bar for work of more than a second, on standard error if that is a terminal.
 
     Parameters
     ----------
     total : int
-        How many pieces of work there are.
+        Number of pieces of work.
     what : str
-        What they are.
+        Name of the pieces.
     done, failed : int
-        Pieces done, and those that failed, before.
+        Pieces done before, and those of them that failed.
 
     Yields
     ------
     Advance
-        To be called as work is done.
+        Function to call as work is done.
     """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -212,7 +212,7 @@ def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterat
 
 @contextmanager
 def working(what: str) -> Iterator[None]:
-    """Something that moves, and the seconds, while one long piece of work is done; on a terminal only."""
+    """Show a spinner and the seconds during one long piece of work, on a terminal only."""
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -226,18 +226,18 @@ def working(what: str) -> Iterator[None]:
 def table(
     title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], *, numbers: Collection[int] = ()
 ) -> None:  # fmt: skip
-    """A table of the result: a grid, or a block of lines for each row where the terminal is too narrow for one.
+    """Print a table of the result: a grid, or a block of lines for each row if the terminal is too narrow.
 
     Parameters
     ----------
     title : str
-        Printed above it.
+        Title, printed above the table.
     columns : sequence of str
         Headings; a line break in one, or in a cell, is kept in a grid.
     rows : sequence of sequence of str
         Cells.
     numbers : collection of int
-        Indexes of columns to align to the right; these and the first never wrap.
+        Indices of columns to align to the right; these and the first never wrap.
     """
     from rocking_cli.cli.tables import grid, stacked
 

@@ -1,4 +1,4 @@
-"""`rocking verify`: a rocking mechanism of masonry held against a code."""
+"""`rocking verify`: verify a rocking mechanism of masonry by a code."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 from rocking_cli.cli import complete, heads, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions
 from rocking_cli.cli.heads import SheetAsked
+from rocking_cli.cli.help import Command
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ Point = tuple[float, float, str | None]
 
 
 def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Point | None:
-    """A point x,y of a body, or x,y,body."""
+    """Return a point x,y of a body, or x,y,body."""
     if value is None:
         return None
     x, _, rest = value.partition(",")
@@ -34,24 +35,26 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
     except ValueError:
         found = float("nan"), 0.0, None
     if not (abs(found[0]) < float("inf") and abs(found[1]) < float("inf")):
-        raise click.BadParameter(f"{value!r} is no point: give x,y in m, or x,y,BODY, such as 0.3,8.0.", ctx, param)
+        raise click.BadParameter(
+            f"{value!r} is not a valid point: give x,y in m, or x,y,BODY, such as 0.3,8.0.", ctx, param
+        )
     return found
 
 
-@click.command(short_help="Verify a rocking mechanism of masonry by a code, such as the Italian.")
+@click.command(cls=Command, short_help="Verify a masonry mechanism by a code, such as NTC 2018.")
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path())
 @click.option(
     "--site", "site_file", required=True, type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
-    help="The site: ground, confidence factor, floor. `rocking new site` prints one.",
+    help=options.HELP["site"],
 )  # fmt: skip
 @click.option(
     "--control", callback=_point, metavar="X,Y[,BODY]",
-    help="Control point, in m.  [default: barycentre of the weights that move]",
+    help="Control point, in m.  [default: centroid of the moving weights]",
 )  # fmt: skip
 @options.ground_motions
 @options.reading
-@options.scaling("1", "-1", "both", both="the worse of the two")
-@options.plot("Draw the capacity curves")
+@options.scaling("1", "-1", "both")
+@options.plot("Plot the capacity curves")
 @heads.sheet
 @options.as_json
 @click.pass_context
@@ -68,14 +71,16 @@ def command(
 ) -> None:
     """Verify a rocking mechanism by the code that the site file names: the Italian, NTC 2018 and Circolare 7/2019.
 
-    Damage, linear and nonlinear method side by side for each direction, on the exact capacity curve and on the
-    straight line: what each allows, which governs, and why they differ. With --record, as often as you like, also the
-    dynamic method: histories on the capacity curve, with the confidence factor and without. Records must fit the
-    spectrum of the site; that is not checked. Every number has its clause. That a structure fails is a result: the
-    exit code is 0. With --sheet the calculation sheet to hand in: every formula with its numbers, in English or
-    Italian.
+    The command compares the damage, linear and nonlinear methods for each direction, on the exact capacity curve and on
+    its straight-line approximation: the capacity by each method, which one governs, and why they differ. Every number
+    is given with its clause. The exit code is 0 whether the structure passes or fails.
 
-    Without FILE it takes rocking.yaml of this folder, else a block of 0.7 m x 2.8 m.
+    With --record (repeatable), the dynamic method is added: time histories on the capacity curve, with and without the
+    confidence factor; with --polarity both, the worse of the two polarities governs. Whether the records match the
+    spectrum of the site is not checked. --sheet writes the calculation sheet for submission: every formula with its
+    numbers, in English or Italian.
+
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
     \b
     Example:
@@ -120,7 +125,7 @@ def command(
 
 
 def _title(ctx: click.Context, asked: SheetAsked, site: SiteFile) -> TitleBlock | None:
-    """The head of the sheet, where one is asked for. Raises, before any work, if it cannot be written."""
+    """Return the heading of the sheet, if one is requested. Raises, before any work, if it cannot be written."""
     if asked.sheet is None:
         return None
     from rocking_cli.cli import sheets
@@ -132,7 +137,10 @@ def _title(ctx: click.Context, asked: SheetAsked, site: SiteFile) -> TitleBlock 
 def _histories(
     found: Verification, structure: Prepared, site: SiteFile, asked: GroundMotions, paths: list[Listed]
 ) -> tuple[Verification, list[Scaled], int]:
-    """The same with histories under the motions that can be used, these, and how many cannot. Raises if none can."""
+    """Add time histories to a verification, and return the motions used and the number of unusable ones too.
+
+    Raises if no motion can be used.
+    """
     from rocking_cli.cli.waiting import compile_first
     from rocking_cli.studies.verification.check import with_histories
 

@@ -1,4 +1,4 @@
-"""What is said while histories are computed."""
+"""Messages during the computation of time histories."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ _SAID: set[str] = set()
 
 
 def compile_first(*, exact: bool = False) -> None:
-    """Compile what histories need, or exact responses to many pulses, if this machine has not yet; something moves."""
+    """Compile the kernel of histories or of exact responses if this machine has not yet; show a spinner."""
     from rocking_cli.dynamics.compiled import HISTORIES, PULSES, needs_compiling
 
     kernel = PULSES if exact else HISTORIES
     if needs_compiling(kernel) and kernel not in _SAID:
         from rocking_cli.studies.compiling import compile_kernel
 
-        _SAID.add(kernel)  # where nothing can be kept it would be asked for again, and is there
+        _SAID.add(kernel)  # without a cache it would be compiled again
         say_that_it_compiles(kernel)
         with terminal.working("compiling"):
             made = compile_kernel(kernel)
@@ -26,10 +26,10 @@ def compile_first(*, exact: bool = False) -> None:
 
 
 def say_that_it_compiles(kernel: str) -> None:
-    """Say that the first history on a machine takes a while, or the first exact response to many pulses."""
+    """Report that the first history on a machine, or the first exact response to many pulses, takes a while."""
     from rocking_cli.dynamics.compiled import PULSES, cache_folder, unwritable
 
-    what = "the exact response to pulses, some five" if kernel == PULSES else "the history kernel, some ten"
+    what = "the exact response to pulses, about five" if kernel == PULSES else "the history kernel, about ten"
     if unwritable() is None:
         terminal.note(f"compiling {what} seconds, once for this machine ...")
         return
@@ -41,7 +41,7 @@ def say_that_it_compiles(kernel: str) -> None:
 
 @contextmanager
 def histories(total: int, *, exact: bool = False) -> Iterator[Callable[[int], None]]:
-    """Show the progress of so many histories, or exact responses."""
+    """Show the progress of a number of histories, or of exact responses."""
     compile_first(exact=exact)
     with terminal.progress(total, "histories") as advance:
         yield advance

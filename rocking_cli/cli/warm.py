@@ -1,4 +1,4 @@
-"""`rocking warm`: compile ahead what the first history would wait for."""
+"""`rocking warm`: compile the time-history kernels in advance."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import click
 from rocking_cli.cli import options, terminal
 
 
-@click.command(short_help="Compile ahead what the first history waits for.")
+@click.command(short_help="Compile the time-history kernels in advance.")
 @options.as_json
 def command(as_json: bool) -> None:
-    """Compile what follows histories and answers pulses exactly, so that no later command has to wait for it.
+    """Compile the kernels of time histories and of exact pulse responses, so that no later command has to wait.
 
-    It takes some fifteen seconds, once for this machine and every version; after that it says that all is compiled.
-    The machine code is kept in the user's cache folder, or in the folder that NUMBA_CACHE_DIR in the environment names.
+    This takes about fifteen seconds, once for each machine and version; later calls report that all is compiled. The
+    machine code is kept in the cache folder of the user, or in the folder named by NUMBA_CACHE_DIR in the environment.
 
     \b
     Example:
@@ -26,7 +26,7 @@ def command(as_json: bool) -> None:
 
     if (why := unwritable()) is not None:
         hint = "name another folder in NUMBA_CACHE_DIR"
-        raise Refused(f"{cache_folder()}: cannot be written to ({why}): nothing compiled would be kept\n  {hint}")
+        raise Refused(f"{cache_folder()}: cannot be written to ({why}): the compiled code would be lost\n  {hint}")
     found = []
     for kernel, name in CALLED.items():
         with terminal.working(f"compiling {name.replace('_', ' ')}"):

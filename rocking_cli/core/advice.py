@@ -97,7 +97,7 @@ def preferred_kappa(block: EquivalentBlock) -> Advice:
     off = f"with kappa1 the uplift acceleration is {uplift_in_words(error)}, with kappa2 it is kept"
     prefer: Literal["kappa2", "either"] = "kappa2"
     if SLENDER <= ratio <= 1 / SLENDER:
-        prefer, said = "either", f"effectively slender, either kappa may serve; {off}"
+        prefer, said = "either", f"effectively slender, either kappa is adequate; {off}"
     elif found is Grade.DISREGARD:
         said = f"disregard kappa1; {off}"
     else:

@@ -1,4 +1,4 @@
-"""What hangs on a mechanism beside its own bodies, as the equation of motion sees it.
+"""Loads and ties attached to a mechanism beside its own bodies, as the equation of motion sees them.
 
     (I + ...) phi.. + (J + ...) phi.^2 + (g + v_g'') G + Q = -s B u_g'',   Q = N L' - F.r'
 
@@ -50,7 +50,7 @@ class Push(NamedTuple):
 
 
 class Attached(Protocol):
-    """Something that hangs on a mechanism."""
+    """Something attached to a mechanism."""
 
     @property
     def name(self) -> str:

@@ -1,4 +1,4 @@
-"""From what users hang on a structure to what its equation of motion sees: each thing held against its bodies."""
+"""Attach the loads and ties of a user to a structure for its equation of motion, checked against its bodies."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Loc = tuple[str | int, ...]
 
 
 class Refused(ValueError):
-    """Something that does not fit the structure it hangs on; see `as_validation_error`."""
+    """Something that does not fit the structure it is attached to; see `as_validation_error`."""
 
     def __init__(self, loc: Loc, field: str, reason: str) -> None:
         self.loc, self.field, self.reason = loc, field, reason
@@ -82,7 +82,7 @@ class Carrier:
         )
 
     def body(self, name: str | None, loc: Loc) -> str:
-        """The body that is meant. Raises `Refused`."""
+        """Return the body that a load or tie refers to. Raises `Refused`."""
         known = ", ".join(self.bodies)
         if name is None:
             if len(self.bodies) > 1:
@@ -117,7 +117,7 @@ class Carrier:
         return Spot(body, complex(centroid.real, lowest))
 
     def count(self, body: str, *, each: bool) -> int:
-        """How many a thing on a body stands for."""
+        """Return how many identical items a load or tie on a body represents."""
         return self.alike.get(body, 1) if each else 1
 
 
@@ -140,15 +140,15 @@ def attach(
         spots = list(_spots(carrier, tie, loc))
         bodies = [spot.body for spot in spots if spot.body is not None]
         if not bodies:
-            raise Refused(loc, "from", "both ends are on the ground: nothing stretches it")
+            raise Refused(loc, "from", "both ends are on the ground, so no motion stretches it")
         yield loc, tie.attached(spots, max(carrier.count(body, each=tie.each) for body in bodies))
 
 
 def _own_name(name: str, names: set[str], own: Collection[str], loc: Loc) -> None:
     if name in own:
-        raise Refused(loc, "name", f"{name!r} is what the tool itself calls something: give it another name")
+        raise Refused(loc, "name", f"{name!r} is a reserved name: choose another")
     if name in names:
-        raise Refused(loc, "name", f"{name!r} is there already: give each load and tie its own name")
+        raise Refused(loc, "name", f"{name!r} is already used: give each load and tie its own name")
     names.add(name)
 
 

@@ -16,7 +16,7 @@ class Crushing(Described):
     """Every pivot moves inwards by u = N/(2 strength depth), with the normal force N that it carries at rest."""
 
     strength: float = quantity("compressive strength", unit="Pa", example=1e6, gt=0, le=1e12)
-    depth: float | None = length("length of the pivot out of plane; left out, that of the structure", default=None)
+    depth: float | None = length("length of the pivot out of plane; if omitted, that of the structure", default=None)
 
     def enlarged(self, factor: float) -> Crushing:
         """The same strength of a structure of another size."""
@@ -26,12 +26,12 @@ class Crushing(Described):
 def pressing(
     things: Sequence[Attached], on: Container[str | None], direction: Direction, follow: Follow, gravity: float
 ) -> float:
-    """The force downwards at rest of what hangs on some bodies [N].
+    """Return the downward force at rest of what is attached to some bodies [N].
 
     Parameters
     ----------
     things : sequence of Attached
-        All that hangs on the structure.
+        All that is attached to the structure.
     on : container of str
         Names of the bodies.
     direction : Direction

@@ -35,7 +35,7 @@ def uplift_acceleration(at: Callable[[Reals], Coefficients], gravity: float) -> 
     rest = at(np.zeros(1))
     restoring = float(rest.restoring(gravity)[0])
     if not restoring > 0:
-        raise MechanismError("the structure cannot stand: its weight does not hold this mechanism closed at rest")
+        raise MechanismError("the structure cannot stand: at rest, its weight does not keep this mechanism closed")
     if not rest.B[0] > 0:
         raise MechanismError("no horizontal ground acceleration starts this mechanism in this direction")
     return float(restoring / rest.B[0])  # Eq. 10

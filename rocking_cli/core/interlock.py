@@ -27,9 +27,11 @@ class Interlock(Described):
     walls: int = quantity("number of crossing walls", example=2, default=1, ge=1, le=100)
     height: float = length("height of the courses above the foot", symbol="h", example=8.0)
     density: float | None = quantity(
-        "density of the crossing walls; left out, that of the structure", unit="kg/m3", default=None, gt=0, le=1e6
+        "density of the crossing walls; if omitted, that of the structure", unit="kg/m3", default=None, gt=0, le=1e6
     )
-    body: Name | None = Field(None, description="the body they hold, by its name in the picture; of one, left out")
+    body: Name | None = Field(
+        None, description="the body they hold, by its name in the picture; optional for a single body"
+    )
 
     def force(self, density: float, gravity: float) -> float:
         """The friction of one crossing wall [N].

@@ -134,7 +134,7 @@ class LinkageMotion:
         for link in self._link_of.values():
             if link is not None and link not in held:
                 what = " and ".join(other for other, own in self._link_of.items() if own == link)
-                raise NoMotion(f"no joint holds {what}: if it rests, fix it to the ground")
+                raise NoMotion(f"no joint holds {what}: if it stays at rest, fix it to the ground")
 
     def _of(self, joints: Sequence[LinkageJoint]) -> Loops:
         scaled = [replace(joint, at=joint.at / self._size) for joint in joints]
@@ -167,12 +167,12 @@ class LinkageMotion:
         if not len(free):
             raise self._nothing_moves()
         if np.abs(free[:, self._lead]).max() < 1e-7:
-            raise NoMotion(f"{self._lead_name} cannot lead: it does not turn; what can move is {self._movers(free)}")
+            raise NoMotion(f"{self._lead_name} cannot lead, because it does not rotate; {self._movers(free)} can move")
         loose = _free(matrix)
         if len(loose):
             raise NoMotion(
-                f"more than one motion is left: with {self._lead_name} held still {self._movers(loose)} can still "
-                "move. A joint is missing there"
+                f"the linkage has more than one degree of freedom: with {self._lead_name} held still, "
+                f"{self._movers(loose)} can still move. Add the missing joint"
             )
 
     def _nothing_moves(self) -> NoMotion:
@@ -183,7 +183,7 @@ class LinkageMotion:
             if len(_free(loops.matrix(np.zeros((1, loops.unknowns)))[0])):
                 able.append(joint.name)
         if not able:
-            return NoMotion("nothing can move: there are joints too many")
+            return NoMotion("nothing can move: there are too many joints")
         which = f"without {able[0]}" if len(able) == 1 else f"without one of {', '.join(able)}"
         return NoMotion(f"nothing can move: {which} it could", joint=able[-1])
 
@@ -198,8 +198,8 @@ class LinkageMotion:
         if self._stepped(self._first, float(phi[0])) is None:
             gaps = np.abs(self._residuals(self._newton(self._predicted(self._first, phi), phi), phi)[0][:-1])
             raise NoMotion(
-                "the joints let it move by an infinitesimal rotation only: a little further on they do not close. "
-                "Three of them are in line, or two hold the same thing",
+                "the joints allow only an infinitesimal rotation: check whether three of them lie on one line, or two "
+                "restrain the same movement",
                 joint=self._loops.names[int(gaps.argmax())] if gaps.size else None,
             )
 

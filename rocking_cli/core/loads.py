@@ -32,15 +32,20 @@ class Load(Described):
         "a constant force [Fx, Fy], to the right and up", unit="N", example=[0.0, -1000.0], default=None
     )
     at: Vertex = point("where it acts")
-    body: Name | None = Field(None, description="the body it acts on, by its name in the picture; of one, left out")
+    body: Name | None = Field(
+        None, description="the body it acts on, by its name in the picture; optional for a single body"
+    )
     horizontal: Share | None = Field(None, description="share of the mass that moves sideways with the body")
     vertical: Share | None = Field(None, description="share that moves up with it")
     weight: Share | None = Field(None, description="share of the weight that the body carries")
     floor: Literal["borne", "sliding", "dragged"] | None = Field(
-        None, description="sets the shares of a floor that is borne at its far end too: its mass is that of all of it"
+        None,
+        description="sets the shares for a floor that is also supported at its far end; `mass` is then that of the "
+        "whole floor",
     )
     seat: float | None = quantity(
-        "length on which what it stands for rests, such as a beam's: moved sideways by it, it is lost", unit="m",
+        "bearing length of the supported member, such as a beam; its support is lost when it is displaced sideways by "
+        "this length", unit="m",
         default=None, gt=0, le=100,
     )  # fmt: skip
     each: bool = Field(False, description="whether each of several bodies that move alike has one")
@@ -48,7 +53,7 @@ class Load(Described):
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
         if (self.mass is None) == (self.force is None):
-            raise geometry_error("mass", "give a mass or a force: one of them")
+            raise geometry_error("mass", "give either `mass` or `force`")
         shares = [key for key in ("horizontal", "vertical", "weight") if getattr(self, key) is not None]
         if self.force is not None and (shares or self.floor is not None):
             raise geometry_error(shares[0] if shares else "floor", "a force has no mass to share")
@@ -57,7 +62,7 @@ class Load(Described):
         if self.floor is not None:
             for key in shares:
                 if key in FLOORS[self.floor]:
-                    raise geometry_error(key, f"floor: {self.floor} sets it already: give one or the other")
+                    raise geometry_error(key, f"is already set by floor: {self.floor}; give one of the two")
         return self
 
     def attached(self, body: str, count: float) -> PointMass | ConstantForce:

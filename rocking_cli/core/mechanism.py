@@ -100,7 +100,7 @@ class Mechanism(Described, ABC):
         9.80665, gt=0, le=1000, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"}
     )
     restitution: Eta | DirectionalRestitution | None = Field(
-        None, description="coefficient of restitution eta; absent: from kinematics"
+        None, description="coefficient of restitution eta; computed from kinematics if omitted"
     )
     density: float | None = quantity(
         "density; with depth it gives the masses", unit="kg/m3", example=1800.0, default=None, gt=0, le=1e6
@@ -119,7 +119,7 @@ class Mechanism(Described, ABC):
         None,
         max_length=1000,
         examples=[[{"name": "floor", "mass": 1000.0, "at": [0.0, 2.0]}]],
-        description="masses and forces it carries; `rocking mechanisms loads` lists their fields",
+        description="masses and forces on the structure; `rocking mechanisms loads` lists their fields",
     )
     ties: list[Tie] | None = Field(
         None,
@@ -130,7 +130,8 @@ class Mechanism(Described, ABC):
     crushing: Crushing | None = Field(
         None,
         examples=[{"strength": 1e6}],
-        description="strength at its pivots, which then move inwards; `rocking mechanisms crushing` lists its fields",
+        description="crushing strength at the pivots, which then move inwards; `rocking mechanisms crushing` lists its "
+        "fields",
     )
     interlock: Interlock | None = Field(
         None,
@@ -138,12 +139,16 @@ class Mechanism(Described, ABC):
         description="friction of walls that cross it; `rocking mechanisms interlock` lists its fields",
     )
     friction: float | None = quantity(
-        "coefficient of friction of its joints, which histories are held to", example=0.6, default=None, gt=0, le=10
+        "coefficient of friction of its joints, which time histories are checked against",
+        example=0.6,
+        default=None,
+        gt=0,
+        le=10,
     )
     strength: Strength | None = Field(
         None,
         examples=[{"stress": 3e6, "width": 0.05}],
-        description="what its contacts bear; `rocking mechanisms strength` lists its fields",
+        description="strength of its contacts; `rocking mechanisms strength` lists its fields",
     )
 
     @model_validator(mode="before")
@@ -221,7 +226,7 @@ class Mechanism(Described, ABC):
             return made
 
     def _hold_together(self) -> None:
-        """Hold its masses, and what hangs on it, against its bodies; raises `ValidationError` of the fields."""
+        """Check the masses, loads and ties against the bodies; raise `ValidationError` of the fields."""
         try:
             if self.mass is not None and self.density is not None:
                 raise Refused((), "mass", "give mass, or density and depth: one of them")
@@ -268,7 +273,7 @@ class Mechanism(Described, ABC):
 
     def _check_one_sided(self) -> None:
         if self.one_sided is None and self.rebound is not None:
-            raise Refused((), "rebound", "goes with one_sided: without it the structure rocks on to the other side")
+            raise Refused((), "rebound", "requires one_sided: otherwise the structure rocks through to the other side")
         if self.one_sided is not None and self.restitution is not None:
             raise Refused((), "restitution", "where one_sided holds it gives rebound instead: the rate thrown back")
         if self.one_sided is not None and self.rebound is None and self.rebound_from_impacts() is None:
@@ -293,7 +298,7 @@ class Mechanism(Described, ABC):
                 field = "restitution"
                 if isinstance(self.restitution, DirectionalRestitution):
                     field = "positive_to_negative" if direction > 0 else "negative_to_positive"
-                reason = f"must be at most {most:.6g}, got {eta:g}: beyond it an impact adds energy"
+                reason = f"must be at most {most:.6g}, got {eta:g}: a larger value would add energy at an impact"
                 raise Refused(() if field == "restitution" else ("restitution",), field, reason)
 
     def _check_stands(self) -> None:
@@ -374,7 +379,7 @@ class Mechanism(Described, ABC):
         return Sketch()
 
     def _shapes(self) -> Sketch:
-        """What tells the shapes of its bodies, before anything hangs on them."""
+        """Sketch of the shapes of its bodies, before anything is attached to them."""
         return self.sketch()
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
@@ -416,7 +421,7 @@ class Mechanism(Described, ABC):
         return body
 
     def carries(self) -> Sequence[Attached]:
-        """What hangs on it by its own fields, such as the floor on a wall, beside loads and ties; by default none."""
+        """Return what its own fields attach beside loads and ties, such as the floor on a wall; by default nothing."""
         return ()
 
     def extras(self, direction: Direction) -> Sequence[Extra]:
@@ -431,7 +436,7 @@ class Mechanism(Described, ABC):
         return {}
 
     def borne(self, direction: Direction, *bodies: str) -> float:
-        """The weight at rest of some bodies, or of all, with what hangs on them [N]."""
+        """Return the weight at rest of some bodies, or of all, with what is attached to them [N]."""
         on = bodies or tuple(body.name for body in self.bodies())
         weight = self.gravity * sum(body.mass for body in self.weighed() if body.name in on)
         return weight + pressing(self.attached, on, direction, self.followed(np.zeros(1), direction), self.gravity)
@@ -499,7 +504,7 @@ class Mechanism(Described, ABC):
 
     @cached_property
     def _hung(self) -> Sequence[tuple[Loc, Attached]]:
-        """What hangs on it, each with its place among the fields."""
+        """Everything attached to the structure, each with its place among the fields."""
         own: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if not self._is_laden:
             return own
@@ -524,7 +529,7 @@ class Mechanism(Described, ABC):
 
     @property
     def attached(self) -> Sequence[Attached]:
-        """What hangs on it, as its equation of motion sees it."""
+        """Everything attached to the structure, as its equation of motion sees it."""
         return [thing for _, thing in self._hung]
 
     @property
@@ -562,7 +567,7 @@ class Mechanism(Described, ABC):
     def coefficients(self, phi: Reals, direction: Direction) -> Coefficients:
         """Coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8].
 
-        With what hangs on the structure: see `rocking_cli.core.attached`.
+        Includes what is attached to the structure: see `rocking_cli.core.attached`.
         """
         phi = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
         bodies, motions = self.weighed(), self.motion(phi, direction)

@@ -71,7 +71,7 @@ def reactions(
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with what hangs on it.
+        Any plugin, with what is attached to it.
     direction : Direction
         Which way it rocks.
     phi, rate : ndarray, shape (n,)
@@ -128,7 +128,7 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with what hangs on it.
+        Any plugin, with what is attached to it.
     ended : Direction
         The direction that the impact ends.
 

@@ -1,4 +1,4 @@
-"""The mechanisms that are installed, found through the entry points `rocking.mechanisms` and loaded when asked for."""
+"""The installed mechanisms, found through the entry points `rocking.mechanisms` and loaded on demand."""
 
 from __future__ import annotations
 

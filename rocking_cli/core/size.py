@@ -50,7 +50,4 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
             odd.append((says, f"{1000 * length:g} m"))
     if not odd:
         return f"it is {size:.3g} m large: are the units right?"
-    return (
-        f"{', '.join(says for says, _ in odd)}: {'was' if len(odd) == 1 else 'were'} "
-        f"{' and '.join(meant for _, meant in odd)} meant?"
-    )
+    return f"{', '.join(says for says, _ in odd)}: did you mean {' and '.join(meant for _, meant in odd)}?"

@@ -55,7 +55,7 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with what hangs on it.
+        Any plugin, with what is attached to it.
     direction : Direction
         Which way it rocks.
 

@@ -26,7 +26,7 @@ class Place(Described):
     """A point of the ground, or of a body."""
 
     ground: Vertex | None = point("a point of the ground", default=None)
-    body: Name | None = Field(None, description="a body, by its name in the picture; of one, left out")
+    body: Name | None = Field(None, description="a body, by its name in the picture; optional for a single body")
     at: Vertex | None = point("a point of that body", default=None)
 
     @model_validator(mode="after")
@@ -53,7 +53,7 @@ class Face(Described):
 
     model_config = ConfigDict(validate_by_name=True)
 
-    body: Name | None = Field(None, description="the body, by its name in the picture; of one, left out")
+    body: Name | None = Field(None, description="the body, by its name in the picture; optional for a single body")
     start: Vertex = point("one end of the face", alias="from")
     end: Vertex = point("its other end", alias="to")
 
@@ -78,11 +78,11 @@ class Tie(Described):
     stiffness: float | None = quantity("its stiffness", unit="N/m", example=1e6, default=None, ge=0, le=1e15)
     area: float | None = quantity("area of its section", unit="m2", example=5e-4, default=None, gt=0, le=1e6)
     modulus: float | None = quantity(
-        "its modulus of elasticity; of a bed, stiffness per metre and metre", unit="Pa", example=2e11, default=None,
-        gt=0, le=1e15,
+        "modulus of elasticity; for a bed, stiffness per metre of face and per metre of displacement", unit="Pa",
+        example=2e11, default=None, gt=0, le=1e15,
     )  # fmt: skip
     length: float | None = quantity(
-        "length over which it stretches; left out, that of its path", unit="m", default=None, gt=0, le=1e6
+        "length over which it stretches; if omitted, that of its path", unit="m", default=None, gt=0, le=1e6
     )
     prestress: float = quantity("its force at rest, tension positive", unit="N", default=0.0, ge=-1e12, le=1e12)
     only: Literal["tension", "compression"] | None = Field(None, description="the one sense in which it can act")
@@ -93,14 +93,14 @@ class Tie(Described):
     def _not_yet(cls, data: Any) -> Any:
         for key in LATER:
             if isinstance(data, dict) and key in data:
-                raise geometry_error(key, f"{LATER[key]} of a tie is not in this version: leave it out")
+                raise geometry_error(key, f"{LATER[key]} of a tie is not supported in this version: leave it out")
         return data
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
         ways = [self.start is not None or self.end is not None, self.path is not None, self.bed is not None]
         if sum(ways) != 1 or (ways[0] and (self.start is None or self.end is None)):
-            raise geometry_error("from", "give from and to, or a path of points, or a bed: one of them")
+            raise geometry_error("from", "give one of: `from` and `to`, `path`, or `bed`")
         if self.bed is not None:
             self._check_bed()
         else:
@@ -121,11 +121,13 @@ class Tie(Described):
         if (self.stiffness is None) == (None in bar) or (self.stiffness is not None and bar != [None, None]):
             raise geometry_error("stiffness", "give stiffness, or area and modulus: one of them")
         if self.stiffness is not None and self.length is not None:
-            raise geometry_error("length", "a stiffness needs no length: give it with area and modulus")
+            raise geometry_error(
+                "length", "`length` cannot be combined with `stiffness`: use it with `area` and `modulus`"
+            )
         if self.stiffness is None and self.length is None and self.span == 0:
             raise geometry_error("length", "its ends are together at rest: give the length over which it stretches")
         if (self.only == "tension" and self.prestress < 0) or (self.only == "compression" and self.prestress > 0):
-            raise geometry_error("prestress", f"it acts in {self.only} only: its force at rest must be of that sense")
+            raise geometry_error("prestress", f"it acts in {self.only} only: its force at rest must have that sign")
 
     @property
     def places(self) -> list[Place]:

@@ -20,7 +20,7 @@ const short = text => text.length > 40 ? text.slice(0, 39) + "…" : text;
 const fixed = (value, digits = 2) => (Math.round(value * 10 ** digits) / 10 ** digits + 0).toFixed(digits);
 const outline = points => "M" + points.map(p => p.join(",")).join("L") + "Z";
 
-// The last place in ascending values that is not above a value; 0 if all are.
+// Index of the last of the ascending values that is not above a value; 0 if all are above.
 function placeOf(values, value) {
   let low = 0, high = values.length;
   while (high - low > 1) { const mid = (low + high) >> 1; if (values[mid] <= value) low = mid; else high = mid; }
@@ -30,20 +30,20 @@ function nearest(values, value) {
   const k = placeOf(values, value);
   return k + 1 < values.length && values[k + 1] - value < value - values[k] ? k + 1 : k;
 }
-// A step of 1, 2 or 5 times a power of ten, at least as large as asked for.
+// A step of 1, 2 or 5 times a power of ten, at least as large as the given value.
 function roundStep(rough) {
   const unit = 10 ** Math.floor(Math.log10(rough));
   return [1, 2, 5, 10].map(k => k * unit).find(v => v >= rough * (1 - 1e-9));
 }
 
-// The structure to scale. Returns what draws it anew at a width, and what moves it to a signed rotation [rad].
+// The structure to scale. Returns a function that redraws it at a width, and one that moves it to a signed rotation [rad].
 function structureStage(svg, picture, colours, low, high) {
   let moving = [], pins = [], moveHung;
   const first = Object.keys(picture.reference)[0];  // of the directions that it can rock in
   const sideOf = r => r === 0 ? first : r < 0 ? "negative" : "positive";
   const ratioOf = r => r / picture.reference[sideOf(r)];
 
-  // Where a part is: straight lines between the positions of the table.
+  // Place of a part, by linear interpolation between the positions of the table.
   function placed(part, rotation) {
     const table = picture.rotation, r = clamp(rotation, table[0], table[table.length - 1]);
     const k = Math.min(placeOf(table, r), table.length - 2), w = (r - table[k]) / (table[k + 1] - table[k]);
@@ -244,7 +244,7 @@ function timeChart(root, {label, tall, levels, series}) {
   return {plot, build, show, select, timeAt: event => timeAt(event.clientX - svg.getBoundingClientRect().left), snap};
 }
 
-// All of it in `root`. `moment` is what is shown first [s]; keys are listened for in `listener`.
+// The whole view in `root`. `moment` is the time shown first [s]; `listener` receives the keys.
 function motionView(root, {picture, colours, film, charts, ratio, label, speed, moment}, listener) {
   const svg = shape(root, "svg", {role: "img", "aria-label": label, class: "stage"});
   const stage = structureStage(svg, picture, colours, film.low, film.high);

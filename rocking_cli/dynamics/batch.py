@@ -179,7 +179,7 @@ def respond_many(
     >>> [float(x) for x in respond_many(models, [wave], Runs.every(1, 1, scales=(0.3, 0.5))).peak_ratio.round(4)]
     [0.0, 0.2522]
     """
-    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 
     check_rtol(rtol)
     if threads is not None and threads < 1:

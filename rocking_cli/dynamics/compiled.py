@@ -1,7 +1,7 @@
 """Compilation of the history kernel: where its machine code is kept, and whether it is there yet.
 
-Numba is imported only when a history is asked for. Its cache must not land beside the installed source, so it goes to
-the user's cache folder unless NUMBA_CACHE_DIR says otherwise; where that cannot be written each process compiles anew.
+Numba is imported only when a history is computed. Its cache must not land beside the installed source, so it goes to
+the user's cache folder unless NUMBA_CACHE_DIR says otherwise; where that cannot be written each process compiles again.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def _import_numba() -> None:
 
 
 def compile_inline(function: Callable[..., Any]) -> Any:
-    """`function`, set by the compiler into each place of a kernel that calls it: a call costs more than a few sums."""
+    """Compile `function` so that kernels inline it: a call would cost more than the few sums inside."""
     _import_numba()
     from numba import njit
 
@@ -121,7 +121,7 @@ def _mend(cache: Any) -> None:
 @functools.cache
 def _say_damaged() -> None:
     """Warn, once in this process."""
-    text = f"what is compiled in {cache_folder()} is damaged, and is compiled anew, which takes some ten seconds"
+    text = f"what is compiled in {cache_folder()} is damaged and is compiled again, which takes about ten seconds"
     warnings.warn(CacheWarning(text), stacklevel=2)
 
 

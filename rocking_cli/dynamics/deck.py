@@ -42,7 +42,7 @@ def run_deck(
     impacts: Reals = NO_IMPACTS,
 ) -> None:
     """Run the kernel, which fills `marks` and, if given, the samples and the impacts of the last history."""
-    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 
     samples = kernels.Samples(every, phi, rate, impacts)
     kernels.run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, samples, marks)
@@ -59,7 +59,7 @@ def read_marks(marks: Reals, phi_cr: Reals) -> Outcomes:
     phi_cr : ndarray, shape (n, 2)
         Critical rotations of the positive and the negative direction [rad].
     """
-    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 
     status = marks[:, kernels.STATUS]
     overturned = status == kernels.OVERTURNED
@@ -82,7 +82,7 @@ def read_marks(marks: Reals, phi_cr: Reals) -> Outcomes:
 
 def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> Deck:
     """Lay out models and ground motions (None: no shaking) for the kernel; a single one is not copied."""
-    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 
     structures, records = [], []
     cells = 0

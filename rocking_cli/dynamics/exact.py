@@ -119,7 +119,7 @@ def segments_of(pulse: Pulse) -> tuple[Segment, ...]:
     """The segments of a pulse; `InputError` if there are none."""
     segments = pulse.segments()
     if not segments:
-        raise InputError(f"{pulse.name} is no chain of sines and constants: respond to pulse.sampled() instead")
+        raise InputError(f"{pulse.name} is not a chain of sines and constants: respond to pulse.sampled() instead")
     return segments
 
 

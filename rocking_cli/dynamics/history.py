@@ -164,7 +164,7 @@ def follow(
 
     `most_kept` is how many impacts are kept; `eta` the restitution of both directions, NaN: that of the model.
     """
-    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 
     every = motion.every if motion is not None else 1
     dt = every * motion.dt if motion is not None else RELEASE_DT  # between the samples that are kept
@@ -183,7 +183,9 @@ def follow(
     found = read_marks(marks, np.array([model.phi_cr]))
     end = float(found.end_time[0])
     if found.failed[0]:
-        raise SolverError(f"the {model.name} history cannot be followed past t = {end:.6g} s: too small steps")
+        raise SolverError(
+            f"the {model.name} time history could not be simulated past t = {end:.6g} s: the steps became too small"
+        )
     # The samples end with the record or with the motion, whichever is later; after overturning they are NaN.
     kept = min(samples, max(npts, int(end / dt) + (1 if found.still_rocking[0] else 3)))
     return History(

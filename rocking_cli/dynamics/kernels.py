@@ -597,9 +597,9 @@ def stays(numbers, u):
 
 @compile_kernel
 def draw(structure, law, ground, t, flight, rtol, dt, drawn, samples):
-    """Fill in the samples of a flight from tau to end, on a course of its own: what is drawn changes no motion.
+    """Fill in the output samples between tau and end by a separate integration.
 
-    Returns how many samples are done.
+    Sampling therefore never affects the motion. Returns how many samples are done.
     """
     tau, end, state, h = flight
     nothing = np.zeros(MARKS)

@@ -21,7 +21,7 @@ Numbers = TypeVar("Numbers")
 class Outcome(Generic[Flags, Counts, Numbers]):
     """What became of a motion, each a number; or of many, each an ndarray of one shape.
 
-    What there is none of is NaN, of times and rotations; JSON has null for it.
+    Times and rotations that do not exist are NaN, and null in JSON.
 
     Parameters
     ----------
@@ -35,14 +35,14 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     peak_ratio : float
         Largest rotation over the critical rotation; 0 without uplift, NaN if it overturned.
     overturning_time : float
-        When the rotation passed the critical one for good [s]; NaN if it did not, or this was not asked for.
+        When the rotation passed the critical one for good [s]; NaN if it did not, or this was not requested.
     uplift_time : float
         The first uplift from rest [s]; NaN if there is none.
     impact_count : int
         Number of impacts: before it overturned; else up to the end of the motion, or to where it was left because
         nothing could change any more.
     end_time : float
-        When it came to rest for good, or was certain to overturn [s]; NaN if this was not asked for.
+        When it came to rest for good, or was certain to overturn [s]; NaN if this was not requested.
     """
 
     overturned: Flags

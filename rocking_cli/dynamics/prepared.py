@@ -34,7 +34,7 @@ def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A structure, and what is derived of it when it is first asked for.
+    """A structure and what is derived from it, computed when first requested.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Prepared:
     def misleading(self) -> str | None:
         """Why its linear models mislead though there is a block, as a sentence; None if they do not, or there is none.
 
-        Only of structures that something hangs on: how far a bare one is from its block is said of each kappa.
+        Only for structures that something is attached to: for a bare one, the error is given with each kappa.
         """
         if self.why_no_block is not None or not self.mechanism.bends:
             return None

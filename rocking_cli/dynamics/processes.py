@@ -62,7 +62,7 @@ def _begin(work: Callable[[int, int], Any]) -> None:
     _work = work
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the one that began it ends it
     sys.stdout = sys.stderr  # plugins print
-    warnings.simplefilter("ignore")  # said once, where the work was asked for
+    warnings.simplefilter("ignore")  # issued once, where the work was requested
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

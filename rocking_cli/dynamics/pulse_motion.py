@@ -64,7 +64,7 @@ class Fate(NamedTuple):
     impacts: int  # up to the end of the pulse or overturning; more if they are logged
     uplift: float  # time of the first [s], NaN if there is none
     peaks: tuple[float, float]  # largest x in the positive and the negative direction
-    crossed: float  # when phi_cr was passed for good [s], if it overturned and this was asked for
+    crossed: float  # when phi_cr was passed for good [s], if it overturned and this was requested
 
 
 def at(flight: Flight, h: float) -> tuple[float, float, float, float]:

@@ -38,7 +38,7 @@ class Release:
         text = given.strip() if isinstance(given, str) else f"{given:g}"
         parts = split(given) if isinstance(given, str) else (repr(float(given)), "")
         if parts is None:
-            raise InputError(Problem(f"{text!r} is no tilt: {EXAMPLE}", field="release"))
+            raise InputError(Problem(f"{text!r} is not a valid tilt: {EXAMPLE}", field="release"))
         if not parts[1]:
             fraction = float(parts[0])
             if not 0 < abs(fraction) < 1:
@@ -50,7 +50,7 @@ class Release:
         except UnitError as error:
             raise InputError(Problem(error.message, field="release", hint=EXAMPLE)) from None
         if not 0 < abs(angle) < pi:
-            raise InputError(Problem(f"{text!r} is no angle between 0 and half a turn", field="release"))
+            raise InputError(Problem(f"{text!r} is not an angle between 0 and half a turn", field="release"))
         return cls(text, angle, is_angle=True)
 
     def ratio(self, structure: Prepared) -> float:
@@ -68,7 +68,7 @@ class Release:
         statics = structure.statics[0 if way > 0 else 1]
         if not self.is_angle:
             if statics.phi_cr is None:
-                why = "there is no critical rotation that it could be a fraction of"
+                why = "a fraction needs a critical rotation, and this direction has none"
                 raise InputError(Problem(f"{self.text}: {why}", field="release", hint="give an angle, such as 0.05rad"))
             return self.size
         if not abs(self.size) < statics.reference:

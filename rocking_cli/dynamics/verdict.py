@@ -140,12 +140,14 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
     said = [f"{by or 'The'} structure {_ends(run)}."]
     said += bearing(histories, {name: name for name in histories})
     if disagree(histories):
-        said.append("Trust none of them alone: look at weaker and stronger motions too.")
+        said.append("Do not trust any of them alone: run weaker and stronger motions as well.")
     elif not run.overturned and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
-        said.append("That is close to overturning: look at weaker and stronger motions too before relying on it.")
+        said.append("This is close to overturning: run weaker and stronger motions before relying on it.")
     still = [name for name, each in histories.items() if each.still_rocking]
     if still:
-        said.append(f"{', '.join(still)}: {names.STILL_ROCKING} long after the record, and not going to overturn.")
+        said.append(
+            f"{', '.join(still)}: {names.STILL_ROCKING} long after the end of the record, and certain not to overturn."
+        )
     return " ".join(said)
 
 
@@ -156,7 +158,10 @@ def _ends(run: History) -> str:
     if not run.peak_ratio:
         return names.NO_UPLIFT
     if run.peak_ratio > 1:
-        return f"{names.ROCKS}: it passes its critical rotation, to {run.peak_ratio:.4g} of it, and is brought back"
+        return (
+            f"{names.ROCKS}: it exceeds its critical rotation, reaching {run.peak_ratio:.4g} times it, and is brought "
+            "back"
+        )
     if any(run.ends_at_limit):
         return f"{names.ROCKS} to {run.furthest:.4g} rad, {run.peak_ratio:.4g} of its {run.reference}"
     return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation"
@@ -178,7 +183,10 @@ def bearing(histories: Mapping[ModelName, History], called: Mapping[ModelName, s
     best = histories["nonlinear"]
     said = [_bears(called[name], each, histories[name], best) for name, each in found.items()]
     if any(each.peak_error is not None and each.grade is not Grade.DISREGARD for each in found.values()):
-        said.append("That holds for this motion alone: under another the equivalent block may do better or worse.")
+        said.append(
+            "This holds for this ground motion only; under another one the equivalent block may be more or less "
+            "accurate."
+        )
     return said
 
 
@@ -190,7 +198,7 @@ def _bears(name: str, found: Agreement, run: History, best: History) -> str:
         return f"Disregard {name} here: {beside}."
     if not found.same_fate:
         return f"{name} disagrees: {beside}."
-    return f"{name} {'agrees' if found.grade is Grade.AGREES else 'serves a first estimate'}: {beside}."
+    return f"{name} {'agrees' if found.grade is Grade.AGREES else 'is good for a first estimate'}: {beside}."
 
 
 def _beside(found: Agreement, run: History, best: History) -> str:
@@ -207,7 +215,7 @@ def _beside(found: Agreement, run: History, best: History) -> str:
     if found.difference is None or found.peak_delay is None:
         return f"its peak is {size}"
     late = f" and {_later(found.peak_delay)}" if abs(found.peak_delay) * best.p > ANOTHER else ""
-    return f"its peak is {size}{late}, and over time its rotation is {percent(found.difference)} off (rms)"
+    return f"its peak is {size}{late}, and its rotation history differs by {percent(found.difference)} (rms)"
 
 
 def _later(delay: float) -> str:
@@ -245,7 +253,7 @@ def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None
         return worse, f"Polarity {worse} governs {by_model}: {said}."
     sizes = {1: _size(one), -1: _size(other)}
     if isclose(sizes[1], sizes[-1], rel_tol=ALIKE):
-        return None, f"Neither polarity governs {by_model}: the motion does the same as given and reversed."
+        return None, f"Neither polarity governs {by_model}: the motion has the same effect as given and reversed."
     if one.overturned:
         worse = min(sizes, key=sizes.__getitem__)
         said = (

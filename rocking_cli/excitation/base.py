@@ -76,7 +76,7 @@ class GroundMotion:
     format : str
         Where it came from: a record format, or `"array"`.
     vertical : GroundMotion, optional
-        The vertical component that goes with it, positive upwards and from the same moment on, at its own interval.
+        The vertical component of the same motion, positive upwards and from the same moment on, at its own interval.
     points : ndarray of int, optional
         Indexes of the samples that were recorded, where the others lie on straight lines between these; without it
         all were.
@@ -85,7 +85,7 @@ class GroundMotion:
     remarks : tuple of Doubt, optional
         What its reader found doubtful in the file.
     processing : tuple of str, optional
-        What was done to it since it was read, in order, as it would be asked for again: `"highpass 0.1"`.
+        Steps applied to it since it was read, in order, as they would be requested again: `"highpass 0.1"`.
     ground : GroundMotion, optional
         Of the motion of a floor, that of the ground below: its peaks are what a motion is scaled to.
     origin : Origin, optional

@@ -60,7 +60,7 @@ def of_samples(motion: GroundMotion, *, accelerations: bool = True) -> list[Doub
         return []
     if accelerations:
         return [*_clipping(motion), *_spikes(motion), *_dropouts(motion)]
-    alone = "a sample stands alone at {:.6g} s: a damaged number?"
+    alone = "isolated spike at {:.6g} s: is this sample corrupted?"
     return [each._replace(text=alone.format(each.value)) for each in _spikes(motion)]
 
 
@@ -71,7 +71,7 @@ def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> 
         return []
     text = (
         f"dt = {motion.dt:g} s is coarse for {what}: p dt = {product:.2g}, so that near overturning its "
-        f"motion grows by {100 * np.expm1(min(product, 700.0)):.2g} % from sample to sample"
+        f"motion increases by {100 * np.expm1(min(product, 700.0)):.2g} % from sample to sample"
     )
     return [Doubt("p_dt", product, text)]
 

@@ -121,7 +121,7 @@ def fit_pulses(
         values = motion.velocity if criterion == "velocity" else motion.acceleration
         peak = float(np.abs(values).max())
         if peak == 0:
-            raise InputError(Problem("the record is zero throughout: there is no pulse in it", motion.name))
+            raise InputError(Problem("the record is zero throughout, so it contains no pulse", motion.name))
         if motion.npts <= 2 * SHORTEST:
             raise InputError(Problem(f"{motion.npts} samples are too few to find a pulse in", motion.name))
         search = _Search(values / peak, motion.dt, criterion == "velocity")

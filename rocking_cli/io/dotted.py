@@ -22,7 +22,7 @@ def words(text: str) -> tuple[str, ...]:
     found = tuple(part.strip() for part in text.strip().split("."))
     if not all(found):
         hint = "write words with a dot between them, such as loads.0.mass"
-        raise InputError(Problem(f"{cut(repr(text))} is no field", hint=hint))
+        raise InputError(Problem(f"{cut(repr(text))} is not a valid field", hint=hint))
     return found
 
 
@@ -97,7 +97,7 @@ def _entry(entries: list[Any], word: str, before: tuple[str, ...], *, grow: bool
         if not grow:
             raise InputError(Problem(f"{of} has no entry {cut(word)}", hint=_known(word, names)))
         if number >= MOST:
-            raise InputError(Problem(f"{cut(word)} is no place in a list: at most {MOST - 1}"))
+            raise InputError(Problem(f"{cut(word)} is not a valid place in a list: at most {MOST - 1}"))
         entries += [HOLE] * (number + 1 - len(entries))
         return number
     if not grow:
@@ -121,7 +121,7 @@ def copied(data: Any) -> Any:
 
 
 def closed(data: Any) -> Any:
-    """The same data without the entries of lists that nothing was put in."""
+    """Return the data without list entries that received no value."""
     if isinstance(data, dict):
         return {key: closed(value) for key, value in data.items()}
     return [closed(each) for each in data if each is not HOLE] if isinstance(data, list) else data

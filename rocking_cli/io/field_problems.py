@@ -167,7 +167,7 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     if kind == "finite_number":
         return f"must be a finite number, {got}", None
     if kind == "float_type" and isinstance(given, int) and not isinstance(given, bool):
-        return f"is beyond the range of numbers, {got}", None  # whole, but larger than any float
+        return f"is outside the range of floating-point numbers, {got}", None  # whole, but larger than any float
     if kind in ("float_type", "float_parsing"):
         comma = isinstance(given, str) and re.fullmatch(r"\s*[-+]?\d+(,\d+)+\s*\D*", given)
         return f"must be a number{f' in{unit}' if unit else ''}, {got}", "write a decimal point" if comma else None

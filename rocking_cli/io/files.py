@@ -60,14 +60,14 @@ def read_bytes(
             reason = "it is a folder"
         raise InputError(Problem(f"cannot be read: {reason}", shown)) from None
     if content is None:
-        raise InputError(Problem(f"this is no {what}: it is larger than {most / 1e6:.4g} MB", shown))
+        raise InputError(Problem(f"this cannot be a {what}: it is larger than {most / 1e6:.4g} MB", shown))
     return content
 
 
 def read_at_most(stream: IO[bytes] | io.BufferedIOBase, most: int) -> bytes | None:
     """All that a stream gives, or None if it is more than `most` bytes.
 
-    It is asked a piece at a time: asked for `most` bytes at once, it would set aside memory for as many.
+    It is read a piece at a time: a read of `most` bytes at once would set aside memory for as many.
     """
     pieces, size = [], 0
     while piece := stream.read(1 << 20):
@@ -99,7 +99,7 @@ def check_new_folder(path: Path) -> None:
         if not os.access(path, os.R_OK | os.W_OK):
             raise InputError(Problem("this folder cannot be written to", shown))
         if any(path.iterdir()):
-            raise InputError(Problem("this folder is there already and is not empty", shown, hint=elsewhere))
+            raise InputError(Problem("this folder already exists and is not empty", shown, hint=elsewhere))
     elif os.path.lexists(path):
         raise InputError(Problem("there is a file of this name already", shown, hint=elsewhere))
     elif not path.parent.is_dir():
@@ -159,7 +159,7 @@ def check_writable(path: Path) -> None:
     if not path.parent.is_dir():
         raise InputError(Problem(f"the folder {path.parent} does not exist", shown, hint="create it first"))
     if path.exists() and not os.access(path, os.W_OK):
-        raise InputError(Problem("the file is there already and is protected from writing", shown))
+        raise InputError(Problem("the file already exists and is protected from writing", shown))
     if not _is_special(path) and not os.access(path.parent, os.W_OK):
         raise InputError(Problem(f"the folder {path.parent} cannot be written to", shown))
 
@@ -175,7 +175,7 @@ def keep_apart(outputs: Sequence[tuple[str, Path | None]], inputs: Sequence[str 
     Parameters
     ----------
     outputs : sequence of (str, Path or None)
-        The option that asks for it, and where it goes; None where it is not asked for.
+        The option that requests it, and where it goes; None if it is not requested.
     inputs : sequence of str or None
         Files that are read.
 
@@ -191,7 +191,7 @@ def keep_apart(outputs: Sequence[tuple[str, Path | None]], inputs: Sequence[str 
             continue
         if path.exists() and any(path.samefile(each) for each in read):
             raise InputError(
-                Problem(f"{option} would overwrite what is read", str(path), hint="take another name or folder")
+                Problem(f"{option} would overwrite an input file", str(path), hint="take another name or folder")
             )
         place = path.resolve()
         if place in taken:
@@ -286,7 +286,7 @@ def _write_into(path: Path, shown: Path, write: Callable[[BinaryIO], object]) ->
         handle = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except OSError as error:
         if error.errno == errno.ENXIO:
-            problem = Problem("nobody reads from this pipe", str(shown), hint="start its reader first")
+            problem = Problem("no program is reading from this pipe", str(shown), hint="start its reader first")
             raise InputError(problem) from None
         raise _cannot(shown, error) from error
     with tempfile.TemporaryFile() as whole:

@@ -100,7 +100,7 @@ def _decoded(raw: bytes, file: str) -> str:
         hint = "save the table as `CSV UTF-8`"
         raise InputError(Problem("not UTF-8 text", file, line, hint=hint)) from None
     if "\0" in text:
-        raise InputError(Problem("this is no table: it is binary", file, hint="save the sheet as CSV"))
+        raise InputError(Problem("this is not a table: it is binary", file, hint="save the sheet as CSV"))
     return text
 
 
@@ -121,7 +121,9 @@ def _cells(text: str, separator: str, file: str, skipped: int) -> Iterator[tuple
             return
         except csv.Error as error:
             hint = "a quote that opens a cell must close it, and a quote within is written twice"
-            raise InputError(Problem(f"the row that begins here is no CSV: {error}", file, line, hint=hint)) from None
+            raise InputError(
+                Problem(f"the row that starts here is not valid CSV: {error}", file, line, hint=hint)
+            ) from None
         if any(cells):
             yield line, cells
 

@@ -96,8 +96,9 @@ class Document:
             raise InputError(self.problem(f"nested too deep to be a {self.what}", node.start_mark))
         self.count += 1
         if self.count > MOST:
-            hint = "aliases (*name) repeat all that they stand for: write out what is meant"
-            message, mark = f"more than {MOST} values are no {self.what}", self.values.get(path[:1], node.start_mark)
+            hint = "aliases (*name) expand to too many values: write the values out"
+            message = f"the file has more than {MOST} values: too many for a {self.what}"
+            mark = self.values.get(path[:1], node.start_mark)
             raise InputError(self.problem(message, mark, spell(path[:1]), hint))
         if isinstance(node, yaml.SequenceNode):
             return [self.plain(item, (*path, k)) for k, item in enumerate(node.value)]
@@ -122,7 +123,7 @@ class Document:
                 continue
             if key.value == "<<" and key.style is None:
                 hint = "write the fields out"
-                self.problems.append(self.problem("merging with << is not read here", key.start_mark, "<<", hint))
+                self.problems.append(self.problem("merge keys (<<) are not supported", key.start_mark, "<<", hint))
                 continue
             here = (*path, key.value)
             if key.value in data:
@@ -158,7 +159,7 @@ def read_text(path: Path, what: str) -> str:
 def decoded(raw: bytes, shown: str, what: str) -> str:
     """The text in the content of a file, or of what is called so. Raises `InputError` if it is none."""
     if len(raw) > LARGEST:
-        raise InputError(Problem(f"this is no {what} file: it is larger than {LARGEST / 1e6:.4g} MB", shown))
+        raise InputError(Problem(f"this cannot be a {what} file: it is larger than {LARGEST / 1e6:.4g} MB", shown))
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # what a redirection writes in older shells of Windows
         raw = raw.decode("utf-16", errors="replace").encode()
     if b"\0" in raw:
@@ -208,7 +209,7 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
         raise InputError(document.problem(f"not YAML: {said}", mark)) from None
     except ReaderError as error:
         line = len(_LINE_END.findall(text, 0, error.position)) + 1
-        message = f"not YAML: the character {printable(chr(error.character))} cannot stand in it"
+        message = f"not valid YAML: it contains the character {printable(chr(error.character))}"
         raise InputError(Problem(message, file, line)) from None
     except RecursionError:
         raise InputError(Problem(f"nested too deep to be a {what}", file)) from None

@@ -1,6 +1,6 @@
 """A structure moving under a ground motion, the traces below: as an animated GIF, and as a page.
 
-Of a GIF what stands still is drawn once; only the structure and the cursor are drawn anew for each frame, by the
+Of a GIF what stands still is drawn once; only the structure and the cursor are drawn again for each frame, by the
 renderer of matplotlib itself, which smooths them.
 """
 

@@ -1,4 +1,4 @@
-"""Where a requirement holds: the metric over the field that varies, and the level that it is held against."""
+"""Where a requirement holds: the metric against the field that varies, and the required level."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def draw_design(found: Design) -> Figure:
     shown = np.where(finite, found.metric, np.nan)
     for k, (low, high) in enumerate(found.holds):
         axes.axvspan(low, high, color=HOLDS, linewidth=0, label=f"{found.aim} holds" if k == 0 else None)
-    axes.axhline(found.aim.level, color=style.EXCEEDED, linewidth=style.BOLD, linestyle="--", label="level asked for")
+    axes.axhline(found.aim.level, color=style.EXCEEDED, linewidth=style.BOLD, linestyle="--", label="required level")
     few = finite.sum() <= SCAN
     axes.plot(
         found.values, shown, color=style.INK, linewidth=style.BOLD, marker="o" if few else "", markersize=3,
@@ -65,11 +65,11 @@ def _height(found: Design) -> float:
 
 
 def _mark_missing(axes: Axes, found: Design) -> None:
-    """Crosses at the foot where there is no value, and triangles at the top where most neighbours overturn."""
+    """Mark values without a metric by crosses, and those at which most neighbours overturn by triangles."""
     across = axes.get_xaxis_transform()
     for values, height, marker, label in (
-        (found.values[np.isnan(found.metric)], 0.03, "x", "no value"),
-        (found.values[np.isinf(found.metric)], 0.97, "^", "half of the neighbours or more overturn"),
+        (found.values[np.isnan(found.metric)], 0.03, "x", "could not be computed"),
+        (found.values[np.isinf(found.metric)], 0.97, "^", "at least half of the neighbours overturn"),
     ):
         if values.size:
             axes.plot(

@@ -93,10 +93,10 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     style.tidy(axes)
     handles = [_key(each, style.distinct(k)) for k, each in enumerate(drawn)]
     bands = "shades" if len(drawn) <= FILLED else "thin lines"
-    marks = f"marks: observed parts; bars and {bands}: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
+    marks = f"marks: observed shares; bars and {bands}: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
     most = max(int(each.observations.group.max()) + 1 for each in drawn)
     if (every := _every(most, alone=len(drawn) == 1)) > 1:
-        marks += f"; one of {every} intensities is marked"
+        marks += f"; one of every {every} intensities is marked"
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in (marks, *_remarks(drawn))]
     figure.legend(
         handles=handles,
@@ -114,8 +114,10 @@ def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:
     """What to be careful about in a picture, each thing once."""
     unbounded = [each.name for each in drawn if each.curve.unbounded]
     steps = [each.name for each in drawn if each.curve.step is not None]
-    step = f"the shade of a step lies between two levels, without a confidence: {', '.join(steps)}" if steps else ""
-    open_ = f"no band: the data leave that of {', '.join(unbounded)} open" if unbounded else ""
+    step = (
+        f"shade of a step: the interval between two levels, not a confidence band: {', '.join(steps)}" if steps else ""
+    )
+    open_ = f"no confidence band, as the data do not bound it: {', '.join(unbounded)}" if unbounded else ""
     return list(dict.fromkeys(each for each in (step, *(each.curve.warning for each in drawn), open_) if each))
 
 
@@ -173,7 +175,7 @@ def _key(each: LabelledCurve, look: dict[str, Any]) -> Line2D:
     said: str = curve.kind
     if curve.kind == "none":
         look = look | {"linestyle": "none"}
-        said = f"no curve, {curve.why}"
+        said = f"no curve: {curve.why}"
     elif curve.step is not None:
         said += f", between {curve.step.low:.3g} and {curve.step.high:.3g}"
     elif curve.median is not None:
@@ -216,7 +218,7 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     for each in np.where(fallen, middle, peaks)[some]:
         axes.plot(intensity, each, color=style.FAINT, linewidth=style.THIN, alpha=0.8)
     ranked = np.sort(np.where(fallen, np.inf, peaks), axis=0)
-    name = "a record" if some.size == len(peaks) else f"a record, {some.size} drawn"
+    name = "one record" if some.size == len(peaks) else f"one record, {some.size} drawn"
     handles = [Line2D([], [], color=style.FAINT, linewidth=style.THIN, label=name)]
     for k, (fractile, name) in zip((1, 0, 2), FRACTILES, strict=True):
         place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that so many records do not exceed
@@ -238,7 +240,7 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     axes.set_xlabel(label, fontsize=style.LABEL)
     axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=style.LABEL)
     style.tidy(axes)
-    handles.append(Line2D([], [], linestyle="none", label=f"numbers: how many of {len(peaks)} overturn"))
+    handles.append(Line2D([], [], linestyle="none", label=f"numbers: records that overturn, of {len(peaks)}"))
     figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=style.TICK, frameon=False)
     return figure
 
@@ -289,7 +291,7 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
             name.set_zorder(6)  # over the marks
         handles.append(Line2D([], [], color=style.INK, label="probability of exceedance"))
     said = [surface.warning] if surface.warning else []
-    said += [f"one of {every} is drawn"] if every > 1 else []
+    said += [f"one of every {every} runs is drawn"] if every > 1 else []
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in said]
     for axis in (axes.xaxis, axes.yaxis):
         style.plain_numbers(axis)

@@ -25,8 +25,8 @@ FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a c
 FELT = 0.02  # of the strongest impact: weaker ones, of a chatter to rest, are not marked
 SHORTEST = 0.1  # s of the time axis
 POINTS = 1000  # of a pulse
-MOST_NEEDED = 2.0  # friction shown at most: what bears next to nothing needs any
-IMPACTS = f"impacts of {100 * FELT:g} % of the strongest and more, in the order of the legend"
+MOST_NEEDED = 2.0  # friction shown at most: a joint with almost no normal force may need any
+IMPACTS = f"impacts of {100 * FELT:g} % of the strongest or more, in the order of the legend"
 FORCE = " force [N]"  # what columns of forces end with
 MOST_TIES, LONGEST = 6, 30  # ties in a panel, and characters of their names
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
@@ -60,7 +60,7 @@ def draw_history(
         The ground acceleration that lifts the structure to the positive and to the negative direction [standard
         gravity], drawn over the motion where nothing lifts it.
     contacts : sequence of Contact
-        Of the nonlinear history under the motion, and under the reversed one: the friction needed, in a panel below.
+        Of the nonlinear history under the motion, and under the reversed one: the friction required, in a panel below.
     watched : Watched, optional
         With it the forces of ties are drawn below each response, and the side walls of what rocks to one side only.
 
@@ -110,7 +110,7 @@ def _draw_uplift(axes: Axes, uplift: tuple[float, float]) -> None:
     for level in (-positive, negative):
         axes.axhline(level, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
     axes.set_ylim(-1.5 * positive, 1.5 * negative)  # room for the notes
-    style.note(axes, f"dotted: {negative:.3g} g and {-positive:.3g} g would lift it", height=0.14)
+    style.note(axes, f"dotted: uplift at {negative:.3g} g and {-positive:.3g} g", height=0.14)
 
 
 def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit | None) -> None:
@@ -164,18 +164,18 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
 
 
 def _draw_contacts(axes: Axes, contacts: Sequence[Contact]) -> None:
-    """Draw the friction that joints need, and what there is."""
+    """Draw the friction required at the joints, and the friction available."""
     for k, found in enumerate(contacts):
         shown = visible(found.demand)
-        polarity = f"polarity {1 - 2 * k}" if len(contacts) > 1 else "needed"
+        polarity = f"polarity {1 - 2 * k}" if len(contacts) > 1 else "required"
         look = style.family(k) | {"linewidth": style.MEDIUM}
         axes.plot(found.times[shown], found.demand[shown], label=polarity, **look)
     there = contacts[0].friction
     if there is not None:
-        axes.axhline(there, color=style.CURSOR, linewidth=style.MEDIUM, linestyle=":", label=f"there is {there:.3g}")
+        axes.axhline(there, color=style.CURSOR, linewidth=style.MEDIUM, linestyle=":", label=f"available: {there:.3g}")
     most = max(float(found.demand.max(initial=0.0)) for found in contacts)
     axes.set_ylim(0.0, 1.15 * min(max(most, there or 0.0, 1e-3), MOST_NEEDED))
-    axes.set_ylabel("friction needed", fontsize=style.LABEL)
+    axes.set_ylabel("friction required", fontsize=style.LABEL)
     axes.legend(loc="upper right", ncols=3, **style.LEGEND)
     style.tidy(axes)
 

@@ -1,4 +1,4 @@
-"""What hangs on a structure, in symbols of one size on paper: weights, forces, and ties as lines and springs."""
+"""Loads and ties of a structure, in symbols of one size on paper: weights, forces, and ties as lines and springs."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ OUTLINE: Points = np.array(
 
 
 class Symbols(NamedTuple):
-    """What hangs on a structure at one rotation [m].
+    """The loads and ties of a structure at one rotation [m].
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Symbols(NamedTuple):
 
 
 def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
-    """What hangs on a structure at a signed rotation, at so many inches a metre."""
+    """Return the symbols of loads and ties at a signed rotation, at a scale in inches per metre."""
     places, ties, slack = picture.hung(rotation, SYMBOL / scale)
     lines, anchors = [], []
     for tie, ends, loose in zip(picture.ties, ties, slack, strict=True):
@@ -74,7 +74,7 @@ def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
 
 
 def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, labels: Labels) -> None:
-    """Draw what hangs on a structure, for words to keep off."""
+    """Draw the loads and ties of a structure, and keep words off them."""
     shown = symbols(picture, rotation, panel.scale)
     for line, loose, behind in shown.lines:
         dashes, order = style.SLACK if loose else "-", BEHIND if behind else 4.5

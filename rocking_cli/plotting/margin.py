@@ -51,9 +51,9 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.set_ylim(-0.03, 1.03)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_ylabel("share that overturns", fontsize=style.LABEL)
-    arrow = ", arrowhead: beyond" if beyond else ""
-    axes.set_xlabel(f"factor on the motion (star: as it is; tick: from where it uplifts{arrow})", fontsize=style.LABEL)
+    axes.set_ylabel("share of neighbours that overturn", fontsize=style.LABEL)
+    arrow = ", arrowhead: beyond the axis" if beyond else ""
+    axes.set_xlabel(f"scale factor of the motion (star: as given; tick: uplift{arrow})", fontsize=style.LABEL)
     axes.margins(x=0.01)
     style.tidy(axes)
     if len(margins) > 1:

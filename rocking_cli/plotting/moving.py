@@ -76,7 +76,7 @@ def moving(
 
 
 def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dict[str, Any]:
-    """The rotation over the critical one, or over the kinematic limit where there is none, over time.
+    """The rotation over the critical one, or over the kinematic limit if there is none, against time.
 
     There is a curve for each model, of some two samples for each bin.
     """
@@ -109,7 +109,7 @@ def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BIN
     series = [_series("ground", look, shown.astype(np.float64) * motion.dt, ground[shown])]
     for fit in fits:
         t = fit.start + np.linspace(0.0, fit.pulse.duration, POINTS)
-        series.append(_series(f"pulse in it ({fit.pulse.title})", "pulse", t, fit.acceleration(t) / STANDARD_GRAVITY))
+        series.append(_series(f"its pulse ({fit.pulse.title})", "pulse", t, fit.acceleration(t) / STANDARD_GRAVITY))
     tall = 1.1 * max(max(abs(value) for value in each["y"]) for each in series)
     return {"label": "ground acceleration [g]", "tall": tall or 1.0, "levels": [], "series": series}
 

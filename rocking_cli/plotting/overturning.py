@@ -147,7 +147,7 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     axes.set_yscale("log")
     if np.isnan(found.least).all():
         axes.set_ylim(found.top / 10, found.top)  # there is no curve to choose them by
-        style.note(axes, "none overturns")
+        style.note(axes, "no structure overturns")
     for axis in (axes.xaxis, axes.yaxis):
         style.plain_numbers(axis)
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))

@@ -37,7 +37,7 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
     """
     rows, columns = len(paper.panels), len(paper.panels[0])
     cut = any(_is_ratio(panel) and _values(panel).max() > MOST for row in paper.panels for panel in row)
-    said = f"Figure {paper.number} of DeJong and Dimitrakopoulos (2014), computed anew. {paper.caption}"
+    said = f"Figure {paper.number} of DeJong and Dimitrakopoulos (2014), recomputed. {paper.caption}"
     caption = fill(said + (f" Curves are cut off at a ratio of {MOST:g}." if cut else ""), CAPTION)
     drawn = DRAWN if paper.structures else 0.0
     families = {

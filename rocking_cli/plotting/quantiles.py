@@ -41,7 +41,7 @@ def draw_quantiles(found: Quantiles, label: str) -> Figure:
     """
     figure = style.new_figure(5.2)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))
-    style.heading(above, f"{found.structure}: how far it rocks")
+    style.heading(above, f"{found.structure}: peak rotation")
     x = np.array([each.x for each in found.groups])
     handles = _peaks(above, x, found) + _shares(below, x, found)
     if x[-1] > WIDEST * x[0]:
@@ -65,15 +65,15 @@ def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
     top = 1.12 * floor if falls else floor
     color = style.distinct(2)["color"]
     shade = axes.fill_between(x, rocking[0], rocking[2], color=color, alpha=SHADED, linewidth=0.0)
-    shade.set_label("rock and stand, 16 to 84 %")
+    shade.set_label("runs that rock, 16 to 84 %")
     handles: list[Any] = [shade]
     handles += axes.plot(x, rocking[1], color=color, linewidth=style.BOLD, marker="o", markersize=3.5,
-                         label="rock and stand, median", zorder=4)  # fmt: skip
+                         label="runs that rock, median", zorder=4)  # fmt: skip
     handles.append(Line2D([], [], linestyle="none", label=""))  # so that each column is of one kind
     for line, dash, name in zip(every, ("--", "-", "-."), ("16 %", "median", "84 %"), strict=True):
         end = np.where(np.isinf(line), floor + HIGHEST * (top - floor), line)
         end[1:][np.isinf(line[1:]) & np.isinf(line[:-1])] = np.nan
-        handles += axes.plot(x, end, color=style.INK, linestyle=dash, linewidth=style.MEDIUM, label=f"all, {name}")
+        handles += axes.plot(x, end, color=style.INK, linestyle=dash, linewidth=style.MEDIUM, label=f"all runs, {name}")
     ticks = np.arange(0.0, floor, 0.2 if floor > 0.5 else floor / 5).tolist()
     if falls:
         axes.axhspan(floor, top, color=style.SHADE, linewidth=0)

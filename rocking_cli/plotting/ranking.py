@@ -1,4 +1,4 @@
-"""Which measures serve: their efficiency, and the trends that their residuals have."""
+"""Ranking of intensity measures: their efficiency, and the trends of their residuals."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def draw_ranking(ranking: Ranking) -> Figure:
     shown = ranking.measures
     figure = style.new_figure(1.4 + 0.26 * len(shown))
     panels = figure.subplots(1, 1 + bool(ranking.against), sharey=True, squeeze=False)[0]
-    filled = " (filled: its residuals show no trend)" if ranking.against else ""
-    style.heading(panels[0], f"{ranking.structure}: which measure serves{filled}")
+    filled = " (filled: residuals show no trend)" if ranking.against else ""
+    style.heading(panels[0], f"{ranking.structure}: which measure predicts best{filled}")
     places = np.arange(len(shown))
     for place, each in zip(places, shown, strict=True):
         face = style.INK if each.sufficient else "white"
         panels[0].plot(each.efficiency, place, "o", color=style.INK, markerfacecolor=face, markersize=6)
     panels[0].set_xlim(left=0.0)
-    panels[0].set_xlabel(r"efficiency: scatter of $\ln(\phi/\phi_{cr})$", fontsize=style.LABEL)
+    panels[0].set_xlabel(r"efficiency: dispersion of $\ln(\phi/\phi_{cr})$", fontsize=style.LABEL)
     panels[0].set_yticks(places, [each.measure for each in shown], parse_math=False)
     panels[0].invert_yaxis()
     if ranking.against:
@@ -44,7 +44,7 @@ def draw_ranking(ranking: Ranking) -> Figure:
         panels[1].axvline(TREND, color=style.INK, linewidth=style.MEDIUM, linestyle="--")
         panels[1].set_xscale("log")
         panels[1].set_xlim(LEAST / 1.3, 1.3)
-        panels[1].set_xlabel(f"p of no trend; left of {TREND:g} one is seen", fontsize=style.LABEL)
+        panels[1].set_xlabel(f"p-value of no trend; trend if below {TREND:g}", fontsize=style.LABEL)
         style.plain_numbers(panels[1].xaxis, (1.0,))
         panels[1].legend(loc="best", fontsize=style.TICK, frameon=True)
     for axes in panels:

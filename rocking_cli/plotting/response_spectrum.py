@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from rocking_cli.plotting import style
 from rocking_cli.processing.oscillator import ResponseSpectrum
 
-NAMED = 6  # curves that are told apart; more are drawn alike
+NAMED = 6  # curves that are told apart; more are drawn in one look
 QUANTITIES = (("sa", "Sa, pseudo [g]"), ("sv", "Sv, pseudo [m/s]"), ("sd", "Sd [m]"))
 
 

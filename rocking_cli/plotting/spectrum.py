@@ -88,7 +88,7 @@ def _top(spectra: Sequence[Spectrum], q: float) -> float:
 
 
 def _within(each: Spectrum) -> Reals:
-    """Sizes to join by lines: a structure as given that lies beyond those asked for stands alone."""
+    """Return the sizes to join by lines: a structure as given beyond the requested sizes stands alone."""
     inside = np.ones(each.scales.size)
     if each.given in (0, each.scales.size - 1):
         inside[each.given] = np.nan

@@ -30,7 +30,7 @@ EARTH = 0.08  # inches: depth of the hatches of the ground
 LONGEST_BAR = 0.8  # inches: of the scale
 WORDS = 40  # characters of a line under a panel
 NOTES = 125  # characters of a line of notes
-NO_CRITICAL = "without a critical rotation: displaced to an angle that is seen"
+NO_CRITICAL = "no critical rotation: displaced to a visible angle"
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
@@ -46,7 +46,7 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     title : str
         Heading.
     ratio : float, optional
-        Rotation of the displaced structure over the critical one, or over the kinematic limit where there is none;
+        Rotation of the displaced structure over the critical one, or over the kinematic limit if there is none;
         without it, what can be seen well.
 
     Returns
@@ -145,7 +145,7 @@ def _box_at_rest(picture: Picture) -> tuple[complex, complex]:
 
 
 def _rest_panel(picture: Picture, low: complex, high: complex, around: tuple[float, float, float, float]) -> Panel:
-    """Room for the structure from `low` to `high` with what is written around it, and for all that hangs on it."""
+    """Return the panel for the structure from `low` to `high`, its labels, loads and ties."""
     far = box_around([np.array([low, high, *picture.held(0.0)])])
     beside = np.add(around, hung.beside(picture))
     left, right, below, above = np.maximum(beside, hung.margins(picture)).tolist()

@@ -1,4 +1,4 @@
-"""Many structures: the acceleration that lifts each over its frequency parameter, and what becomes of it."""
+"""Many structures: the uplift acceleration of each against its frequency parameter, and its outcome."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MANY = 2000  # marks of a picture of lines; more are one image within it
 MARKS: dict[str, dict[str, Any]] = {
     "does not uplift": {"marker": "o", "color": "white", "markeredgecolor": style.SPARED},
     "rocks": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
-    "overturns under some or all": {"marker": "^", "color": style.EXCEEDED, "markeredgecolor": "white"},
+    "overturns under at least one motion": {"marker": "^", "color": style.EXCEEDED, "markeredgecolor": "white"},
     "structure": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
 }
 
@@ -61,7 +61,7 @@ def draw_survey(found: Survey, title: str) -> Figure:
         )  # fmt: skip
     _axes(axes)
     if missing := int((~there).sum()):
-        label = f"not drawn: {missing:,} without an equivalent block, and so without p"
+        label = f"not drawn: {missing:,} without an equivalent block (no p)"
         axes.plot([], [], linestyle="none", label=label)
     if axes.get_legend_handles_labels()[1]:
         figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
@@ -74,7 +74,7 @@ def _groups(found: Survey) -> dict[str, NDArray[np.bool_]]:
         return {"structure": np.ones(len(found.rows), dtype=bool)}
     falls = np.array([each.under is not None and each.under.overturned > 0 for each in found.rows])
     lifts = np.array([each.under is not None and each.under.peak_ratio > 0 for each in found.rows])
-    return {"does not uplift": ~falls & ~lifts, "rocks": ~falls & lifts, "overturns under some or all": falls}
+    return {"does not uplift": ~falls & ~lifts, "rocks": ~falls & lifts, "overturns under at least one motion": falls}
 
 
 def _axes(axes: Axes) -> None:

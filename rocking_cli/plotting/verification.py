@@ -1,4 +1,4 @@
-"""Capacity curves of a verification: exact and straight, with what each limit state allows and asks for."""
+"""Capacity curves of a verification: exact and straight, with the capacity and demand at each limit state."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def draw_verification(found: Verification) -> Figure:
     Parameters
     ----------
     found : Verification
-        What a code says.
+        The verification by a code.
     """
     sides = shown(found)
     figure = style.new_figure(3.4 * len(sides))
@@ -26,21 +26,23 @@ def draw_verification(found: Verification) -> Figure:
         _draw(each, side)
         style.heading(each, f"{heading(found.mechanism)}: {where.lower()}, FC = {side.exact.confidence:g}")
         style.tidy(each)
-    axes[-1].set_xlabel("displacement d of the one degree of freedom [m]", fontsize=style.LABEL)
+    axes[-1].set_xlabel("displacement d of the single-degree-of-freedom system [m]", fontsize=style.LABEL)
     return figure
 
 
 def _draw(axes: Axes, side: Verified) -> None:
     d, a = side.exact.points()
-    axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label="exact")
-    axes.plot([0, side.d0], [side.a0, 0], color=style.MEASURE, linestyle="--", linewidth=style.MEDIUM, label="straight")
+    axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label="exact curve")
+    axes.plot(
+        [0, side.d0], [side.a0, 0], color=style.MEASURE, linestyle="--", linewidth=style.MEDIUM, label="straight line"
+    )
     for k, (name, at) in enumerate(side.states.items()):
         look = style.distinct(k + 1)
         color = look["color"]
-        axes.plot(at.d, at.a, marker=look["marker"], color=color, linestyle="none", label=f"d_{name}, allowed")
+        axes.plot(at.d, at.a, marker=look["marker"], color=color, linestyle="none", label=f"capacity d_{name}")
         if at.demand is not None:
             axes.axvline(at.demand, color=color, linestyle=look["linestyle"], linewidth=style.MEDIUM,
-                         label=f"asked for at {name}")  # fmt: skip
+                         label=f"demand at {name}")  # fmt: skip
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
     axes.set_ylabel("acceleration a* [m/s2]", fontsize=style.LABEL)

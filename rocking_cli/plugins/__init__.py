@@ -1,1 +1,1 @@
-"""What other packages add: mechanisms, record readers, pulse shapes and measures of intensity."""
+"""Plugins of other packages: mechanisms, record readers, pulse shapes and intensity measures."""

@@ -1,4 +1,4 @@
-"""What plugin code raises, as an error that says whose it is and where; nothing a plugin does ends the program."""
+"""Errors of plugin code, with the plugin and the place; no error of a plugin ends the program unhandled."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ def blame(what: str, module: str, *, but: type[Exception] = RockingError) -> Ite
     Parameters
     ----------
     what : str
-        Who failed at what, the beginning of the message: "the mechanism odd failed in motion".
+        Beginning of the message, with the plugin and the task: "the mechanism odd failed in motion".
     module : str
-        A module of the plugin: the message ends with the last place in its package.
+        Module of the plugin: the message ends with the last place in its package.
     but : type, optional
-        Errors that pass as they are, beside those of this package.
+        Errors that pass unchanged, in addition to those of this package.
 
     Raises
     ------
     PluginError
-        From the error. A want of memory passes as well.
+        From the error. A `MemoryError` passes unchanged too.
     """
     try:
         yield
@@ -39,22 +39,22 @@ def blame(what: str, module: str, *, but: type[Exception] = RockingError) -> Ite
 
 
 def plugin_error(what: str, module: str, error: BaseException) -> PluginError:
-    """The error that says what a plugin raised; to be raised from it. Parameters are those of `blame`."""
+    """Return the error to raise from an error of a plugin. Parameters are those of `blame`."""
     said = str(error)
     return PluginError(f"{what}: {type(error).__name__}{f': {said}' if said else ''}{_place(module, error)}")
 
 
 def guard(cls: type, methods: Iterable[str], what: Callable[[type, str], str]) -> None:
-    """Have `blame` around those of some methods that a class itself defines.
+    """Wrap those of some methods that a class itself defines in `blame`.
 
     Parameters
     ----------
     cls : type
-        The class, changed in place.
+        Class, changed in place.
     methods : iterable of str
         Names of methods.
     what : callable
-        Says of the class of an object and the name of a method who failed at what.
+        Returns the beginning of the message from the class of an object and the name of a method.
     """
     for name in methods:
         method = vars(cls).get(name)
@@ -63,7 +63,7 @@ def guard(cls: type, methods: Iterable[str], what: Callable[[type, str], str]) -
 
 
 def own_traceback(error: BaseException | None) -> str | None:
-    """The traceback of what a plugin itself raised, if that is at the bottom of an error."""
+    """Return the traceback of the error of a plugin, if such an error caused this one."""
     while error is not None:
         if isinstance(error, PluginError) and error.__cause__ is not None:
             told = traceback.TracebackException.from_exception(error.__cause__)
@@ -84,12 +84,12 @@ def _guarded(method: Callable[..., Any], module: str, what: Callable[[type, str]
 
 
 def _on_the_way(file: str) -> bool:
-    """Whether a frame is of how a plugin is called or imported, which says nothing of it."""
+    """Return whether a frame only calls or imports a plugin, and is of no use to its author."""
     return file == __file__ or "importlib" in file
 
 
 def _place(module: str, error: BaseException) -> str:
-    """Where in the plugin's own package it happened; empty if it did not get there."""
+    """Return the place of an error in the package of the plugin; empty if it is elsewhere."""
     package = module.partition(".")[0]
     places = [
         f" ({frame.f_code.co_filename}:{line})"

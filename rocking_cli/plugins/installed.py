@@ -1,4 +1,4 @@
-"""Plugins of installed packages by their entry points: found by group, loaded, named by whose they are."""
+"""Find, load and name plugins of installed packages by their entry points."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rocking_cli.plugins.errors import blame
 
 
 def find(group: str) -> dict[str, list[EntryPoint]]:
-    """Entry points of a group by name; more than one under a name is a conflict for the caller to report."""
+    """Find the entry points of a group by name; several of one name are a conflict for the caller to report."""
     points: dict[str, list[EntryPoint]] = {}
     for point in entry_points(group=group):
         same_name = points.setdefault(point.name, [])
@@ -21,17 +21,17 @@ def find(group: str) -> dict[str, list[EntryPoint]]:
 
 
 def package(point: EntryPoint) -> str:
-    """Distribution and version of an entry point."""
+    """Return the distribution and version of an entry point."""
     return f"{point.dist.name} {point.dist.version}" if point.dist else "unknown package"
 
 
 def origin(point: EntryPoint) -> str:
-    """Which plugin of which package this is, for a message."""
+    """Return the plugin and its package, for a message."""
     return f"plugin {point.name} of {package(point)} ({point.value})"
 
 
 def only(kind: str, name: str, points: list[EntryPoint]) -> EntryPoint:
-    """The one entry point of a name; `kind` is what the plugins are, for the message if there are two."""
+    """Return the only entry point of a name; `kind` names the plugins in the message if there are two."""
     if len(points) > 1:
         claims = " and ".join(f"{package(point)} ({point.value})" for point in points)
         raise MechanismError(f"{kind} {name} is claimed by two packages, {claims}: uninstall one of them")
@@ -39,7 +39,7 @@ def only(kind: str, name: str, points: list[EntryPoint]) -> EntryPoint:
 
 
 def load(point: EntryPoint) -> object:
-    """What an entry point names."""
+    """Load the object of an entry point."""
     with blame(f"{origin(point)} cannot be loaded", point.value.partition(":")[0]):
         loaded: object = point.load()
     return loaded
@@ -49,7 +49,7 @@ _LEFT_OUT: set[str] = set()
 
 
 def leave_out(error: MechanismError) -> None:
-    """Warn, once in this process, that a plugin is left out while all others go on."""
+    """Warn, once in this process, that a plugin is left out; the others are used."""
     if str(error) not in _LEFT_OUT:
         _LEFT_OUT.add(str(error))
         warning = PluginWarning(f"{error}; it is left out")

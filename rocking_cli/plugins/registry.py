@@ -1,4 +1,4 @@
-"""Plugins of one kind by name, whatever they are: mechanisms, record readers, pulse shapes, measures of intensity."""
+"""Plugins of one kind by name: mechanisms, record readers, pulse shapes or intensity measures."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ T = TypeVar("T")
 
 
 class Plugins(Mapping[str, T]):
-    """The plugins of an entry-point group. Listing names loads nothing; looking one up loads and checks it.
+    """Plugins of an entry-point group. Listing names loads nothing; looking one up loads and checks it.
 
-    A subclass says what they are called and which are accepted.
+    A subclass defines their kind and which objects it accepts.
 
     Parameters
     ----------
     group : str
-        The entry-point group.
+        Entry-point group.
 
     Raises
     ------
@@ -33,9 +33,9 @@ class Plugins(Mapping[str, T]):
     """
 
     kind: ClassVar[str]
-    """What they are, for messages."""
+    """Name of the kind, for messages."""
     unknown: ClassVar[type[InputError]] = InputError
-    """The error for a name that no package gives."""
+    """Error for a name that no package provides."""
 
     def __init__(self, group: str) -> None:
         self._points = find(group)
@@ -57,10 +57,10 @@ class Plugins(Mapping[str, T]):
         return self.accept(load(point), point)
 
     def package_of(self, name: str) -> str:
-        """Distribution and version that a plugin comes from."""
+        """Return the distribution and version of a plugin."""
         return ", ".join(package(point) for point in self._points[name])
 
     @staticmethod
     @abstractmethod
     def accept(loaded: object, point: EntryPoint) -> T:
-        """What was loaded, if it is what it must be; a `MechanismError` names all that is missing."""
+        """Return the loaded object if it is valid; otherwise raise a `MechanismError` with all that is missing."""

@@ -73,7 +73,7 @@ class Entry(BaseModel):
     factor: float | None = Field(None, description="factor on the record, as one of a set")
     event: str | None = Field(None, description="the earthquake, where its file does not say")
     station: str | None = Field(None, description="the station, where its file does not say")
-    weight: Positive = Field(1.0, description="how much it counts beside others")
+    weight: Positive = Field(1.0, description="weight of the record relative to the others")
 
     def reading(self, folder: Path, common: Reading = Reading()) -> Reading:  # noqa: B008 - it does not change
         """How to read it; what it does not say itself is as in `common`, and its corrections come before those.
@@ -92,7 +92,9 @@ class Entry(BaseModel):
         """
         if self.other is not None and self.azimuth is None and common.other is None:
             hint = "give 0 for the record, 90 for that of `with`, or what is between them"
-            raise InputError(Problem("is missing beside the file of a second component", field="`azimuth`", hint=hint))
+            raise InputError(
+                Problem("is missing: the file of a second component needs it", field="`azimuth`", hint=hint)
+            )
         factor = () if self.factor is None else (Factor(self.factor),)
         gain = Gain.parse(self.gain) if self.gain is not None else common.gain
         return Reading(

@@ -69,7 +69,7 @@ class Floor:
         pairs = dict(given) if isinstance(given, Mapping) else _pairs(given)
         for key in pairs:
             if key not in KEYS:
-                raise _refused(f"{key!r} is none of {', '.join(KEYS)}", did_you_mean(str(key), list(KEYS)))
+                raise _refused(f"{key!r} is not one of {', '.join(KEYS)}", did_you_mean(str(key), list(KEYS)))
         missing = [key for key in ("T1", "z") if key not in pairs]
         if ("gamma" in pairs) == ("n" in pairs):
             missing.append("gamma, or n for as many equal storeys (one of the two)")

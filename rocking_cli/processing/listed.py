@@ -1,4 +1,4 @@
-"""A record file that was asked for, by itself or in a list of records."""
+"""A record file that the user named, by itself or in a list of records."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def relative_response(motion: GroundMotion, period: float, damping: float) -> tu
     parts = max(ceil(min(PER_PERIOD * motion.dt / period, FINEST) - 1e-9), 1)
     if parts > 1 and parts * motion.npts > MOST:
         message = (
-            f"a period of {period:g} s asks for {parts * motion.npts:.3g} samples of it, and {MOST:.3g} are the most"
+            f"a period of {period:g} s needs {parts * motion.npts:.3g} samples of it; at most {MOST:.3g} are allowed"
         )
         raise InputError(Problem(message, motion.name, hint="a longer period or a shorter record takes fewer"))
     ground = finer(motion.acceleration, parts)

@@ -1,4 +1,4 @@
-"""Corrections of a ground motion, each a step that is asked for: nothing is corrected unless asked.
+"""Corrections of a ground motion, each a step of its own: nothing is corrected unless requested.
 
 Filters are Butterworth's of order 4, once forwards and once backwards (scipy.signal.sosfiltfilt), so that no time is
 shifted; at the corner half of the amplitude is left.
@@ -29,7 +29,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 @dataclass(frozen=True)
 class Step:
-    """One correction; `str` gives it as it is asked for."""
+    """One correction; `str` gives it as it is requested."""
 
     name: ClassVar[str]
     example: ClassVar[str]
@@ -75,7 +75,7 @@ class Baseline(Step):
         word = text.strip().lower()
         if word not in DEGREES:
             hint = did_you_mean(word, list(DEGREES))
-            raise _wrong(cls, f"{text!r} is none of {', '.join(DEGREES)}", hint)
+            raise _wrong(cls, f"{text!r} is not one of {', '.join(DEGREES)}", hint)
         return cls(word)
 
     def of(self, motion: GroundMotion) -> GroundMotion:
@@ -112,12 +112,15 @@ class Filter(Step):
 
         nyquist, slowest = 0.5 / motion.dt, 1 / motion.duration
         if self.frequency >= nyquist:
-            message = f"{self.frequency:g} Hz is not below {nyquist:.4g} Hz, the highest in samples at {motion.dt:g} s"
-            raise self.refused(motion, message, "give a lower one, or leave the filter out")
+            message = (
+                f"{self.frequency:g} Hz is not below the Nyquist frequency, {nyquist:.4g} Hz for samples "
+                f"every {motion.dt:g} s"
+            )
+            raise self.refused(motion, message, "give a lower frequency, or leave out the filter")
         if slowest >= nyquist:
             raise self.refused(motion, f"{motion.npts} samples are too few for a filter")
         if self.frequency < slowest * (1 - 1e-9):
-            message = f"a record of {motion.duration:.4g} s does not hold one period of {self.frequency:g} Hz"
+            message = f"the record, {motion.duration:.4g} s long, is shorter than one period of {self.frequency:g} Hz"
             raise self.refused(motion, message, f"give {1.01 * slowest:.3g} Hz at least")
         sections = signal.butter(ORDER, self.frequency, self.kind, fs=1 / motion.dt, output="sos")
         try:
@@ -163,7 +166,7 @@ class Taper(Step):
         percent = plain.endswith("%")
         share = _positive(cls, plain.removesuffix("%"), "a share") / (100 if percent else 1)
         if share > 0.5:
-            raise _wrong(cls, f"{text} at each end is more than there is", "5 % at each end is 0.05")
+            raise _wrong(cls, f"{text} at each end is more than half of the record", "5 % at each end is 0.05")
         return cls(share)
 
     def of(self, motion: GroundMotion) -> GroundMotion:
@@ -252,7 +255,7 @@ class Resample(Step):
             raise self.refused(motion, message)
         if ratio < 1:
             if motion.npts / ratio > self.MOST:
-                message = f"{motion.npts / ratio:.3g} samples would be made, and {self.MOST:.3g} are the most"
+                message = f"this would make {motion.npts / ratio:.3g} samples; at most {self.MOST:.3g} are allowed"
                 raise self.refused(motion, message)
             return self._finer(motion)
         steps = max(min(self.STEPS, int(self.LONGEST / ratio)), 1)
@@ -312,8 +315,8 @@ def parse_step(name: str, given: object) -> Step:
     """
     step = STEPS.get(name)
     if step is None:
-        hint = did_you_mean(name, list(STEPS)) or f"there are {', '.join(STEPS)}"
-        raise InputError(Problem(f"{name!r} is no step of processing", hint=hint))
+        hint = did_you_mean(name, list(STEPS)) or f"the steps are {', '.join(STEPS)}"
+        raise InputError(Problem(f"{name!r} is not a processing step", hint=hint))
     if isinstance(given, list | tuple) and len(given) == 2:
         given = f"{given[0]}:{given[1]}"
     if isinstance(given, bool) or not isinstance(given, str | int | float):

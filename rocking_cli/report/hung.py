@@ -1,4 +1,4 @@
-"""What a report says of what hangs on a structure: loads, ties, and how far it all moves in each ground motion."""
+"""The loads and ties of a structure in a report, with their displacements and forces under each ground motion."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Hung(NamedTuple):
 
 
 def hung_on(content: Assessment) -> Hung | None:
-    """What hangs on a structure; None if nothing does."""
+    """Return the tables of loads and ties; None if the structure has neither."""
     mechanism = content.mechanism
     if not mechanism.attached:
         return None
@@ -68,7 +68,7 @@ def hung_on(content: Assessment) -> Hung | None:
 
 
 def _worse(watched: Watched, result: MotionResult) -> Movements:
-    """The largest values of every way round that the motion was looked at, by the nonlinear model."""
+    """Return the largest values over the polarities that were analysed, by the nonlinear model."""
     return largest([watched.peaks(runs["nonlinear"]) for runs in result.runs.values()])
 
 
@@ -88,9 +88,9 @@ def _tie(tie: Spring | SpringBed) -> list[str]:
             f"along a face, {_spot(tie.start)} to {_spot(tie.end)}",
             tie.modulus * abs(tie.end.at - tie.start.at),
         )
-        return [tie.name, where, "pulls and pushes", _kilo(tie.count * stiffness), _kilo(0.0)]
-    sense = {"tension": "pulls only", "compression": "pushes only", None: "pulls and pushes"}[tie.only]
-    number = f", {tie.count:g} of them" if tie.count != 1 else ""
+        return [tie.name, where, "tension and compression", _kilo(tie.count * stiffness), _kilo(0.0)]
+    sense = {"tension": "tension only", "compression": "compression only", None: "tension and compression"}[tie.only]
+    number = f", {tie.count:g} ties" if tie.count != 1 else ""
     where = ", ".join(_spot(spot) for spot in tie.spots) + number
     return [tie.name, where, sense, _kilo(tie.stiffness), _kilo(tie.prestress)]
 
@@ -113,18 +113,18 @@ def _mm(value: float) -> str:
 
 
 def _said(found: Mapping[str, Movements]) -> Iterator[str]:
-    """Sentences on the largest force, and on the motions that overturn it."""
+    """Yield sentences on the largest tie force, and on the motions that overturn the structure."""
     every = [(name, tie) for name, moved in found.items() for tie in moved.ties if not isnan(tie.force)]
     if every:
         name, tie = max(every, key=lambda each: abs(each[1].force))
         if tie.force:
-            way = "pulls" if tie.force > 0 else "pushes"
-            yield f"The largest force is that of {tie.name}: it {way} with {_kilo(abs(tie.force))} kN under {name}."
+            sense = "tension" if tie.force > 0 else "compression"
+            yield f"{tie.name} has the largest force: {_kilo(abs(tie.force))} kN in {sense}, under {name}."
         else:
-            yield "No motion here puts a force on any tie."
+            yield "No ground motion causes a force in any tie."
     falls = [name for name, moved in found.items() if any(isnan(point.horizontal) for point in moved.points)]
     if falls:
         yield (
-            f"Under {' and '.join(falls)} it overturns, at least one way round: there is no largest movement, and "
-            "forces are those before it falls."
+            f"Under {' and '.join(falls)} the structure overturns in at least one polarity: it has no largest "
+            "displacement, and the tie forces are those before overturning."
         )

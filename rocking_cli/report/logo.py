@@ -30,5 +30,7 @@ def embedded(path: Path) -> str:
     if kind is None and b"<svg" in data[:4096]:
         kind = "image/svg+xml"
     if kind is None:
-        raise InputError(Problem("is no PNG, JPEG or SVG picture", str(path), hint="convert the logo to one of them"))
+        raise InputError(
+            Problem("the file is not a PNG, JPEG or SVG picture", str(path), hint="convert the logo to one of them")
+        )
     return f"data:{kind};base64,{base64.b64encode(data).decode()}"

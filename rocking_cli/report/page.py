@@ -179,20 +179,26 @@ def _parameters(content: Assessment) -> list[dict[str, Any]]:
 
 
 def _without_block(shown: Sequence[Side]) -> list[dict[str, Any]]:
-    """What else there is to say of a structure that no block is equivalent to."""
+    """Return the further parameters of a structure without an equivalent block."""
     limits = [side.statics.limit for side in shown]
     return [
         {
             "symbol": "V''(0)/V'(0)",
             "values": [_number(side.statics.stiffening) for side in shown],
             "unit": "1/rad",
-            "meaning": "Stiffening: how fast the restoring moment grows from rest, over itself.",
+            "meaning": (
+                "Stiffening: rate at which the restoring moment increases with rotation from rest, over the moment "
+                "itself."
+            ),
         },
         {
             "symbol": "φ_lim",
             "values": [f"{_number(limit)} ({degrees(limit):.3g}°)" for limit in limits],
             "unit": "rad",
-            "meaning": "Kinematic limit: the rotation at which it lies on the ground or locks, and its motion ends.",
+            "meaning": (
+                "Kinematic limit: the rotation at which the structure lies on the ground or locks, so that its "
+                "motion ends."
+            ),
         },
     ]
 
@@ -207,7 +213,7 @@ def _advice(content: Assessment) -> list[str]:
 
 
 def _geometry(content: Assessment) -> Rows:
-    """What the file gives: field, symbol, value, unit, meaning; of what is one number or word."""
+    """Return the input fields that are one number or word: field, symbol, value, unit, meaning."""
     rows = []
     for key, info in type(content.mechanism).model_fields.items():
         value = getattr(content.mechanism, key)
@@ -240,7 +246,7 @@ def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> d
 
 
 def _peak_time(run: History, film: Film) -> float:
-    """When the rotation is largest; of a motion that overturns, when it passes the critical one."""
+    """Return the time of the peak rotation, or of passing the critical one if the structure overturns [s]."""
     if run.overturned:
         return min(float(run.time[int(np.searchsorted(run.time, run.overturning_time))]), film.end)
     return float(run.time[int(np.nanargmax(np.abs(run.ratio)))]) if run.peak_ratio else film.start
@@ -251,27 +257,31 @@ def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
         return ABSENT if isnan(phi) else f"{degrees(phi):.4g}"
 
     free, some = all(runs[0].ends_at_limit), any(runs[0].ends_at_limit)
-    called = "the limit" if free else "critical, or the limit" if some else "critical"
+    called = "the limit" if free else "critical rotation, or the limit" if some else "critical rotation"
     over = style.over(runs[0].ends_at_limit).replace("φcr", "φ_cr")
     moved = [watched.peaks(run) for run in runs]
     return [
         ["outcome", *(run.words for run in runs), ""],
         [
-            f"largest rotation over {called}, |φ|/{over.removeprefix('φ/')}",
+            f"peak rotation over {called}, |φ|/{over.removeprefix('φ/')}",
             *(_number(run.peak_ratio) for run in runs),
             "1",
         ],
-        ["largest rotation clockwise", *(angle(run.peak_positive) for run in runs), "°"],
-        ["largest rotation anticlockwise", *(angle(run.peak_negative) for run in runs), "°"],
+        ["peak rotation clockwise", *(angle(run.peak_positive) for run in runs), "°"],
+        ["peak rotation anticlockwise", *(angle(run.peak_negative) for run in runs), "°"],
         ["first uplift", *(_number(run.uplift_time) for run in runs), "s"],
         [
-            "passes the critical rotation for good" if not free else "overturns",
+            "overturning time: passes the critical rotation for good" if not free else "overturning time",
             *(_number(run.overturning_time) for run in runs),
             "s",
         ],
         ["number of impacts", *(str(run.impact_count) for run in runs), "1"],
-        ["fastest landing of a foot", *(_number(each.impact_velocity) for each in moved), "m/s"],
-        ["farthest the top moves sideways", *(_number(1000 * each.points[0].horizontal) for each in moved), "mm"],
+        ["largest impact velocity", *(_number(each.impact_velocity) for each in moved), "m/s"],
+        [
+            "peak horizontal displacement of the top",
+            *(_number(1000 * each.points[0].horizontal) for each in moved),
+            "mm",
+        ],
     ]
 
 
@@ -281,7 +291,7 @@ def _fit(fit: PulseFit) -> list[str]:
         _number(amplitude_in_g(fit)),
         _number(fit.pulse.period),
         _number(fit.start),
-        "reversed" if fit.sign < 0 else "as it is",
+        "reversed" if fit.sign < 0 else "as given",
         f"{100 * fit.captured:.0f}",
     ]
 
@@ -335,15 +345,15 @@ def _measures(result: MotionResult) -> dict[str, Any]:
             ["format", motion.format, ""],
             ["unit in the file", motion.unit, ""],
             ["samples", f"{motion.npts}", "1"],
-            ["interval", _number(motion.dt), "s"],
-            ["factor on it", _number(given.factor, 6), "1"],
+            ["sampling interval", _number(motion.dt), "s"],
+            ["scale factor", _number(given.factor, 6), "1"],
             *([["processed", step, ""] for step in motion.processing]),
             *([["PGA of the ground", _number(result.pga_of_ground), "g"]] if motion.ground is not None else []),
             [f"peak acceleration ({'of the floor' if motion.ground is not None else 'PGA'})", _number(found.pga), "g"],
             ["peak velocity (PGV)", _number(found.pgv), "m/s"],
             ["peak displacement (PGD)", _number(found.pgd), "m"],
             ["Arias intensity", _number(found.arias), "m/s"],
-            ["significant duration, 5 to 95 % of it", _number(found.significant_duration), "s"],
+            ["significant duration, 5 to 95 % of the Arias intensity", _number(found.significant_duration), "s"],
             ["mean period", _number(found.mean_period), "s"],
         ],
     }

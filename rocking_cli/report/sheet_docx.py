@@ -63,7 +63,7 @@ def render(sheet: Sheet, mechanism: Mechanism) -> bytes:
 
 
 class _Writer:
-    """A document as it grows."""
+    """Writer of a document, part by part."""
 
     def __init__(self, document: Document, sheet: Sheet, mechanism: Mechanism) -> None:
         self.document = document
@@ -84,7 +84,7 @@ class _Writer:
             self._part(each, 1)
 
     def _page(self) -> None:
-        """A4, and who speaks what."""
+        """Set the page to A4, and the language of the text."""
         from docx.oxml.ns import qn
         from docx.shared import Cm, Pt
 
@@ -104,7 +104,7 @@ class _Writer:
 
         if not address.startswith(PICTURES):
             hint = "give a PNG or JPEG picture, or a sheet that ends in .html"
-            raise InputError(Problem("a .docx file cannot hold a logo in SVG", field="logo", hint=hint))
+            raise InputError(Problem("a .docx file cannot hold an SVG logo", field="logo", hint=hint))
         data = base64.b64decode(address.partition(",")[2])
         try:
             self.document.add_picture(BytesIO(data), height=Cm(LOGO))

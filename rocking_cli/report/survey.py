@@ -47,7 +47,7 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         columns=heads,
         words=[1, 2],
         rows=[cells(rank, each, None) for rank, each in enumerate(found.rows[:MOST], 1)],
-        left_out=f"The table has the first {MOST:,} of {len(found.rows):,} structures." if left_out else "",
+        left_out=f"The table lists the first {MOST:,} of {len(found.rows):,} structures." if left_out else "",
         bad=[(each.line if each.line is not None else "", each.name, each.reason) for each in found.bad[:MOST]],
         bad_count=len(found.bad),
         style=Markup(asset("motion.css")),

@@ -199,7 +199,7 @@ class Assessment:
     picture : Picture
         What it looks like.
     curves, asked : tuple of Linearisation
-        The error of the equivalent block over its range, and where it is said in numbers; empty if it has none.
+        The error of the equivalent block over its range, and at the amplitudes given in numbers; empty if it has none.
     trust : str
         What that means, or why there is none.
     results : tuple of MotionResult
@@ -301,7 +301,7 @@ def _error_of_block(structure: Prepared) -> tuple[Sequence[Linearisation], Seque
     """The error of the equivalent block over its range and at some places, and what it means."""
     if structure.why_no_block is not None:
         why = structure.why_no_block.removeprefix(f"{structure.name}: ")
-        return [], [], f"There is no equivalent block here, and so no error of one: {why}."
+        return [], [], f"No equivalent block exists here, so there is no error to report: {why}."
     try:
         curves, asked = compare(structure.mechanism, structure.equivalence, AMPLITUDES, ACCELERATIONS)
         return curves, asked, trust(curves, asked)

@@ -87,7 +87,7 @@ def all_around(
     )
     if found.failed.any():
         k = int(found.failed.argmax()) % azimuths.size
-        raise SolverError(f"the motion at an azimuth of {azimuths[k]:g} degrees could not be followed")
+        raise SolverError(f"the motion at an azimuth of {azimuths[k]:g} degrees could not be simulated")
     each = [slice(k * azimuths.size, (k + 1) * azimuths.size) for k in range(len(followed))]
     outcomes = {
         model.name: found.by_field(lambda values, part=part: values[part])

@@ -31,6 +31,8 @@ def collapses(mechanism: Mechanism) -> Mapping[Direction, CollapseMechanism]:
             raise MechanismError(f"{mechanism.name}: {error}") from error
         if each is None:
             hint = "`rocking new assembly` prints one; `rocking equiv` has the uplift of any structure"
-            raise InputError(Problem(f"{mechanism.name} is no assembly of blocks: its mechanism is given", hint=hint))
+            raise InputError(
+                Problem(f"{mechanism.name} is not an assembly of blocks: its mechanism is given", hint=hint)
+            )
         found[direction] = each
     return found

@@ -53,7 +53,7 @@ class Aim:
         found = _AIM.fullmatch(text)
         if found is None:
             hint = "write METRIC OP NUMBER, such as `lambda >= 0.2`, with <, <=, > or >="
-            raise InputError(Problem(f"{cut(repr(text))} is no requirement", hint=hint))
+            raise InputError(Problem(f"{cut(repr(text))} is not a valid requirement", hint=hint))
         asked, number = metric(found[1]), found[3]
         return cls(asked, found[2], _number(number, asked.unit))
 
@@ -76,7 +76,7 @@ def _number(text: str, unit: str) -> float:
     except UnitError as error:
         raise InputError(Problem(error.message, hint=error.hint)) from None
     if not isfinite(value):
-        raise InputError(Problem(f"{cut(repr(text))} is no finite number"))
+        raise InputError(Problem(f"{cut(repr(text))} is not a finite number"))
     return value
 
 
@@ -103,15 +103,15 @@ class Span:
         ends = values.split(":")
         if not equals or not name.strip() or len(ends) != 2 or not all(each.strip() for each in ends):
             hint = "write FIELD=LOW:HIGH, such as width=0.2m:0.8m"
-            raise InputError(Problem(f"{cut(repr(text))} is no range of a field", hint=hint))
+            raise InputError(Problem(f"{cut(repr(text))} is not a valid FIELD=LOW:HIGH", hint=hint))
         return cls(name.strip(), ends[0].strip(), ends[1].strip())
 
     def in_unit(self, unit: str) -> tuple[float, float]:
         """Both ends as numbers. Raises `InputError` if they are none, or do not grow."""
         low, high = _number(self.low, unit), _number(self.high, unit)
         if not low < high:
-            hint = "give the smaller first"
-            raise InputError(Problem(f"{self.low}:{self.high} does not grow", field=self.field, hint=hint))
+            hint = "give the smaller value first"
+            raise InputError(Problem(f"{self.low}:{self.high} is not increasing", field=self.field, hint=hint))
         return low, high
 
 
@@ -227,9 +227,9 @@ def design(
     """
     if aim.metric.sited and (shaking is None or shaking.site is None):
         hint = "give the file of a site: `rocking new site` prints one"
-        raise InputError(Problem(f"{aim.metric.name} is of a site", field="`site`", hint=hint))
+        raise InputError(Problem(f"{aim.metric.name} requires a site", field="`site`", hint=hint))
     if aim.metric.shaken and (shaking is None or not shaking.motions or not shaking.around.count):
-        message = f"{aim.metric.name} needs a ground motion, and neighbours of it"
+        message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
         raise InputError(Problem(message, hint="give `records` or `pulses`"))
     if points < 2:
         raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
@@ -277,7 +277,7 @@ def _at(varied: Varied, value: float, aim: Aim, shaking: Shaking | None) -> tupl
     except (MechanismError, SolverError) as error:
         return nan, str(error)
     if isnan(found):
-        return nan, structure.why_no_block or f"there is no {aim.metric.name}"
+        return nan, structure.why_no_block or f"{aim.metric.name} does not exist"
     return found, None
 
 

@@ -154,7 +154,9 @@ def equivalent(
     """
     for each in mechanisms:
         if not each.rocks_both_ways:
-            reason = f"{_name(each)}: it rocks in the {each.one_sided} direction only, and the linear block in both"
+            reason = (
+                f"{_name(each)}: it rocks in the {each.one_sided} direction only, but the linear block rocks in both"
+            )
             raise InputError(Problem(reason, field="one_sided"))
     first = _equivalence(mechanisms[0])
     ground = pulse.sampled().scaled(polarity)
@@ -286,7 +288,13 @@ def judge(found: EquivalentResponses) -> list[str]:
             how = "" if found.relative_spread <= NEAR else "approximately "
             said.append(f"They are {how}equivalently vulnerable to these pulses.")
     if peaks and max(peaks.values()) > CLOSE:
-        said.append(f"Beyond {CLOSE:g} of the critical rotation small differences decide: do not rely on it there.")
+        said.append(
+            f"Above {CLOSE:g} of the critical rotation, small differences decide the outcome: do not rely on the "
+            "equivalence there."
+        )
     if not found.one_eta:
-        said.append("The restitutions differ, and equivalence needs one for all: `eta` sets it.")
+        said.append(
+            "The coefficients of restitution differ, but equivalence requires the same value for all: set it with "
+            "`eta`."
+        )
     return said

@@ -1,4 +1,4 @@
-"""What hangs on a structure as it is drawn: loads, ties as pieces between points, and the walls that it leans on."""
+"""What is attached to a structure, for drawing: loads, ties as pieces between points, and supporting side walls."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Strand:
         return [end for piece in self.pieces for end in (piece.start, piece.end) if end.part is None]
 
     def slack(self, mechanism: Mechanism, phi: NDArray[np.float64], direction: Direction) -> NDArray[np.bool_]:
-        """Where it is out of play, over rotations in a direction, shape (n,)."""
+        """Mask of the rotations at which the tie is slack, shape (n,)."""
         if isinstance(self.thing, SpringBed) or self.thing.only is None:
             return np.zeros(phi.shape, bool)
         e, _, _ = self.thing.elongation(mechanism.followed(phi, direction))

@@ -147,7 +147,7 @@ def linearisation(
 def compare(
     mechanism: Mechanism, equivalence: Equivalence, amplitudes: Sequence[float], accelerations: Sequence[float]
 ) -> tuple[list[Linearisation], list[Linearisation]]:
-    """The curves and the values asked for, of one direction if both are alike; see `linearisation`."""
+    """Return the curves and the requested values, of one direction if both are alike; see `linearisation`."""
     directions = [mechanism.directions[0]] if equivalence.symmetric else list(Direction)
     r = np.linspace(0.01, 0.99, CURVE)
     a = np.geomspace(1.02, max(STRONGEST, *accelerations), CURVE)

@@ -1,7 +1,7 @@
 """How much stronger or weaker a ground motion would have to be to lift a structure, and to overturn it.
 
-Overturning comes and goes with the factor on a motion, so there is no least factor that a computation could find and
-another would confirm. What there is, is the share of the motions next to each factor that overturn.
+Overturning comes and goes as the factor on a motion increases, so there is no least factor that a computation could
+find and another would confirm. Instead, the share of neighbouring motions that overturn is computed at each factor.
 """
 
 from __future__ import annotations
@@ -108,9 +108,9 @@ def margin(
     """
     around = around or Around()
     if not around.count:
-        raise InputError(Problem("a share needs neighbours: at least 1", field="neighbours"))
+        raise InputError(Problem("neighbouring motions are needed: at least 1", field="neighbours"))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
-        raise InputError("the factors on a motion must be positive and ascending")
+        raise InputError("scale factors must be positive and in ascending order")
     factors = np.union1d(factors[np.abs(factors - 1) > SAME], 1.0)
     # The same neighbours at every factor: what differs between two factors is the factor.
     scales, etas = np.multiply.outer(factors, around.factors()), around.etas(model)
@@ -148,14 +148,16 @@ def in_words(found: Margin, pga: float) -> str:
     if not reached:
         pgas = f"PGA from {low * pga:.3g} g to {high * pga:.3g} g"
         return (
-            f"At no factor on the motion from {low:.2g} to {high:.2g} ({pgas}) do {percent(LEVELS[0])} of the motions "
-            "next to it overturn."
+            f"At no scale factor from {low:.2g} to {high:.2g} ({pgas}) do {percent(LEVELS[0])} of the neighbouring "
+            "motions overturn the structure."
         )
     (level, first), *others = reached
-    parts = [f"{percent(level)} of the motions next to it overturn first at {at(first, 'PGA ')}"]
+    parts = [
+        f"{percent(level)} of the neighbouring motions first overturn the structure at a factor of {at(first, 'PGA ')}"
+    ]
     parts += [f"{percent(level)} at {at(first)}" for level, first in others]
     parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
-    said = f"With a factor on the motion at least {', '.join(parts[:-1])} and {parts[-1]}"
+    said = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
     if found.factors.size > 2:
         said += f"; factors are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
     for level, first in reached:

@@ -122,7 +122,7 @@ METRICS: Mapping[str, Metric] = {
         Metric("overturned", "", "share of the neighbours that overturn", _overturned, shaken=True),
         Metric("alpha0", "", "multiplier that starts the mechanism, by the code of `verify`, the smaller one", _alpha0),
         *(
-            Metric(f"zeta_{method}", "", f"what it can take over what is asked for, by the {method} method of `verify`",
+            Metric(f"zeta_{method}", "", f"capacity over demand, by the {method} method of `verify`",
                    _zeta(method), sited=True)
             for method in ("damage", "linear", "nonlinear")
         ),
@@ -135,5 +135,5 @@ def metric(name: str) -> Metric:
     """A metric by its name. Raises `InputError` if there is none."""
     if name not in METRICS:
         hint = did_you_mean(name, list(METRICS))
-        raise InputError(Problem(f"{cut(repr(name))} is no metric", hint=hint))
+        raise InputError(Problem(f"{cut(repr(name))} is not a metric", hint=hint))
     return METRICS[name]

@@ -67,8 +67,8 @@ class Around:
     @property
     def words(self) -> str:
         """How far the neighbours are from the motion, after a noun."""
-        eta = f"{self.restitution:g} more or less restitution"
-        return f"up to {percent(self.amplitude)} stronger or weaker, with up to {eta}"
+        eta = f"a coefficient of restitution up to {self.restitution:g} higher or lower"
+        return f"with amplitudes up to {percent(self.amplitude)} higher or lower and {eta}"
 
     def factors(self) -> Reals:
         """Factors on the motion, shape (count,), one from each of as many equal parts of their range."""
@@ -124,7 +124,7 @@ class Neighbours:
         return self.as_itself < AGREEMENT
 
     def __str__(self) -> str:
-        near = f"{self.around.count} motions next to this one ({self.around.words})"
+        near = f"{self.around.count} neighbouring motions ({self.around.words})"
         if not self.lifted:
             return f"None of {near} lifts it."
         said = f"Of {near} {_share(self.overturned)}"
@@ -155,7 +155,7 @@ def neighbours(
     model : Model
         Of the structure; the nonlinear one is the structure itself.
     motion : GroundMotion or None
-        As the history was asked for, scaled and reversed; None for a release alone.
+        As in the history, scaled and reversed; None for a release alone.
     around : Around, optional
         How to draw them.
     release : float, optional
@@ -216,7 +216,7 @@ def governing(severities: Mapping[str, Severity], over: str = "phi_cr") -> str:
         return "No motion lifts it."
     which = [name for name, each in severities.items() if np.allclose(each, worst, rtol=ALIKE, atol=0)]
     if len(which) > 1:
-        return f"No motion governs: {', '.join(which)} do alike."
+        return f"No motion governs: {', '.join(which)} have the same effect."
     share, median, itself = worst
     if share:
         why = f"{percent(share)} of its neighbours overturn"
@@ -234,7 +234,7 @@ def follow(
     found = respond_many(models, motions, runs, release=release, only_peaks=True, **how)  # type: ignore[arg-type]
     if found.failed.any():
         k = int(found.failed.argmax())
-        raise SolverError(f"{models[0].structure}: {runs.scale[k]:.6g} times the motion cannot be followed")
+        raise SolverError(f"{models[0].structure}: the motion scaled by {runs.scale[k]:.6g} could not be simulated")
     return found
 
 

@@ -165,7 +165,7 @@ class Picture:
         return outlines, np.array([complex(carry(pin.part, np.array(pin.point))) for pin in self.pins])
 
     def hung(self, rotation: float, symbol: float) -> tuple[Points, list[list[tuple[complex, complex]]], list[bool]]:
-        """What hangs on it, at one signed rotation.
+        """Return what is attached to the structure, at one signed rotation.
 
         Parameters
         ----------
@@ -194,7 +194,7 @@ class Picture:
         return loads, ties, [bool(row[0]) for row in self._slack(np.array([rotation]))]
 
     def held(self, rotation: float) -> list[complex]:
-        """Where all that hangs on it is, at one signed rotation [m]: symbols apart, which have a size on paper."""
+        """Return the points of all that is attached, at one signed rotation [m]; symbols, sized on paper, left out."""
         loads, ties, _ = self.hung(rotation, 0.0)
         return [*loads.tolist(), *(end for tie in ties for piece in tie for end in piece)]
 
@@ -279,7 +279,7 @@ class Picture:
 
     @cached_property
     def reach(self) -> tuple[complex, complex]:
-        """Likewise of the structure and of all that hangs on it."""
+        """Lower left and upper right corner of the structure and of all that is attached to it, at rest [m]."""
         ends = [end.point for tie in self.ties for piece in tie.pieces for end in (piece.start, piece.end)]
         return box_around([np.array([*self.extent, *ends, *(each.point for each in self.loads)])])
 

@@ -112,7 +112,7 @@ class RecordSet:
     Parameters
     ----------
     wanted : Wanted
-        What was asked for.
+        What was requested.
     candidates : Candidates
         What it was chosen from.
     chosen : ndarray of int, shape (count,)
@@ -329,7 +329,10 @@ def _check_enough(given: int, usable: int, groups: int, wanted: Wanted) -> None:
         return
     one = f", and one per {wanted.one_per} leaves {groups}" if groups < usable else ""
     out = f", of which {usable} can be scaled to the target within {wanted.factors[0]:g} to {wanted.factors[1]:g}"
-    message = f"a set of {wanted.count} is asked for, and there are {given} records{out if usable < given else ''}{one}"
+    said = (
+        f"a set of {wanted.count} was requested, but {given} {'record is' if given == 1 else 'records are'} available"
+    )
+    message = f"{said}{out if usable < given else ''}{one}"
     hints = ["give more records, or a smaller `count`"]
     hints += ["wider limits with `factors`"] if usable < given and usable < wanted.count else []
     hints += ["`one_per` none"] if groups < usable and wanted.count <= usable else []

@@ -16,7 +16,7 @@ from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 
 Histories = Mapping[ModelName, History]
 Runs = Mapping[int, Histories]
-"""Histories under each polarity asked for, 1 or -1."""
+"""Histories under each requested polarity, 1 or -1."""
 
 # The word for the pulse that fits best.
 BEST = "best"
@@ -59,7 +59,7 @@ class Answer:
     given : Scaled or None
         The motion as read; None for a free release.
     first : GroundMotion or None
-        The motion as scaled, in the first polarity asked for.
+        The motion as scaled, in the first requested polarity.
     runs : mapping of int to mapping of str to History
         The histories under each polarity.
     neighbours : mapping of int to Neighbours

@@ -48,7 +48,7 @@ class Sizes:
             first = error.errors()[0]
             place = [*first["loc"], *(first["ctx"]["field"] if first["type"] == "geometry" else ())]
             message = f"{self._named(scale)} cannot be built: {'.'.join(map(str, place))}: {first['msg']}"
-            raise InputError(Problem(message, hint="ask for other sizes")) from None
+            raise InputError(Problem(message, hint="choose other sizes")) from None
 
     def equivalence(self, scale: float) -> Equivalence:
         """Its equivalent blocks at a scale. Raises as `at`, or `MechanismError` if it does not stand."""
@@ -85,7 +85,7 @@ class Sizes:
             one, off, two = two, missing, two + missing / (slope if 0.1 < slope < 2 else 0.5)
         message = f"{self.mechanism.name}: no size of it was found with 2 pi/p = {period:.4g} s"
         if self.mechanism.ties:
-            hint = "its ties do not grow with it, so that 2 pi/p need not grow with its size: ask for other sizes"
+            hint = "its ties do not scale with it, so 2 pi/p need not increase with its size: choose other sizes"
             raise InputError(Problem(message, hint=hint))
         raise InputError(message)
 

@@ -239,7 +239,7 @@ def spectra(
     (2003) draw the spectrum of a block of given slenderness over 2 pi/p.
     """
     if not motions:
-        raise InputError("there is no ground motion")
+        raise InputError("no ground motion was given")
     found = []
     for shape in shapes:
         scales, signs = _scales(shape, periods), _signs(shape, polarities)

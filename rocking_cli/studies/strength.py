@@ -30,7 +30,7 @@ def intensities(
     motion : GroundMotion
         As it shakes: scaled.
     measures : sequence of Measure
-        What is asked for.
+        The requested ones.
     structure : Reference, optional
         What relative ones refer to.
 

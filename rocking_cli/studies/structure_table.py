@@ -86,7 +86,7 @@ class _Kept(Registry):
 
 
 class StructureTable(Sequence["TableRow"]):
-    """The structures of a table, each made when it is asked for.
+    """The structures of a table, each made on demand.
 
     Parameters
     ----------
@@ -188,10 +188,13 @@ class StructureTable(Sequence["TableRow"]):
                 continue
         if not {MECHANISM, BASE} & {column.path[0] for column in self.columns}:
             near = get_close_matches(MECHANISM, [column.path[0].lower() for column in self.columns], n=1)
-            hint = f"is {near[0]} meant to be {MECHANISM}?" if near else "say in it which mechanism each row has"
+            hint = f"is {near[0]} meant to be {MECHANISM}?" if near else "add one that names the mechanism of each row"
             raise InputError(
                 Problem(
-                    f"the table has no column {MECHANISM}, and no {BASE}", self.sheet.file, self.sheet.line, hint=hint
+                    f"the table has neither a column {MECHANISM} nor a column {BASE}",
+                    self.sheet.file,
+                    self.sheet.line,
+                    hint=hint,
                 )
             )
         known = {MECHANISM, BASE}.union(*(_fields(cls) for cls in classes))
@@ -201,7 +204,7 @@ class StructureTable(Sequence["TableRow"]):
                 guess = did_you_mean(column.path[0], sorted(known))
                 guess = guess if guess and guess.endswith("?") else ""
                 what = "any mechanism in this table" if len(classes) > 1 else classes[0].mechanism
-                hint = f"{guess} A heading that begins with {NOTE} is left out".strip()
+                hint = f"{guess} A column whose heading starts with {NOTE} is ignored".strip()
                 message = f"is not a field of {what}"
                 problems.append(Problem(message, self.sheet.file, self.sheet.line, field=column.heading, hint=hint))
         if problems:
@@ -262,7 +265,7 @@ class TableRow:
         document = _RowDocument("structure", table.sheet.file, [], line=row.line)
         document.values[()] = document.values[(MECHANISM,)] = yaml.Mark(document.file, 0, row.line - 1, 0, None, 0)
         if row.too_many is not None:
-            what = f"has more cells than there are headings: {cut(one_line(row.too_many))!r} is the first beyond them"
+            what = f"has more cells than headings; the first extra cell is {cut(one_line(row.too_many))!r}"
             raise InputError(document.problem(what, None, hint="is a separator in a cell without quotes?"))
         based = table.base_of(row)
         folder, default = table.folder, self.name
@@ -339,9 +342,13 @@ def _value(text: str, column: Column, types: frozenset[Any], *, decimal_comma: b
 
 def _one(text: str, column: Column, *, decimal_comma: bool) -> Any:
     if decimal_comma and THOUSANDS.fullmatch(text):
-        hint = "write no points between thousands"
+        hint = "write numbers without thousands separators"
         raise InputError(
-            Problem(f"{text} may be one number or a thousand times it: other cells have decimal commas", hint=hint)
+            Problem(
+                f"{text} is ambiguous, because other cells use decimal commas: the point may separate decimals or "
+                "thousands",
+                hint=hint,
+            )
         )
     if decimal_comma and DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")

@@ -71,7 +71,7 @@ class Surveyed:
     Parameters
     ----------
     row : int
-        Its place among those asked for, counted from 1.
+        Its place among the requested rows, counted from 1.
     line : int or None
         Where it stands in a file.
     name, mechanism : str
@@ -83,7 +83,7 @@ class Surveyed:
     uplift : float
         The same [standard gravity].
     p, phi_cr, kappa1, kappa2, eta : float
-        Of its equivalent block, see `rocking_cli.core.EquivalentBlock`; NaN for what there is none of.
+        Of its equivalent block, see `rocking_cli.core.EquivalentBlock`; NaN where undefined.
     no_block : str or None
         Why no single block is equivalent to it.
     doubt : str or None
@@ -120,7 +120,7 @@ class Bad:
     Parameters
     ----------
     row : int
-        Its place among those asked for, counted from 1.
+        Its place among the requested rows, counted from 1.
     line : int or None
         Where it stands in a file.
     name : str
@@ -367,7 +367,7 @@ def _of_one(
     """What motions do to one structure, whose runs are `own`."""
     if (outcomes.failed & own).any():
         name = motions[int(record[int((outcomes.failed & own).argmax())])].name
-        return SolverError(f"{model.structure}: its motion under {name} cannot be followed")
+        return SolverError(f"{model.structure}: its motion under {name} could not be simulated")
     fell = np.unique(record[own & outcomes.overturned])
     stays = own & ~np.isin(record, fell)
     peaks = np.where(stays, outcomes.peak_ratio, -1.0)

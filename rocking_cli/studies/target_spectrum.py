@@ -67,14 +67,14 @@ class TargetSpectrum:
         first, last = float(self.periods[0]), float(self.periods[-1])
         if not (first <= band[0] and band[1] <= last):
             message = f"the target goes from {first:g} to {last:g} s, and the band from {band[0]:g} to {band[1]:g} s"
-            hint = "give a band within it with `band`, or a target of more periods: it is not continued"
+            hint = "choose a `band` within the target, or give a target that covers it: the target is not extrapolated"
             raise InputError(Problem(message, self.name, hint=hint))
         inside = (self.periods > band[0]) & (self.periods < band[1])
         known = np.concatenate([[band[0]], self.periods[inside], [band[1]]])
         ordinates = self.at(known)
         if not (ordinates > 0).all():
             where = float(known[np.argmin(ordinates)])
-            hint = "no spectrum is a multiple of zero: give a band with `band` in which it is positive"
+            hint = "records cannot be scaled to zero: choose a `band` in which the target is positive"
             raise InputError(Problem(f"the target is zero at {where:g} s", self.name, hint=hint))
 
 
@@ -88,7 +88,7 @@ def wrong_points(periods: Reals, sa: Reals) -> list[tuple[int, str]]:
         if not 0 <= period < math.inf:
             found.append((k, f"the period is {period:g} s, it must not be negative"))
         elif period == before:
-            found.append((k, f"the period {period:g} s is there twice: a spectrum has one value at each"))
+            found.append((k, f"the period {period:g} s occurs twice: give one ordinate per period"))
         elif period < before:
             found.append((k, f"the period {period:g} s is less than the {before:g} s before it: periods must increase"))
         if not 0 <= value < math.inf:
@@ -119,7 +119,7 @@ def read_target(path: Path) -> TargetSpectrum:
     try:
         lines = read_bytes(path, "target spectrum", LARGEST).decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise InputError(Problem("this is no text in UTF-8", shown, hint="save it as CSV in UTF-8")) from None
+        raise InputError(Problem("this is not UTF-8 text", shown, hint="save it as CSV in UTF-8")) from None
     used = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
     start = next((place for place, k in enumerate(used) if lines[k].lstrip()[0] in "+-.0123456789"), len(used))
     heading, used = used[:start], used[start:]

@@ -17,7 +17,7 @@ KEPT = 1e-9  # an error of the uplift acceleration that is none
 
 @dataclass(frozen=True)
 class Errors:
-    """The largest errors of an equivalent block at the amplitudes asked for, of two directions the worse.
+    """Largest errors of an equivalent block at the requested amplitudes, in the worse of the two directions.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Errors:
 
     @property
     def grade(self) -> Grade:
-        """What the largest of them leaves the block good for."""
+        """Grade the block by its largest error."""
         return max(grade(self.uplift), grade(self.period), grade(self.overturning))
 
 
@@ -48,7 +48,7 @@ def errors(asked: Sequence[Linearisation], kappa: int) -> Errors:
 
 
 def preferred(asked: Sequence[Linearisation]) -> int | None:
-    """Which kappa to prefer at the amplitudes asked for: 1, 2, 0 if either will do, None if neither does.
+    """Return which kappa to prefer at the requested amplitudes: 1, 2, 0 if either will do, None if neither does.
 
     The better grade decides; of two that are alike, the uplift acceleration, as `preferred_kappa` has it.
     """
@@ -80,21 +80,21 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
     one, two = (_on(kappa, errors(asked, kappa)) for kappa in order)
     said = [f"{_where(asked)}: {one}; {two}."]
     if prefer is None:
-        said.append("Rely on neither there: use the nonlinear history of `rocking respond`.")
+        said.append("Rely on neither at these amplitudes: use the nonlinear time history of `rocking respond`.")
     elif prefer == 0:
-        said.append("Either kappa will do there.")
+        said.append("Either kappa is adequate at these amplitudes.")
     else:
-        said.append(f"Prefer kappa{prefer} there.")
+        said.append(f"Prefer kappa{prefer} at these amplitudes.")
     if prefer is not None and min(errors(asked, kappa).grade for kappa in (1, 2)) is Grade.ESTIMATE:
-        said.append("Decide by the nonlinear history of `rocking respond`.")
+        said.append("Base decisions on the nonlinear time history of `rocking respond`.")
     return " ".join([*said, *_ranges(curves, order[0])])
 
 
 def _where(asked: Sequence[Linearisation]) -> str:
-    """The amplitudes and accelerations, and that of two directions the worse counts."""
+    """Return the amplitudes and accelerations in words, and that they are of the worse of two directions."""
     amplitudes = ", ".join(f"{r:g}" for r in asked[0].amplitude.tolist())
     accelerations = ", ".join(f"{a:g}" for a in asked[0].acceleration.tolist())
-    worse = ", in the worse of both directions" if len(asked) > 1 else ""
+    worse = ", in the worse of the two directions" if len(asked) > 1 else ""
     return f"At phi/phi_cr = {amplitudes} and {accelerations} times the uplift acceleration{worse}"
 
 
@@ -107,7 +107,7 @@ def _on(kappa: int, found: Errors) -> str:
     )
     good = {
         Grade.AGREES: f"kappa{kappa} agrees",
-        Grade.ESTIMATE: f"kappa{kappa} serves a first estimate",
+        Grade.ESTIMATE: f"kappa{kappa} is good for a first estimate",
         Grade.DISREGARD: f"disregard kappa{kappa}",
     }[found.grade]
     return f"{good} ({numbers})"

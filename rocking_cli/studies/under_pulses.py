@@ -66,7 +66,7 @@ class PulsedModel:
 
     @property
     def gravity(self) -> float:
-        """[m/s2]."""
+        """Gravitational acceleration of the structure [m/s2]."""
         return self.model.gravity
 
     @property
@@ -99,7 +99,7 @@ def parse_shape(text: str) -> Pulse:
     """
     name, *further = text.split(":")
     if any(word.strip()[-1:].isalpha() and not word.strip().endswith("deg") for word in further):
-        raise InputError(f"pulse '{text}': give the shape alone, {name}; amplitude and period are asked for elsewhere")
+        raise InputError(f"pulse '{text}': give only the shape, {name}: amplitude and period are set separately")
     return replace(parse_pulse(":".join([name, "1m/s2", "1s", *further])), amplitude=1.0, period=1.0)
 
 
@@ -244,8 +244,8 @@ def _check(structure: PulsedModel, failed: NDArray[np.bool_], periods: Reals, am
     if failed.any():
         k = int(failed.argmax())
         raise SolverError(
-            f"{structure.name}: the motion under a pulse of {amplitudes[k]:.4g} m/s2 and {periods[k]:.4g} s cannot be "
-            "followed: so slow a pulse needs a lower restitution"
+            f"{structure.name}: the motion under a pulse of {amplitudes[k]:.4g} m/s2 and {periods[k]:.4g} s could not "
+            "be simulated: so slow a pulse needs a lower restitution"
         )
 
 

@@ -18,7 +18,7 @@ def view(
     near: Neighbours | None,
     file: Mapping[str, float | int | str | None],
 ) -> View:
-    """What is shown, what became of the motions next to it, and of the file that shows it."""
+    """Show an animated history: its verdict, its neighbouring motions and the file written."""
     history, mechanism = film.history, structure.mechanism
     data = {
         "mechanism": mechanism.mechanism,

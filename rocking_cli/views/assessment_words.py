@@ -1,4 +1,4 @@
-"""What a report says first, in words: will it uplift, will it overturn, how close, and what to trust."""
+"""The summary of a report in sentences: uplift, overturning, margin, and which model to trust."""
 
 from __future__ import annotations
 
@@ -65,19 +65,19 @@ def verdicts(content: Assessment) -> tuple[Verdict, ...]:
 
 
 def in_a_sentence(content: Assessment) -> str:
-    """The answer of the whole report."""
+    """Return the answer of the whole report in a sentence."""
     name = content.name
     if not content.results:
         least = _ground(content, _least(content))
         return (
-            f"{name} starts to rock when the ground accelerates sideways by {least}. No ground "
-            "motion was given, so this report does not say whether an earthquake overturns it."
+            f"{name} starts to rock at a horizontal ground acceleration of {least}. No ground motion was given, so "
+            "this report does not say whether an earthquake would overturn it."
         )
     falls = [each for each in content.results if _overturns(each)]
     doubtful = any(each.close for each in content.results)
-    close = " The result is a close one: read below what could change it." if doubtful else ""
+    close = " The result is close: see below what could change it." if doubtful else ""
     if any(not contact.holds for each in content.results for contact in each.contacts.values()):
-        close += " But its joints do not hold: read below from when on the answer is none."
+        close += " But its joints do not hold: see below from which time the result is no longer valid."
     if falls:
         under = _listed([each.given.motion.name for each in falls])
         of = f" ({len(falls)} of {len(content.results)} ground motions)" if len(content.results) > 1 else ""
@@ -86,17 +86,17 @@ def in_a_sentence(content: Assessment) -> str:
     if not moved:
         under = _listed([each.given.motion.name for each in content.results])
         are = "are" if len(content.results) > 1 else "is"
-        return f"{name} {names.NO_UPLIFT}: {under} {are} too weak to lift it.{close}"
+        return f"{name} {names.NO_UPLIFT}: {under} {are} too weak to cause uplift.{close}"
     worst = max(moved, key=_worst_ratio)
     which = worst.given.motion.name
     run = worst.histories["nonlinear"]
     share = f"{degrees(run.furthest):.3g}°, " if any(run.ends_at_limit) else ""
-    share += f"{_share(_worst_ratio(worst))} of {_end(run)}"
+    share += f"{_share(_worst_ratio(worst))} {_end(run)}"
     if len(content.results) == 1:
-        return f"{name} {names.ROCKS} under {which} and does not overturn: it turns by at most {share}.{close}"
+        return f"{name} {names.ROCKS} under {which} and does not overturn: its largest rotation is {share}.{close}"
     return (
-        f"{name} rocks under {len(moved)} of {len(content.results)} ground motions and overturns under none: it turns "
-        f"by at most {share}, under {which}.{close}"
+        f"{name} rocks under {len(moved)} of {len(content.results)} ground motions and overturns under none: its "
+        f"largest rotation is {share}, under {which}.{close}"
     )
 
 
@@ -125,16 +125,18 @@ def governs(content: Assessment) -> str:
 
 
 def _over(content: Assessment) -> str:
-    """What peaks are over."""
+    """Return what a peak is divided by, in words."""
     free = [side.phi_cr is None for side in content.structure.statics]
     return "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"
 
 
 def doubts(content: Assessment) -> list[str]:
-    """What is doubtful about the structure and the method, whatever the motion."""
+    """Return what to check about the structure and the method, under any motion."""
     said = []
     if not content.mechanism.verified:
-        said.append(f"Nobody has verified the mechanism {content.mechanism.mechanism}: its numbers need a check.")
+        said.append(
+            f"The mechanism {content.mechanism.mechanism} has not been verified: check its results independently."
+        )
     if content.mechanism.caution:
         said.append(content.mechanism.caution)
     size = doubtful_size(content.mechanism)
@@ -144,36 +146,36 @@ def doubts(content: Assessment) -> list[str]:
     given = restitution_source(content.mechanism) == "given"
     if not content.mechanism.rocks_both_ways:
         said.append(
-            "It is taken to lean on side walls that do not move. "
-            + ("" if given else "How it is thrown back there was computed for impacts in sequence, and not measured.")
+            "The side walls it leans on are assumed not to move. "
+            + ("" if given else "The rebound from them was computed for a sequence of impacts, not measured.")
         )
     elif min(etas) <= 0:
         said.append(
-            f"Kinematics give a restitution of {min(etas):.3g}: {why_none(min(etas))}. Time histories and the "
-            "overturning map need a measured restitution in the file, and are left out."
+            f"Kinematics give a coefficient of restitution of {min(etas):.3g}: {why_none(min(etas))}. Time histories "
+            "and the overturning map are left out; they need a measured restitution in the file."
         )
     elif not given:
         said.append(
-            f"How much motion an impact takes away (η = {min(etas):.3g}) was computed for rigid bodies that "
-            "neither slide nor bounce. It was not measured, and the response depends on it."
+            f"The coefficient of restitution (η = {min(etas):.3g}) was computed for rigid bodies that neither slide "
+            "nor bounce. It was not measured, and the response depends on it."
         )
     if content.mechanism.springs:
         said.append(
-            "What ties it is taken as elastic: it neither yields nor breaks nor pulls out of what holds it. Hold the "
-            "largest forces of this report against what it and its ends can bear."
+            "Ties are assumed elastic: they do not yield, break or pull out of their anchorages. Check the largest "
+            "tie forces in this report against the capacity of the ties and their anchorages."
         )
     if content.structure.misleading:
         said.append(f"{content.structure.misleading[0].upper()}{content.structure.misleading[1:]}: they are left out.")
     edges = "without crushing at their edges" if content.mechanism.crushing is None else "on pivots moved inwards"
     said.append(
-        f"The bodies are taken as rigid, on rigid ground, in one plane, without sliding and {edges}; the section on "
-        "joints says what that asks of them. The vertical motion of the ground is left out. Worn edges and soft ground "
-        "lower the resistance."
+        f"The bodies are assumed rigid, on rigid ground, in one plane, without sliding and {edges}; the section on "
+        "joints shows the friction and forces that this requires. Vertical ground motion is not included. Worn edges "
+        "and soft ground lower the resistance."
     )
     if content.mechanism.interlock is not None:
         said.append(
-            f"The friction of crossing walls is taken as constant; blocks that have slid by their overlap of "
-            f"{1000 * content.mechanism.interlock.overlap:.0f} mm come apart, beyond which no answer holds."
+            "The friction of crossing walls is assumed constant. Blocks that have slid by their overlap of "
+            f"{1000 * content.mechanism.interlock.overlap:.0f} mm come apart; no result is valid beyond that."
         )
     return said
 
@@ -188,7 +190,7 @@ def _verdict(content: Assessment, result: MotionResult) -> Verdict:
             Answer("Will it uplift?", _uplift(content, result)),
             Answer("Will it overturn?", _overturning(result)),
             Answer("How close is that?", _closeness(content, result)),
-            Answer("Which model to trust?", _trusted(content, result)),
+            Answer("Which model can you trust?", _trusted(content, result)),
             *_joints(content, result),
         ),
         tuple(_doubts(result)),
@@ -196,7 +198,7 @@ def _verdict(content: Assessment, result: MotionResult) -> Verdict:
 
 
 def _joints(content: Assessment, result: MotionResult) -> tuple[Answer, ...]:
-    """Whether they hold, in the polarity that governs; nothing of a structure that does not rock."""
+    """Answer whether the joints hold, in the polarity that governs; empty for a structure that does not rock."""
     said = contact_words(result.contacts[result.polarity], content.mechanism)
     return (Answer("Do its joints hold?", said),) if said else ()
 
@@ -204,15 +206,19 @@ def _joints(content: Assessment, result: MotionResult) -> tuple[Answer, ...]:
 def _uplift(content: Assessment, result: MotionResult) -> str:
     best, pga = result.histories["nonlinear"], result.measured.pga  # that which reaches it: of a floor its own
     least = _least(content)
-    needed = f"A ground acceleration of {_ground(content, least)} is enough to lift it"
+    needed = f"A ground acceleration of {_ground(content, least)} is enough to uplift it"
     one, other = (side.lambda_ for side in content.structure.statics)
     both = "" if isclose(one, other, rel_tol=AGREEMENT) else " in its weaker direction"
     if best.uplift_time >= 0:
         return f"Yes, first at {best.uplift_time:.2f} s. {needed}{both}; this motion reaches {pga:.3g} g."
     factor = result.margin.uplift
     weak = pga < least * content.mechanism.gravity / STANDARD_GRAVITY
-    but = f"this motion reaches {pga:.3g} g" if weak else f"this motion, of {pga:.3g} g, reaches it only the other way"
-    more = f" It would have to be {factor:.3g} times as strong to lift it." if factor is not None else ""
+    but = (
+        f"this motion reaches {pga:.3g} g"
+        if weak
+        else f"this motion, of {pga:.3g} g, reaches it only in the other direction"
+    )
+    more = f" The motion would have to be {factor:.3g} times as strong to cause uplift." if factor is not None else ""
     return f"No. {needed}{both}; {but}.{more}"
 
 
@@ -221,7 +227,7 @@ def _overturning(result: MotionResult) -> str:
     others = [(sign, runs["nonlinear"]) for sign, runs in result.runs.items() if sign != result.polarity]
     said += [f"{_way(sign).capitalize()}: {_fate(run)}." for sign, run in others]
     if len(result.runs) == 1:
-        said.append("The motion was looked at this way round only; the other may be worse.")
+        said.append("Only this polarity of the motion was analysed; the reverse may be worse.")
     return " ".join(said)
 
 
@@ -229,7 +235,7 @@ def _fate(run: History, *, capital: bool = False) -> str:
     if run.overturned:
         said = f"yes, it overturns, {SENSE[Direction(run.fell_to)]} at {run.overturning_time:.2f} s"
     elif run.lifted:
-        said = f"no, it rocks to {_share(run.peak_ratio)} of the {run.reference}"
+        said = f"no, it rocks to {_share(run.peak_ratio)} the {run.reference}"
     else:
         said = f"no, it {names.NO_UPLIFT}"
     return said[0].upper() + said[1:] if capital else said
@@ -245,19 +251,24 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
     if best.peak_ratio > 0:
         side = Direction.POSITIVE if best.furthest == best.peak_positive else Direction.NEGATIVE
         statics = content.structure.statics[0 if side > 0 else 1]
-        said.append(f"It turns by at most {degrees(best.furthest):.3g}° {SENSE[side]}. {_what_that_is(best, statics)}")
+        said.append(
+            f"Its largest rotation is {degrees(best.furthest):.3g}° {SENSE[side]}. {_what_that_is(best, statics)}"
+        )
         if best.peak_ratio > 1:
-            said.append("It passes that, and only the next push of the ground brings it back.")
+            said.append("It exceeds this rotation and is brought back only by the subsequent ground motion.")
     said.append(str(result.neighbours[result.polarity]))
     said.append(in_words(found, result.pga_of_ground))
     return " ".join(said)
 
 
 def _what_that_is(run: History, statics: Statics) -> str:
-    """What the largest rotation is, over that from which it would fall."""
-    share = f"That is {_share(run.peak_ratio)} of the {run.reference}, {degrees(statics.reference):.3g}°"
+    """Return a sentence that compares the largest rotation with the critical rotation or the kinematic limit."""
+    share = f"That is {_share(run.peak_ratio)} the {run.reference}, {degrees(statics.reference):.3g}°"
     if statics.phi_cr is None:
-        return f"{share}, where the motion would end. Up to there it is pulled back: there is no critical rotation."
+        return (
+            f"{share}, at which the motion would end. Up to that rotation the structure is pulled back: it has no "
+            "critical rotation."
+        )
     if statics.why_no_block is None and run.reference == "critical rotation":
         return f"{share}, beyond which its weight pushes it over instead of back."
     return f"{share}, beyond which it is pushed over instead of back."
@@ -271,30 +282,31 @@ def _least(content: Assessment) -> float:
 def _end(run: History) -> str:
     """The rotation that a peak is compared with, in plain words."""
     if run.reference == "critical rotation":
-        return "the rotation from which it would fall"
-    return "the tilt at which its motion would end"
+        return "the critical rotation, beyond which it would fall"
+    return "the kinematic limit, at which its motion would end"
 
 
 def _trusted(content: Assessment, result: MotionResult) -> str:
     runs = result.histories
     if len(runs) == 1:
-        return f"The nonlinear one, the only one there is. {why_alone(content)}"
+        return f"The nonlinear model; no other is available. {why_alone(content)}"
     best = runs["nonlinear"]
-    itself = "The nonlinear model follows the structure without linearising it, and its numbers are quoted here."
+    itself = "The nonlinear model simulates the structure without linearisation; its results are quoted here."
     called = {name: f"the {model}" for name, model in MODELS.items()}
     grades = {each.grade for each in agreements(runs).values()}
     if disagree(runs):
-        first = "None of them alone: the models disagree on whether it overturns."
+        first = "No single one: the models disagree on whether it overturns."
     elif len({run.overturned for run in runs.values()}) == 1 and best.overturned:
-        first = "All three models say that it overturns."
+        first = "By all three models, it overturns."
     elif grades == {Grade.AGREES}:
         lifted = "the three models agree closely" if best.peak_ratio else f"by all three models it {names.NO_UPLIFT}"
-        first = f"Any: {lifted}."
+        first = f"Any of them: {lifted}."
     else:
-        first = "The nonlinear one."
+        first = "The nonlinear model."
+        itself = "It simulates the structure without linearisation; its results are quoted here."
     said = [first, itself, *(text[0].upper() + text[1:] for text in bearing(runs, called))]
     if disagree(runs):
-        said.append("Look at weaker and stronger motions too before relying on any of them.")
+        said.append("Run weaker and stronger motions as well before relying on any of them.")
     return " ".join(said)
 
 
@@ -309,16 +321,16 @@ def _doubts(result: MotionResult) -> list[str]:
     said = [f"{each.text[0].upper()}{each.text[1:]}." for each in result.doubts]
     contact = result.contacts.get(result.polarity)
     if contact is not None and not contact.holds:
-        said.append("Its joints do not hold under this motion, see there: beyond that moment the answer is none.")
+        said.append("Its joints do not hold under this motion (see Joints): the result is not valid beyond that time.")
     if result.close:
-        said.append("The result is close to the other outcome. Do not rest a decision on this one computation.")
+        said.append("The result is close to the other outcome. Do not base a decision on this computation alone.")
     if any(run.still_rocking for run in result.histories.values()):
         said.append("A model is still rocking long after the motion has ended; it is certain not to overturn.")
     factor = abs(result.given.factor)
     if factor == 0:
-        said.append("The motion was scaled by 0: this is no result at all.")
+        said.append("The motion was scaled by 0, so this result is meaningless.")
     elif factor != 1:
-        more = " Large factors make motions unlike any recorded." if result.scaled_much else ""
+        more = " Motions scaled by large factors are unlike any recorded." if result.scaled_much else ""
         said.append(f"The motion was scaled by {result.given.factor:.4g}.{more}")
     return [text.replace("?.", "?") for text in said]
 
@@ -333,17 +345,17 @@ def _worst_ratio(result: MotionResult) -> float:
 
 
 def alone(result: MotionResult) -> str:
-    """What the pulse in a motion that fits best does alone."""
+    """Return a sentence on the response to the best-fitting pulse of a motion alone."""
     ratio = result.alone
     if ratio is None:
-        return "No pulse could be found in it."
+        return "No pulse was found in this motion."
     pulse = f"The {result.fits[0].pulse.title} of the table, without the rest of the motion,"
     if isnan(ratio):
         return f"{pulse} overturns the structure."
     if ratio == 0:
-        return f"{pulse} does not lift the structure."
+        return f"{pulse} does not cause uplift."
     of = result.histories["nonlinear"].reference
-    return f"{pulse} rocks the structure to {_share(ratio)} of its {of}."
+    return f"{pulse} rocks the structure to {_share(ratio)} its {of}."
 
 
 def _ground(content: Assessment, lambda_: float) -> str:
@@ -352,7 +364,8 @@ def _ground(content: Assessment, lambda_: float) -> str:
 
 
 def _share(ratio: float) -> str:
-    return f"{100 * ratio:.3g} %" if ratio < 10 else f"{ratio:.3g} times"
+    """Return a ratio as words that stand before what it is a part of."""
+    return f"{100 * ratio:.3g} % of" if ratio < 10 else f"{ratio:.3g} times"
 
 
 def restitution(content: Assessment) -> str:

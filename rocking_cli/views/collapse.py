@@ -17,8 +17,9 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
         if each.thrust:
             parts.append(_thrust(direction, each))
     parts.append(
-        "The forces are those of one state with the least friction: where parts rest there are others. lambda is the "
-        "greatest acceleration that forces without tension carry, and that at which the mechanism shown begins."
+        "The forces shown are one equilibrium state with the least friction; where parts remain at rest, other "
+        "states exist. lambda is both the greatest acceleration that can be carried without tension (static theorem) "
+        "and the acceleration at which this mechanism starts (kinematic theorem)."
     )
     return View(lambda: {"directions": {d.label: data(each) for d, each in found.items()}}, parts)
 
@@ -33,32 +34,37 @@ def _hinges(direction: Direction, found: CollapseMechanism) -> Table:
 
 def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechanism) -> list[str]:
     moves = "; ".join("+".join(group) for group in found.groups)
-    said = [f"What moves, each as one: {moves}." + (f" At rest: {', '.join(found.rest)}." if found.rest else "")]
+    said = [f"Moving parts, each as one body: {moves}." + (f" At rest: {', '.join(found.rest)}." if found.rest else "")]
     if found.lead:
         said.append(f"phi is the rotation of {found.lead}.")
     if found.lifted:
-        said.append(f"Open at both ends, or slip off: {', '.join(found.lifted)}.")
+        said.append(f"Joints that open over their whole length, or slip off: {', '.join(found.lifted)}.")
     if found.slides:
         said.append(
-            f"It slides between {', '.join(found.slides)}: lambda says when, and there is no rocking model of it. Flow "
-            "is associated, which over-estimates lambda where joints that slide open."
+            f"The mechanism slides between {', '.join(found.slides)}. lambda is the acceleration at which sliding "
+            "starts; no rocking model is available for it. The flow rule is associated, which overestimates lambda "
+            "where sliding joints also open."
         )
     if found.friction_needed is not None:
         given = mechanism.friction
         held = "" if given is None else f"; {given:g} is given"
-        said.append(f"It needs a friction of {number(found.friction_needed, 4)} in every joint{held}.")
+        said.append(
+            f"It requires a coefficient of friction of {number(found.friction_needed, 4)} in every joint{held}."
+        )
     elif found.glued:
         said.append(
-            f"No friction will do: {', '.join(found.glued)} would carry shear without pressing. Give friction, 0 for a "
-            "joint that bears no shear."
+            f"No coefficient of friction is sufficient: {', '.join(found.glued)} would have to carry shear without "
+            "compression. Give `friction`: 0 for a joint that carries no shear."
         )
     if found.valid_to is not None and found.held_by is not None:
         said.append(
-            f"Held displaced by G/B it is this mechanism up to {number(found.valid_to)} rad, at "
-            f"{number(found.held_by, 4)} g: there the joint of {found.opens} opens too."
+            f"In displaced equilibrium (at acceleration G/B), this mechanism is valid up to {number(found.valid_to)} "
+            f"rad, where {number(found.held_by, 4)} g holds it and the joint between {found.opens} also opens."
         )
     elif not found.slides:
-        said.append("Held displaced by G/B it is this mechanism up to its critical rotation.")
+        said.append(
+            "In displaced equilibrium (at acceleration G/B), this mechanism is valid up to its critical rotation."
+        )
     return said
 
 
@@ -68,11 +74,11 @@ def _thrust(direction: Direction, found: CollapseMechanism) -> Table:
         for where, at, force in found.thrust
     ]
     heads = ["joint", "x [m]", "y [m]", "Fx [kN]", "Fy [kN]"]
-    return Table(f"Forces as it starts, {direction.label}", heads, rows, numbers=(1, 2, 3, 4))
+    return Table(f"Joint forces at the onset of the mechanism, {direction.label}", heads, rows, numbers=(1, 2, 3, 4))
 
 
 def table(found: Mapping[Direction, CollapseMechanism]) -> dict[str, list[Any]]:
-    """A row for each hinge."""
+    """Return a table with a row for each hinge."""
     rows = [(d.label, each.lambda_, hinge) for d, each in found.items() for hinge in each.hinges]
     return {
         "direction": [row[0] for row in rows],

@@ -1,4 +1,4 @@
-"""What a history asks of its contacts, in words and as data."""
+"""Contact demands of a time history, as sentences and as data."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from rocking_cli.core import Mechanism
 from rocking_cli.studies.contact import NEAR_PEAK, NONE, Contact
 from rocking_cli.views.view import number
 
-BEYOND = "the answer does not hold beyond"
+BEYOND = "the result is not valid beyond that time"
 
 
 def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
-    """As programs read it; what there is none of is null."""
+    """Return the demands as plain data; missing values are null."""
     crushing = found.crushing
     return {
         "friction_needed": found.friction_needed,
@@ -38,7 +38,7 @@ def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
 
 
 COLUMNS = (
-    "friction needed",
+    "friction required",
     "at joint",
     "at [s]",
     "for [s]",
@@ -51,7 +51,7 @@ COLUMNS = (
 
 
 def contact_row(found: Contact, mechanism: Mechanism) -> list[str]:
-    """The same as cells of a table."""
+    """Return the demands as cells of a table row."""
     unit = "N" if mechanism.has_mass else "N/kg"
     numbers = [number(each, 3) for each in (found.time, found.duration, found.impact_friction)]
     least = f"{number(found.least_normal, 4)} {unit}" if not isnan(found.least_normal) else number(NONE)
@@ -61,28 +61,37 @@ def contact_row(found: Contact, mechanism: Mechanism) -> list[str]:
 
 
 def contact_words(found: Contact, mechanism: Mechanism) -> str:
-    """The same in a few sentences; empty of a structure that does not rock."""
+    """Return the demands as sentences; empty for a structure that does not rock."""
     if isnan(found.friction_needed):
         return ""
     said = [_friction(found)]
     if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
-        said.append(f"Its impacts need {number(found.impact_friction, 3)}, and much more with a lower restitution.")
+        said.append(
+            f"Impacts require a coefficient of friction of {number(found.impact_friction, 3)}, and much more with a "
+            "lower restitution."
+        )
     if not isnan(found.lost):
         said.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s: {BEYOND}.")
     if found.opens is not None and not isnan(found.opens):
         said.append(
-            f"From {number(found.opens, 4)} s on another joint would have opened, that of {found.opens_joint}: "
-            f"{BEYOND}."
+            f"At {number(found.opens, 4)} s another joint would open, that between {found.opens_joint}: {BEYOND}."
         )
     if found.crushing is not None:
         at = f"{_where(found.crushing.joint)} at {number(found.crushing.time, 4)} s"
         if found.crushing.used > 1:
-            said.append(f"It would crush at {at}, with {number(found.crushing.used, 3)} times its strength: {BEYOND}.")
+            said.append(
+                f"The contacts would crush: they carry up to {number(found.crushing.used, 3)} times their strength, "
+                f"at {at}. The result is not valid once the strength is exceeded."
+            )
         else:
-            said.append(f"Its contacts bear {number(100 * found.crushing.used, 3)} % of their strength, at {at}.")
+            said.append(
+                f"The contacts use at most {number(100 * found.crushing.used, 3)} % of their strength, at {at}."
+            )
     sums = _sums(found, mechanism)
     if sums == "whole":
-        said.append("Where its joints are is not known: these are sums over the whole structure, on level ground.")
+        said.append(
+            "The positions of its joints are not known: the forces are sums over the whole structure, on level ground."
+        )
     elif sums is not None:
         said.append(f"Forces are sums over all {sums}.")
     return " ".join(said)
@@ -90,17 +99,18 @@ def contact_words(found: Contact, mechanism: Mechanism) -> str:
 
 def _friction(found: Contact) -> str:
     needed, at = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
-    where = _where(found.joint) if found.joint else "it"
+    where = _where(found.joint) if found.joint else "the structure"
     if found.friction is None:
         lasts = f"more than {100 * NEAR_PEAK:.0f} % of that for {number(found.duration, 2)} s"
-        return f"Contact: {where} needs a friction of {needed} {at}, and {lasts}."
+        return f"Contact: {where} requires a coefficient of friction of {needed} {at}, and {lasts}."
     there = number(found.friction, 3)
     if isnan(found.slides):
-        return f"Contact: {where} needs a friction of {needed} {at}; there is {there}."
+        return f"Contact: {where} requires a coefficient of friction of {needed} {at}; {there} is available."
     there_first = f" at {_where(found.slides_joint)}" if found.slides_joint else ""
     return (
-        f"It would slide{there_first} from {number(found.slides, 4)} s, for {number(found.duration, 2)} s at a time at "
-        f"most: {BEYOND}. {where[0].upper()}{where[1:]} needs a friction of {needed} {at}; there is {there}."
+        f"Sliding would start{there_first} at {number(found.slides, 4)} s: {BEYOND}. It would last at most "
+        f"{number(found.duration, 2)} s at a time. {where[0].upper()}{where[1:]} requires a coefficient of friction "
+        f"of {needed} {at}; {there} is available."
     )
 
 
@@ -109,7 +119,7 @@ def _where(letter: str) -> str:
 
 
 def _sums(found: Contact, mechanism: Mechanism) -> str | None:
-    """What the forces are sums over: the whole structure, or bodies that one stands for; None: over nothing."""
+    """Return what the forces are summed over: the whole structure, identical bodies, or nothing (None)."""
     if found.whole:
         return "whole"
     joints = mechanism.joints(mechanism.directions[0])

@@ -70,12 +70,15 @@ def answer(found: Design) -> str:
     if not found.holds:
         return f"{aim} holds at no value of {found.field} tried, from {low} to {high}: {_nearest(found)}"
     if found.value is not None and len(found.holds) == 1 and (found.monotone or not aim.metric.shaken):
-        which, where = ("least", f"up to {high}") if found.is_least else ("largest", f"from {low}")
-        return f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; it holds {where}."
+        which, where = ("smallest", f"up to {high}") if found.is_least else ("largest", f"from {low}")
+        return (
+            f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; the requirement "
+            f"holds {where}."
+        )
     ranges = [f"from {_with_unit(found, a)} to {_with_unit(found, b)}" for a, b in found.holds]
-    said = f"As far as {len(found.values)} values show, {aim} holds for {found.field} {_listed(ranges)}"
+    said = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {_listed(ranges)}"
     if found.value is None:
-        return f"{said}, and at neither end of what was tried, {low} to {high}."
+        return f"{said}, but at neither end of the range tried, {low} to {high}."
     way = "upwards" if found.is_least else "downwards"
     return f"{said}." if len(ranges) == 1 else f"{said}: from {_with_unit(found, found.value)} {way} without a gap."
 
@@ -85,34 +88,34 @@ def doubts(found: Design, shaking: Shaking | None) -> list[str]:
     said = []
     count = len(found.values)
     if not found.monotone and np.isfinite(found.metric).any():
-        closer = "edges are values that were tried" if found.aim.metric.shaken else "edges are found between them"
+        closer = "the edges given are values tried" if found.aim.metric.shaken else "the edges given lie between them"
         said.append(
-            f"{found.aim.metric.name} does not go one way over the range: {count} values were tried at equal steps, "
-            f"{closer}, and between two that agree nothing was looked at."
+            f"{found.aim.metric.name} is not monotonic over the range: {count} equally spaced values were tried, "
+            f"{closer}, and intervals whose two ends agree were not searched."
         )
     for each in found.not_built:
         span = _with_unit(found, each.low)
         span = f"At {span}" if each.low == each.high else f"From {span} to {_with_unit(found, each.high)}"
-        said.append(f"{span} there is no value: {one_line(each.reason)}.")
+        said.append(f"{span} {found.aim.metric.name} could not be computed: {one_line(each.reason)}.")
     if found.aim.metric.shaken and shaking is not None:
         said.append(
-            f"One history is one sample: at each value {shaking.around.count} motions next to the one asked for are "
-            f"followed, {shaking.around.words}. What holds is a share of them, and moves by steps of "
+            f"One time history is one sample: at each value, {shaking.around.count} neighbouring motions are "
+            f"simulated, {shaking.around.words}. The metric is based on a share of them, which changes in steps of "
             f"{percent(1 / shaking.around.count)}."
         )
         if len(shaking.motions) > 1:
-            said.append(f"Of {len(shaking.motions)} motions the worst counts at each value.")
+            said.append(f"At each value, the worst of {len(shaking.motions)} motions governs.")
     return said
 
 
 def _nearest(found: Design) -> str:
-    """How near the scan comes."""
+    """Return the best value of the metric in the scan, as the end of a sentence."""
     there = np.flatnonzero(~np.isnan(found.metric))
     if not there.size:
-        return f"{found.aim.metric.name} has no value at any of them."
+        return f"{found.aim.metric.name} could not be computed at any of these values."
     best = there[(found.metric[there].argmin() if found.aim.op[0] == "<" else found.metric[there].argmax())]
     value, place = _metric(found, float(found.metric[best])), _with_unit(found, found.values[best])
-    return f"the {'least' if found.aim.op[0] == '<' else 'most'} it comes to is {value}, at {place}."
+    return f"the {'smallest' if found.aim.op[0] == '<' else 'largest'} {found.aim.metric.name} is {value}, at {place}."
 
 
 def _listed(parts: Sequence[str]) -> str:

@@ -13,7 +13,7 @@ def view(picture: Picture) -> View:
     said = [f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured]
     said += [f"load {each.name}, {each.text}" for each in picture.loads if each.name]
     said += [f"tie {each.name}" for each in picture.ties if each.name]
-    said += [f"it rocks in the {side} direction only" for side in [picture.mechanism.one_sided] if side]
+    said += [f"rocks in the {side} direction only" for side in [picture.mechanism.one_sided] if side]
     return View(
         picture.as_dict, [heading(picture.mechanism), *(f"  {each}" for each in [*said, *picture.sketch.notes])]
     )

@@ -53,9 +53,10 @@ def view(structure: Prepared) -> View:
     said = [f"{prefix}{sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
     if structure.why_no_block is None:
         said.append(
-            "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; either kappa "
-            "keeps the critical rotation. How alike they move depends on how far: `rocking error` compares free "
-            "periods and overturning times, `rocking respond` motions."
+            "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; both "
+            "kappas preserve the critical rotation. How closely the block follows the structure depends on the "
+            "amplitude: compare free periods and overturning times with `rocking error`, and time histories with "
+            "`rocking respond`."
         )
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
@@ -101,7 +102,7 @@ def sides_of(structure: Prepared) -> list[Side]:
 
 
 def is_symmetric(structure: Prepared) -> bool:
-    """Whether one column serves for both directions."""
+    """Return whether one column is enough for both directions."""
     if structure.why_no_block is None:
         return structure.equivalence.symmetric
     return alike(*structure.statics) and isclose(*structure.etas, rel_tol=AGREEMENT)
@@ -139,16 +140,16 @@ def sentence(side: Side) -> str:
     if side.block is not None:
         return f"critical rotation {degrees(side.block.phi_cr):.4g} deg. {preferred_kappa(side.block).why}"
     statics = side.statics
-    grows = "grows" if statics.stiffening > 0 else "falls"
+    grows = "increases" if statics.stiffening > 0 else "decreases"
     ends = (
-        f"a motion ends, if at all, at the kinematic limit of {statics.limit:.4g} rad"
+        f"a motion can end only at the kinematic limit of {statics.limit:.4g} rad"
         if statics.phi_cr is None
-        else f"it first vanishes at {statics.phi_cr:.4g} rad"
+        else f"the moment first vanishes at {statics.phi_cr:.4g} rad"
     )
     return (
-        f"no single block is equivalent to it: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} g; from "
-        f"there its restoring moment {grows} by {abs(statics.stiffening):.4g} of itself per rad; {ends}. Nonlinear "
-        "histories follow it; linear models, closed forms and maps in p do not."
+        f"the structure has no equivalent single block: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} "
+        f"g; its restoring moment then {grows} by {abs(statics.stiffening):.4g} of its initial value per rad; {ends}. "
+        "Nonlinear time histories are available; linear models, closed forms and maps in terms of p are not."
     )
 
 
@@ -176,7 +177,7 @@ def warnings(structure: Prepared) -> Iterator[str]:
             way = "" if one else f" ending {side.direction.label} motion"
             yield (
                 f"{mechanism.name}: the kinematics give eta = {side.eta:.4g}{way}: {why_none(side.eta)}; "
-                "histories need a measured restitution in the file"
+                "time histories need a measured restitution in the file"
             )
 
 
@@ -184,6 +185,6 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
     """What to know of the parameters."""
     if mechanism.gravity != STANDARD_GRAVITY:
         yield (
-            f"{mechanism.name}: lambda is over its own gravity of {mechanism.gravity:g} m/s2; records and PGA are in "
-            f"standard gravity, {STANDARD_GRAVITY} m/s2"
+            f"{mechanism.name}: lambda is relative to the structure's own gravity of {mechanism.gravity:g} m/s2; "
+            f"records and PGA use standard gravity, {STANDARD_GRAVITY} m/s2"
         )

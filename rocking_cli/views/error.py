@@ -16,7 +16,7 @@ PREFERRED = {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}
 def view(
     mechanism: Mechanism, equivalence: Equivalence, curves: Sequence[Linearisation], asked: Sequence[Linearisation]
 ) -> View:
-    """The errors at the values asked for, and a verdict that rests on the curves too."""
+    """Show the errors at the given values, and a verdict that also uses the curves."""
     verdict = trust(list(curves), list(asked))
     data = {
         "mechanism": mechanism.mechanism,

@@ -53,8 +53,8 @@ def without_block(plan: Plan) -> list[str]:
     """A sentence on each structure that no block is equivalent to: what phi_cr stands for there."""
     found = dict.fromkeys(each.structure for each in plan.trials if each.reason is None and not each.p)
     return [
-        f"{structure}: no single block is equivalent to it. It has no p, and where it has no critical rotation phi_cr "
-        "stands for its kinematic limit, which overturning then is."
+        f"{structure}: no equivalent single block exists, and therefore no p. In a direction without a critical "
+        "rotation, phi_cr stands for the kinematic limit, and reaching it counts as overturning."
         for structure in found
     ]
 
@@ -69,7 +69,7 @@ def out_of_reach(store: Store, plan: Plan, definition: Definition) -> list[str]:
     return [
         f"{structure}: its top never moves by {limit}"
         + ("" if all(never) else f" in {sum(never)} of {len(never)} samples")
-        + ", however far it turns: there this limit is exceeded by overturning alone."
+        + ", whatever its rotation: this limit is then exceeded only by overturning."
         for (structure, limit), never in found.items()
         if any(never)
     ]
@@ -95,7 +95,7 @@ def view(
     definition : Definition
         What its study asks for.
     finished, failed : int
-        Runs that are in it, and those of them that could not be followed.
+        Runs in the store, and those of them that could not be simulated.
     curves, surfaces : sequence
         What was fitted to them.
     """
@@ -145,13 +145,13 @@ def sets_in_words(plan: Plan) -> list[str]:
         counts = [int((usable & ((sets.level == k) | (sets.level < 0))).sum()) for k in range(len(plan.levels))]
         few, many = min(counts), max(counts)
         each = f"{few}" if few == many else f"{few} to {many}"
-        used = "scaled to it" if sets.scaled else "used as they are"
-        said.append(f"Each level has a set of records of its own: {each} at a level, {used}.")
+        used = "scaled to the level" if sets.scaled else "not scaled"
+        said.append(f"Each level has its own set of records: {each} per level, {used}.")
     if sets.weighted:
         low, high = float(sets.weight.min()), float(sets.weight.max())
         said.append(
-            f"Records count by their weights, {low:.3g} to {high:.3g}: intervals, bands and tests take each record as "
-            "a cluster."
+            f"Records have weights from {low:.3g} to {high:.3g}. Intervals, bands and tests treat each record as one "
+            "cluster."
         )
     return said
 
@@ -169,7 +169,7 @@ def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) ->
     """A sentence on each measure that no run of a structure has above zero, so that there is no curve over it."""
     known = {(each.structure, each.measure) for each in curves}
     return [
-        f"{structure}: no run has a {measure} above zero, and there is no curve over it."
+        f"{structure}: no run has a {measure} above zero, so no curve can be fitted."
         for structure in dict.fromkeys(each.structure for each in plan.trials if each.reason is None)
         for measure in definition.fitted_measures
         if (structure, measure) not in known
@@ -179,7 +179,8 @@ def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) ->
 def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidence: float) -> Iterator[Table | str]:
     """The curves of a structure over one measure."""
     interval = f"{100 * confidence:g} %"
-    columns = ["limit state", "curve", f"median\n{interval}", f"spread\n{interval}", "fit p"]
+    width = "dispersion" if all(each.curve.scale is None for each in curves) else "dispersion\nor scale"
+    columns = ["limit state", "curve", f"median\n{interval}", f"{width}\n{interval}", "fit p"]
     rated = any(each.rate is not None for each in curves)
     rows = [
         [
@@ -192,7 +193,7 @@ def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidenc
         ]
         for each in curves
     ]
-    columns += ["a year"] if rated else []
+    columns += ["rate\n[1/year]"] if rated else []
     yield ""
     yield Table(f"{structure}, over {label(measure)}", columns, rows, numbers=range(2, len(columns)))
     for each in curves:
@@ -227,7 +228,10 @@ def _surfaces(
 def _left_out(measure: str, runs: int) -> Iterator[str]:
     """How many runs are in no fit over a measure."""
     if runs:
-        yield f"{runs:,} run{'s have' if runs > 1 else ' has'} no {measure} above zero, and no part in this."
+        yield (
+            f"{runs:,} run{'s have' if runs > 1 else ' has'} no {measure} above zero and "
+            f"{'are' if runs > 1 else 'is'} left out of this fit."
+        )
 
 
 def _warnings(fitted: Sequence[Curve | Surface]) -> Iterator[str]:
@@ -240,7 +244,7 @@ def _in_years(rate: Rate | None) -> str:
     if rate is None or rate.rate == 0:
         return ""
     return (
-        f" Once in {rate.return_period:,.0f} years ({rate.low:.3g} to {rate.high:.3g} a year), "
+        f" Exceeded once in {rate.return_period:,.0f} years (annual rate {rate.low:.3g} to {rate.high:.3g}), "
         f"{100 * rate.in_50_years:.2g} % in 50 years."
     )
 

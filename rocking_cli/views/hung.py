@@ -1,4 +1,4 @@
-"""What hangs on a structure, as people and programs read it."""
+"""The loads and ties of a structure, as sentences and as data."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def hung_data(mechanism: Mechanism) -> list[dict[str, Any]]:
 
 
 def hung_in_words(mechanism: Mechanism) -> Iterator[str]:
-    """A sentence on all that hangs on a structure; none of a bare one."""
+    """Yield a sentence that lists the loads and ties of a structure, if it has any."""
     if mechanism.attached:
         yield f"With {'; '.join(f'{thing.name}: {_words(thing)}' for thing in mechanism.attached)}."
 
@@ -46,7 +46,9 @@ def _words(thing: Attached) -> str:
         if shares == (1, 1, 1):
             return f"{thing.mass:.4g} kg"
         sideways, up, borne = (f"{share:.3g}" for share in shares)
-        return f"{thing.mass:.4g} kg, of which {sideways} moves sideways, {up} up, and {borne} is borne"
+        return (
+            f"{thing.mass:.4g} kg (share moved sideways {sideways}, share moved vertically {up}, share carried {borne})"
+        )
     if isinstance(thing, ConstantForce):
         if thing.friction:
             at = f"at y = {thing.spot.at.imag:.4g} m"
@@ -59,4 +61,4 @@ def _words(thing: Attached) -> str:
         return f"{many} {thing.stiffness / 1000:.4g} kN/m{force}{sense}"
     if isinstance(thing, SpringBed):
         return f"springs of {thing.modulus / 1000:.4g} kN/m per metre of its face"
-    return "its share of the equation of motion"
+    return "its contribution to the equation of motion"

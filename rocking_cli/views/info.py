@@ -32,7 +32,7 @@ def view(found: Installation, defaults: Mapping[str, Any]) -> View:
         *(_extra(name, packages) for name, packages in found.extras.items()),
         *(row for kind, plugins in found.plugins.items() for row in _plugins(kind, plugins)),
         ["compiled code", _cache(found)],
-        ["own defaults", ", ".join(defaults["files"]) or f"no file; {defaults['user_file']} would be one"],
+        ["own defaults", ", ".join(defaults["files"]) or f"none; create {defaults['user_file']} to set some"],
     ]
     if defaults["environment"]:
         rows.append(["environment", " ".join(f"{name}={value}" for name, value in defaults["environment"].items())])
@@ -42,8 +42,10 @@ def view(found: Installation, defaults: Mapping[str, Any]) -> View:
             [each["option"], each["value"], each["command"] or "every command", each["place"]]
             for each in defaults["set"]
         ]
-        parts.append(Table("Defaults, the first of an option before others", ["option", "value", "of", "from"], places))
-    parts += [f"{name} in the environment means nothing to rocking." for name in defaults["unknown"]]
+        parts.append(
+            Table("Defaults (the first entry of an option takes precedence)", ["option", "value", "of", "from"], places)
+        )
+    parts += [f"The environment variable {name} is not used by rocking." for name in defaults["unknown"]]
     if defaults["problem"]:
         parts.append(f"The defaults cannot be used: {defaults['problem']}")
     return View(data, parts)
@@ -67,6 +69,8 @@ def _plugins(kind: str, plugins: Sequence[Plugin]) -> list[list[str]]:
 
 def _cache(found: Installation) -> str:
     if found.unwritable is not None:
-        return f"{found.cache} cannot be written to ({found.unwritable}): every process compiles anew"
+        return f"{found.cache} is not writable ({found.unwritable}): every process recompiles"
     missing = [name.replace("_", " ") for name, ready in found.compiled.items() if not ready]
-    return f"{found.cache}: " + (f"without {' and '.join(missing)}: `rocking warm`" if missing else "all that there is")
+    return f"{found.cache}: " + (
+        f"{' and '.join(missing)} not compiled: run `rocking warm`" if missing else "all kernels compiled"
+    )

@@ -39,15 +39,15 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
     either = {
         "1": "the motion as given",
         "-1": "the motion reversed",
-        "both": "the motion as given and reversed, of which the worse counts",
+        "both": "the motion as given and reversed, taking the worse of the two",
     }[polarity]
     *lower, top = (f"{100 * level:g}" for level in LEVELS)
     levels = f"{', '.join(lower)} and {top}"
     parts: list[Table | str] = [
         heading(mechanism),
-        f"Factors on {either}. Next to each factor {around.count} motions are followed, {around.words}. "
-        f"Shown are the first factor at which {levels} % of them or more overturn ('from'), and the last at which "
-        "fewer do ('below').",
+        f"Scale factors on {either}. At each factor, {around.count} neighbouring motions are simulated, "
+        f"{around.words}. The table gives the first factor at which at least {levels} % of them overturn ('from') and "
+        "the last factor at which fewer do ('below').",
         Table("", heads, cells, numbers=range(1, len(heads))),
     ]
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
@@ -56,7 +56,7 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
 
 
 def _last(found: Margin, level: float) -> str:
-    """Up to which factor fewer overturn; a plus where that is the largest tried."""
+    """Format the last factor at which fewer overturn; a plus marks the largest factor tried."""
     last = found.last_below(level)
     return f"{number(last, 3)}{'+' if last == found.factors[-1] else ''}"
 

@@ -39,7 +39,7 @@ class Installed:
 
 
 def view(found: Sequence[Installed]) -> View:
-    """All that there are."""
+    """Show the installed measures in a table."""
     rows = [
         [each.form, each.unit or ABSENT, _power(each), each.title or "(cannot be loaded)", each.package]
         for each in found
@@ -47,10 +47,10 @@ def view(found: Sequence[Installed]) -> View:
     return View(
         {"measures": [asdict(each) for each in found]},
         [
-            Table("Measures of intensity", ["measure", "unit", "goes with", "what it is", "package"], rows),
-            "What a measure goes with is a power of the factor on the record: levels of a study cannot be of one that "
-            "is the same whatever the factor, or is computed of every run. `rocking record` gives any of them with "
-            "`measures`, those that are relative to what is shaken with a `structure` too.",
+            Table("Intensity measures", ["measure", "unit", "scales with", "description", "package"], rows),
+            "The column 'scales with' gives the power of the record's scale factor. A measure that does not scale, or "
+            "that is computed for every run, cannot define the levels of a study. `rocking record` computes any of "
+            "them with `measures`; those relative to a structure also need `structure`.",
         ],
     )
 
@@ -59,5 +59,5 @@ def _power(each: Installed) -> str:
     if each.title is None:
         return ABSENT
     if each.power is None:
-        return "each run"
+        return "computed per run"
     return {0.0: "nothing", 1.0: "factor"}.get(each.power, f"factor^{each.power:g}")

@@ -43,9 +43,10 @@ def installed(found: Sequence[Installed]) -> View:
     return View(
         {"mechanisms": [each._asdict() for each in found]},
         [
-            Table("Mechanisms", ["mechanism", "what it is", "package"], cells),
-            "`rocking mechanisms NAME` lists the fields of one, `rocking new NAME` prints a file to start from. Loads, "
-            "ties and supports hang on any of them: `rocking mechanisms loads`, `ties`, `interlock`, `crushing`.",
+            Table("Mechanisms", ["mechanism", "description", "package"], cells),
+            "`rocking mechanisms NAME` lists the fields of a mechanism and `rocking new NAME` prints a file to start "
+            "from. Loads, ties and supports can be added to any mechanism: see `rocking mechanisms loads`, `ties`, "
+            "`interlock`, `crushing`.",
         ],
     )
 
@@ -66,8 +67,8 @@ def view(cls: type[Mechanism], package: str) -> View:
     taken = "; ".join(", ".join(units) for units in kinds)
     parts: list[Table | str] = [
         Table(f"{cls.mechanism}: {cls.title}", COLUMNS, _cells(rows)),
-        f"A bare number is in the unit of its field; taken with their unit, as in 800 mm: {taken}.",
-        f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'by nobody yet'}"
+        f"A number without a unit is in the unit of its field. Accepted units, as in 800 mm: {taken}.",
+        f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'not yet'}"
         + (f"\ncaution:  {cls.caution}" if cls.caution else ""),
     ]
     return View(data, parts)
@@ -78,13 +79,13 @@ PARTS: dict[str, tuple[str, dict[str, type[BaseModel]]]] = {
     "ties": ("a tie, one of the list `ties` of any mechanism", {"": Tie, "from, to, path": Place, "bed": Face}),
     "crushing": ("the strength of pivots, `crushing` of single bodies and walls", {"": Crushing}),
     "interlock": ("the friction of crossing walls, `interlock` of any mechanism", {"": Interlock}),
-    "strength": ("what contacts bear, `strength` of any mechanism", {"": Strength}),
+    "strength": ("the strength of contacts, `strength` of any mechanism", {"": Strength}),
 }
-"""What hangs on any mechanism, by the field it is given in."""
+"""Attachments available for every mechanism, by field."""
 
 
 def part(name: str) -> View:
-    """The fields of what hangs on a mechanism: of `PARTS`."""
+    """Show the fields of an attachment, one of `PARTS`."""
     title, models = PARTS[name]
     tables: list[Table | str] = []
     data: dict[str, Any] = {"part": name, "title": title, "fields": {}}
@@ -171,7 +172,7 @@ def _told(verdicts: Sequence[Verdict]) -> Iterator[str]:
         if each.why is None:
             yield f"passes  {each.meaning}"
         elif each.why in told:
-            yield f"FAILS   {each.meaning} The same error."
+            yield f"FAILS   {each.meaning} Same error as above."
         else:
             told.add(each.why)
             yield f"FAILS   {each.meaning} {_in_a_line(each.why)}"

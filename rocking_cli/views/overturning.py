@@ -37,22 +37,24 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
     curves = [unit * curve for curve in (found.least(*FALLS), found.least(Region.WITHOUT_IMPACT), found.safe_again)]
     what, amplitude = ("omega", "a") if dimensionless else ("T [s]", "a_g [g]")
     rows = [[f"{across[k]:.3g}", *(_cell(curve[k]) for curve in curves)] for k in _some(across.size)]
-    heads = [what, "overturns\nfrom", "without\nimpact from", "yet not\nat"]
+    heads = [what, "overturns\nfrom", "without\nimpact from", "survives\nagain at"]
     source = "" if found.structure.eta_given else FROM_KINEMATICS
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     parts: list[Table | str] = [
-        f"{map_title(found)}{source}: amplitudes {amplitude} over {what}",
+        f"{map_title(found)}{source}: amplitudes {amplitude} against {what}",
         Table("", heads, rows, numbers=range(1, 4)),
-        f"Of the pulses on the map: {shares}.",
+        f"Shares of the pulses on the map: {shares}.",
     ]
     if not (found.outcome.peak_ratio != 0).any():
-        parts.append(f"No pulse of the map lifts it: the largest has a = {found.a.max():.4g}, uplift needs a > 1.")
+        parts.append(
+            f"No pulse on the map causes uplift: the largest has a = {found.a.max():.4g}, and uplift requires a > 1."
+        )
     step = unit * (found.a[1] - found.a[0])
-    parts.append(f"Amplitudes are read off the map, to its step of {step:.2g}{'' if dimensionless else ' g'}.")
+    parts.append(f"Amplitudes are read from the map, whose step is {step:.2g}{'' if dimensionless else ' g'}.")
     if not np.isnan(found.safe_again).all():
         parts.append(
-            "Stronger is not always worse: 'yet not at' is the largest amplitude that does not overturn it, though a "
-            "smaller one does."
+            "Stronger is not always worse: 'survives again at' is the largest amplitude that does not overturn the "
+            "structure although a smaller one does."
         )
     return View(_map_data(found, mechanism, dimensionless=dimensionless), parts)
 
@@ -142,7 +144,7 @@ def _cell(value: float) -> str:
 
 
 def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
-    """The least amplitudes that overturn each of several structures, and which of them goes first."""
+    """The least amplitudes that overturn each of several structures, and which of them overturns first."""
     firsts = _firsts(found)
     rows = [
         [f"{found.periods[k]:.3g}", *(_cell(least[k]) for least in found.least), _goes_first(firsts[k])]
@@ -151,7 +153,7 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
     heads = [each.name.replace(" ", "\n") for each in found.structures]
     parts: list[Table | str] = [
         f"Least a_g [g] that overturns: {comparison_title(found)}",
-        Table("", ["T [s]", *heads, "goes first"], rows, numbers=range(1, len(heads) + 1)),
+        Table("", ["T [s]", *heads, "overturns first"], rows, numbers=range(1, len(heads) + 1)),
     ]
     counts = Counter(tuple(together) for together in firsts if together)
     if counts:
@@ -159,22 +161,22 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
             f"{_together(tied)} at {100 * counts[tied] / len(firsts):.0f} %"
             for tied in sorted(counts, key=lambda tied: len(tied) > 1)
         )
-        parts.append(f"Goes first, overturned by the least amplitude: {said} of the periods.")
+        parts.append(f"Overturned by the smallest amplitude: {said} of the periods.")
     if np.isnan(found.least).any():
-        parts.append(f"{ABSENT}: no amplitude up to {found.top:.4g} g {OVERTURNS} it.")
+        parts.append(f"{ABSENT}: no amplitude up to {found.top:.4g} g {OVERTURNS} the structure.")
     low = [each.name for each in found.structures if found.top * STANDARD_GRAVITY <= each.unit]
     if low:
-        parts.append(f"Not even {found.top:.4g} g lifts {', '.join(low)}.")
+        parts.append(f"{found.top:.4g} g, the largest amplitude tried, does not uplift {', '.join(low)}.")
     return View(_comparison_data(found, mechanisms), parts)
 
 
 def comparison_title(found: Comparison) -> str:
-    """What the structures compared are shaken by, and how they are followed."""
+    """Return the pulses and the model of a comparison, as a heading."""
     return f"{_pulse(found)}, {found.structures[0].model.name}"
 
 
 def _firsts(found: Comparison) -> list[list[str]]:
-    """The names of those that go first at each period: none, one, or several that are tied."""
+    """Return the names of the structures that overturn first at each period: none, one, or several that are equal."""
     return [
         [each.name for each, goes in zip(found.structures, column, strict=True) if goes]
         for column in found.firsts.T.tolist()
@@ -210,4 +212,4 @@ def _together(names: Sequence[str]) -> str:
 
 
 def _goes_first(names: Sequence[str]) -> str:
-    return (names[0] if len(names) == 1 else "a tie") if names else ABSENT
+    return (names[0] if len(names) == 1 else "several equal") if names else ABSENT

@@ -53,7 +53,7 @@ PARAMETERS = (
         "rad/s",
         "p",
         "frequency parameter: small for large structures",
-        "Frequency parameter. Near φ_cr a tilt grows as exp(p t) with time t. Large structures have a small p.",
+        "Frequency parameter. Near φ_cr the rotation grows as exp(p t) with time t. Large structures have a small p.",
         lambda block: block.p,
     ),
     Parameter(
@@ -61,7 +61,7 @@ PARAMETERS = (
         "rad",
         "φ_cr",
         "critical rotation: unstable equilibrium",
-        "Critical rotation. Tilted so far, the structure is in balance; tilted further, its weight overturns it.",
+        "Critical rotation. The structure is in unstable equilibrium there; beyond it, its weight overturns it.",
         lambda block: block.phi_cr,
     ),
     Parameter(
@@ -69,15 +69,15 @@ PARAMETERS = (
         "g",
         "λ",
         "ground acceleration at uplift",
-        "Uplift acceleration. A steady ground acceleration above λ times the structure's gravity g lifts it.",
+        "Uplift acceleration. A steady ground acceleration above λ times the structure's gravity g causes uplift.",
         lambda block: block.lambda_,
     ),
     Parameter(
         "lambda_lin",
         "g",
         "λ_lin",
-        "the same for the linearised mechanism",
-        "Uplift acceleration of the linearised mechanism. Where it differs much from λ the structure is not slender.",
+        "uplift acceleration of the linearised mechanism",
+        "Uplift acceleration of the linearised mechanism. If it differs much from λ, the structure is not slender.",
         lambda block: block.lambda_lin,
     ),
     Parameter(
@@ -93,7 +93,8 @@ PARAMETERS = (
         "",
         "κ₂",
         "phi/theta that keeps lambda",
-        "The same scaling, φ = κ₂ θ, chosen to keep λ, the true uplift acceleration.",
+        "Scaling φ = κ₂ θ from the rotation θ of the equivalent block to φ, chosen to keep λ, the true uplift "
+        "acceleration.",
         lambda block: block.kappa2,
     ),
     Parameter(
@@ -117,14 +118,15 @@ PARAMETERS = (
         "",
         "η",
         "restitution of an impact ending this direction",
-        "Restitution. Rate of rotation just after an impact ending motion in this direction, over that just before.",
+        "Coefficient of restitution: rate of rotation just after an impact that ends motion in this direction, over "
+        "the rate just before.",
         lambda block: block.eta,
     ),
     Parameter(
         "v_imp",
         "m/s",
         "v_imp",
-        "velocity step that just overturns it",
+        "ground velocity step that just overturns it",
         "Velocity step of the ground that just overturns the structure from rest, without linearisation.",
         lambda block: block.v_imp,
     ),
@@ -141,7 +143,7 @@ PARAMETERS = (
         "kg m",
         "G_eq",
         "linearised restoring moment over g",
-        "How fast the restoring moment over g falls with rotation at φ_cr.",
+        "Rate at which the restoring moment over g decreases with rotation at φ_cr.",
         lambda block: block.G_eq,
     ),
     Parameter(
@@ -156,5 +158,5 @@ PARAMETERS = (
 
 
 def values(block: EquivalentBlock) -> dict[str, float]:
-    """All of one block, by their keys."""
+    """Return the parameters of a block, by key."""
     return {each.key: each.of(block) for each in PARAMETERS}

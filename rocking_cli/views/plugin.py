@@ -23,4 +23,4 @@ def view(name: str, folder: str, files: Mapping[str, str], commands: Sequence[st
     """
     data = {"plugin": name, "folder": folder, "files": list(files), "commands": list(commands)}
     rows = [[file, what] for file, what in files.items()]
-    return View(data, [Table(f"{folder}: the mechanism {name}, to make your own", ["file", "what it is"], rows)])
+    return View(data, [Table(f"{folder}: template of the mechanism {name}", ["file", "description"], rows)])

@@ -20,7 +20,7 @@ def in_words(motion: GroundMotion) -> str:
 
 
 def data(motion: GroundMotion) -> dict[str, Any]:
-    """The steps in their order, as they would be asked for again, and of a floor the peak of its own motion [g]."""
+    """Return the steps in order, as they would be given again, and for a floor the peak of its own motion [g]."""
     found: dict[str, Any] = {"processing": list(motion.processing)}
     if motion.ground is not None:
         found["floor_pga"] = motion.pga

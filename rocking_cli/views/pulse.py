@@ -51,20 +51,24 @@ def closed_data(closed: ClosedForm, exact: ExactResponse) -> dict[str, Any]:
 
 
 def how_far_off(closed: ClosedForm, exact: ExactResponse) -> str:
-    """What Eq. 41 says beside the exact answer, after what it may be used for; nothing where they agree."""
+    """Compare Eq. 41 with the exact solution, as the end of a sentence; empty if they agree."""
     printed, overturns, peak = closed.printed_ratio, exact.overturned, exact.peak_ratio
     if closed.valid and closed.overturns != overturns:
-        return f": by Eq. 41 it {_fate(closed.overturns)}, exactly it {_fate(overturns)}"
+        return f"; by Eq. 41 it {_fate(closed.overturns)}, but by the exact solution it {_fate(overturns)}"
     if overturns:
-        return "" if printed is None else f": Eq. 41 would give {printed:.4g}, and exactly it {_fate(overturns)}"
+        return (
+            ""
+            if printed is None
+            else f"; Eq. 41 would give {printed:.4g}, but by the exact solution it {_fate(overturns)}"
+        )
     if printed is None:
-        return "" if closed.valid else f": Eq. 41 gives no rotation here, the exact one is {peak:.4g}"
+        return "" if closed.valid else f"; Eq. 41 gives no rotation here, the exact largest rotation is {peak:.4g}"
     if abs(printed - peak) < 1e-9:
         return ""
     off = percent(abs(printed - peak) / peak) if peak > 0 else f"{printed:.4g}"
-    first = ": it gives the first rebound only, and" if closed.valid else ":"
+    first = "; it gives the first rebound only, and" if closed.valid else ";"
     what = f"{off} too {'high' if printed > peak else 'low'}"
-    return f"{first} the largest rotation is {peak:.4g}, Eq. 41 says {printed:.4g}, {what}"
+    return f"{first} the largest rotation is {peak:.4g}, Eq. 41 gives {printed:.4g}, {what}"
 
 
 def _fate(overturns: bool | None) -> str:
@@ -99,7 +103,7 @@ def _exact_rows(exact: ExactResponse) -> list[list[str]]:
     return [
         ["exact max ratio", number(exact.peak_ratio), "largest rotation over phi_cr"],
         ["  first excursion", number(exact.first_excursion), "peak before the first impact"],
-        ["  first rebound", number(exact.first_rebound), "peak after it"],
+        ["  first rebound", number(exact.first_rebound), "peak after the first impact"],
         ["  overturns", YES_NO[exact.overturned], after_impacts(exact)],
         ["  uplift", number(exact.uplift_time), "tau = p t from the start of the pulse"],
         ["  end of pulse", number(exact.pulse_end - exact.uplift_time), "tau from uplift"],
@@ -129,10 +133,10 @@ def _verdict(a: float, closed: ClosedForm | None, exact: ExactResponse) -> str:
         else f"{names.ROCKS} to {exact.peak_ratio:.4g} of its critical rotation"
     )
     if closed is None:
-        trust = "There is no closed form for this shape: Eqs. 41-42 are for a full sine"
+        trust = "No closed form exists for this shape: Eqs. 41-42 apply to a full sine"
     else:
-        use = "All conditions hold, the closed form can be used"
-        trust = use if closed.valid else f"Do not use the closed form here, {closed.reason}"
+        use = "All conditions are met: the closed form can be used"
+        trust = use if closed.valid else f"Do not use the closed form here: {closed.reason}"
         if closed.valid and exact.first_excursion > 1 and isnan(exact.first_rebound):
             trust += "; the block passes its critical rotation before its first impact"
         else:

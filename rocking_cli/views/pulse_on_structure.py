@@ -36,7 +36,7 @@ def view(
     pulse : Pulse
         As it is given.
     answers : mapping of int to mapping of str to Answer
-        What the models say under each polarity asked for, 1 or -1.
+        The responses of the models under each polarity to be analysed, 1 or -1.
     closed : mapping of str to ClosedForm
         Eqs. 41-42 with each kappa, beside the answers under the first polarity; empty where they do not apply.
     """
@@ -65,7 +65,7 @@ def view(
     columns = ["direction", "omega", "a\nkappa1", "a\nkappa2", "eta"]
     parts: list[Table | str] = [Table(f"{heading(mechanism)}, {pulse}", columns, rows, numbers=range(1, 5))]
     for sign, found in answers.items():
-        title = f"Polarity {sign}: {'as it is' if sign > 0 else 'reversed'}"
+        title = f"Polarity {sign}: {'as given' if sign > 0 else 'reversed'}"
         parts += ["", _answer_table(title, found), _verdict(found)]
     unfit = uplift_error(equivalence)
     if grade(unfit) is Grade.DISREGARD:
@@ -76,7 +76,7 @@ def view(
     elif any(form.conditions["uplift"] for form in closed.values()):
         parts += _closed_parts(closed, first)
     else:
-        parts.append(f"No closed form: by the equivalent blocks it {names.NO_UPLIFT} (a <= 1).")
+        parts.append(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1).")
     return View(data, [*parts, restitution_used(structure)])
 
 
@@ -185,17 +185,17 @@ def _beside(
 def _trust(closed: ClosedForm, exact: ExactResponse) -> str:
     if not closed.conditions["uplift"]:
         return f"it {names.NO_UPLIFT} (a <= 1)."
-    use = "all conditions hold, the closed form can be used"
-    said = use if closed.valid else f"do not use the closed form here, {closed.reason}"
+    use = "all conditions are met, so the closed form can be used"
+    said = use if closed.valid else f"do not use the closed form here, because {closed.reason}"
     return f"{said}{how_far_off(closed, exact)}."
 
 
 def _why_no_closed_form(mechanism: Mechanism, pulse: Pulse) -> str:
     if not mechanism.rocks_both_ways:
-        return "No closed form, and no exact answer: both are of a structure that rocks on to the other side."
+        return "No closed form and no exact solution: both require a structure that rocks through to the other side."
     if pulse.name != "sine":
-        said = "No closed form: Eqs. 41-42 are for a full sine."
+        said = "No closed form: Eqs. 41-42 apply to a full sine."
         if not pulse.segments():
-            said += " This pulse has no exact answer either: the linear models are followed on a sampled one."
+            said += " This pulse has no exact solution either: the linear models are simulated under the sampled pulse."
         return said
-    return "No closed form: Eqs. 41-42 are for a structure that rocks alike in both directions."
+    return "No closed form: Eqs. 41-42 apply to a structure with the same properties in both directions."

@@ -14,12 +14,12 @@ from rocking_cli.views.view import ABSENT, Table, View, number
 
 
 def with_quantiles(shown: View, found: Sequence[Quantiles], *, in_words: bool) -> View:
-    """What was found of a study with the quantiles: as data always, and as tables if they are asked for."""
+    """What was found of a study with the quantiles: as data always, and as tables if `in_words`."""
     assert isinstance(shown.data, Mapping)
     tables = [part for each in found for part in _tables(each)] if in_words else []
     note = (
-        "Quantiles are of the peak phi/phi_cr. Of all runs, those without uplift count as 0, those that overturn as "
-        f"the largest: '{OVERTURNS}' where the quantile is one."
+        "Quantiles of the peak phi/phi_cr. For all runs, a run without uplift counts as 0 and an overturning run "
+        f"ranks above every finite peak; '{OVERTURNS}' marks quantiles that are such runs."
     )
     parts = [*shown.parts, *tables, *([note] if tables else [])]
     return View({**shown.data, "quantiles": [_data(each) for each in found]}, parts)
@@ -27,7 +27,7 @@ def with_quantiles(shown: View, found: Sequence[Quantiles], *, in_words: bool) -
 
 def _tables(found: Quantiles) -> Iterator[Table | str]:
     """Those that rock and stand with the shares of the others, and all runs: in one they are wider than a terminal."""
-    over = f"over {label(found.measure)}{'' if found.stripes else ', in tenths'}"
+    over = f"against {label(found.measure)}{'' if found.stripes else ', in tenths'}"
     shares = [f"{100 * share:g} %" for share in SHARES]
     rocking = [
         [
@@ -41,7 +41,7 @@ def _tables(found: Quantiles) -> Iterator[Table | str]:
     ]
     names = [label(found.measure), "runs", "no\nuplift", "over-\nturned", *(f"rocking\n{share}" for share in shares)]
     yield ""
-    yield Table(f"{found.structure}: how far it rocks, {over}", names, rocking, numbers=range(len(names)))
+    yield Table(f"{found.structure}: peaks of the runs that rock, {over}", names, rocking, numbers=range(len(names)))
     every = [[number(each.x, 4), *(_ratio(value) for value in each.every)] for each in found.groups]
     names = [label(found.measure), *shares]
     yield ""

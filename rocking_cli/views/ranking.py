@@ -1,4 +1,4 @@
-"""Which measures serve, as people and programs read it."""
+"""Ranking of intensity measures by how well they predict the response, as tables and as data."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NARROW = 12  # characters of a heading
 
 
 def added(shown: View, rankings: Sequence[Ranking]) -> View:
-    """What was found of a study, and which measures serve."""
+    """Add the rankings of the measures to the view of a study."""
     given = shown.data() if callable(shown.data) else shown.data
     data: Mapping[str, Any] = {**given, "ranking": [_data(each) for each in rankings]}
     return View(data, [*shown.parts, *(part for each in rankings for part in parts(each))])
@@ -29,14 +29,14 @@ def parts(ranking: Ranking) -> Iterator[Table | str]:
     limits = list(ranking.measures[0].dispersions) if ranking.measures else []
     columns = ["measure", "efficiency", "practicality", "proficiency"]
     columns += [f"p\n{name}" for name in ranking.against]
-    columns += ["\n".join(["spread", *wrap(limit_name(limit), NARROW)]) for limit in limits]
+    columns += ["\n".join(["dispersion", *wrap(limit_name(limit), NARROW)]) for limit in limits]
     rows = [_row(each) for each in ranking.measures]
     yield ""
     if rows:
-        yield Table(f"{ranking.structure}: which measure serves", columns, rows, numbers=range(1, len(columns)))
+        yield Table(f"{ranking.structure}: which measure predicts best", columns, rows, numbers=range(1, len(columns)))
     yield " ".join(judge(ranking))
     if ranking.alike:
-        yield "; ".join(f"{name} ranks as {other}" for name, other in ranking.alike.items()) + "."
+        yield "; ".join(f"{name} ranks equal to {other}" for name, other in ranking.alike.items()) + "."
     for name, why in ranking.left_out.items():
         yield f"{name} is left out: {why}."
 

@@ -26,7 +26,7 @@ BESIDE = 3  # blanks between columns
 class Examined(NamedTuple):
     """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses.
 
-    `label` is what to call it: of both polarities the reversed one says so. `asked` are measures that were asked for by
+    `label` is what to call it: of both polarities the reversed one says so. `asked` are measures requested by
     name, `spectrum` its response spectrum.
     """
 

@@ -129,10 +129,10 @@ def verdict(results: Results) -> str:
         for side, limit, mask in (("below", low, found.too_low), ("above", high, found.too_high))
         if mask.any()
     ]
-    best = "No set fits" if found.exact else "No set that fits was found"
+    best = "No set fits" if found.exact else "No set within the limits was found"
     nearest = "record" if count == 1 else "set"
     return (
-        f"{best}. {whose} of the nearest {nearest} lies {range_}: it is {', and '.join(missed)}. More records to "
+        f"{best}. {whose} of the nearest {nearest} lies {range_}: that is {', and '.join(missed)}. More records to "
         "choose from, a larger set, a narrower band or wider limits on the factors may help."
     )
 
@@ -141,11 +141,11 @@ def search(results: Results) -> str:
     """How the set was found, and how good it is therefore."""
     found = results.found
     if found.exact:
-        one = "the only set there is" if found.sets == 1 else f"the best of all {found.sets:,} sets"
-        return f"It is {one}."
+        one = "the only possible set" if found.sets == 1 else f"the best of all {found.sets:,} sets"
+        return f"This is {one}."
     return (
-        f"It is the best found by {STARTS} searches among {_large(found.sets)} sets, too many to try them all: another "
-        "seed may find a better one."
+        f"This is the best set found by {STARTS} searches among {_large(found.sets)} sets, which are too many to try "
+        "all; another seed may find a better one."
     )
 
 
@@ -203,7 +203,7 @@ def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
         first, last = f"{periods[start]:.3g}", f"{periods[end - 1]:.3g}"
         said.append(f"at {first} s" if first == last else f"from {first} to {last} s")
     if len(said) > SPANS:
-        said = [*said[:SPANS], f"over {len(said) - SPANS} more stretches"]
+        said = [*said[:SPANS], f"in {len(said) - SPANS} more ranges"]
     return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
 
 
@@ -222,14 +222,12 @@ def _left_out(results: Results) -> str:
 
 
 def _silent(results: Results) -> str:
-    """How many records do not say of what there may be one."""
+    """Return a sentence on the records whose file names no earthquake or station."""
     found = results.found
     if not found.silent:
         return ""
     what = {"event": "earthquake", "station": "station"}[found.wanted.one_per]
     count, those = len(found.candidates.motions), found.silent
-    does, they = (
-        ("does", "it is, and counts as one of its own") if those == 1 else ("do", "they are, and count as one each")
-    )
+    gives, each = ("gives", "it") if those == 1 else ("give", "each")
     whose = "The record" if count == 1 else f"{those} of {count} records"
-    return f"{whose} {does} not say of which {what} {they}."
+    return f"{whose} {gives} no {what}; {each} counts as a separate {what}."

@@ -38,7 +38,7 @@ class Shown(NamedTuple):
     watched : Watched or None
         Points and ties, whose movement is shown.
     contacts : mapping of int to Contact
-        What the nonlinear history asks of its contacts, by polarity.
+        Contact demands of the nonlinear history, by polarity.
     mechanism : Mechanism or None
         The structure that they are of.
     etas : tuple of float, or None
@@ -51,13 +51,13 @@ class Shown(NamedTuple):
     mechanism: Mechanism | None = None
 
     def contact(self, polarity: int, name: ModelName) -> dict[str, Any] | None:
-        """What the history of a model asks of its contacts; None of a linear one, which knows of no joints."""
+        """Return the contact demands of a history; None for a linear model, which has no joints."""
         if name != "nonlinear" or polarity not in self.contacts or self.mechanism is None:
             return None
         return contact_data(self.contacts[polarity], self.mechanism)
 
     def contact_words(self, polarity: int) -> list[str]:
-        """A sentence on that, if there is anything to say."""
+        """Return the contact demands as sentences, if there are any."""
         if polarity not in self.contacts or self.mechanism is None:
             return []
         said = contact_words(self.contacts[polarity], self.mechanism)
@@ -266,7 +266,7 @@ def view(
         of_pulse = shown._replace(contacts=checked)
         data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, of_pulse)}
         parts = _tables(f"{title}, under the record", found.runs, found.neighbours, shown)
-        alone = f"{title}, under the {found.fit.pulse.title} in it alone"
+        alone = f"{title}, under the {found.fit.pulse.title} alone"
         parts += ["", *_tables(alone, {1: found.to_pulse}, {}, of_pulse)]
         parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse, found.fit.pulse.title))
     first = next(iter(found.runs.values()))
@@ -279,14 +279,13 @@ def view(
 
 
 def _apart(shown: Shown, runs: Runs) -> Iterator[str]:
-    """That blocks of crossing walls have slid out of one another, where they have."""
+    """Warn if blocks of crossing walls have slid out of one another."""
     interlock = shown.watched.mechanism.interlock if shown.watched is not None else None
     every = [run for histories in runs.values() for run in histories.values()]
     if shown.watched is not None and interlock is not None and any(map(shown.watched.is_torn_apart, every)):
         yield (
-            "where the crossing walls hold it, it moves by more than their overlap of "
-            f"{1000 * interlock.overlap:.0f} mm: by then their blocks are apart, and the friction that this answer "
-            "counts on is gone. It does not hold."
+            f"at the crossing walls the structure moves by more than their overlap of {1000 * interlock.overlap:.0f} "
+            "mm: the blocks have then separated and the friction assumed here is lost. The result is not valid."
         )
 
 
@@ -353,7 +352,7 @@ def _impact_table(title: str, history: History, etas: tuple[float, float]) -> li
     ]
     table = Table(title, ["time [s]", "ends motion", "before [rad/s]", "after [rad/s]"], rows, numbers=(0, 2, 3))
     more = history.impact_count - FIRST
-    return [table, f"{more} more follow: JSON lists them"] if more > 0 else [table]
+    return [table, f"{more} more impacts follow: the JSON output lists them"] if more > 0 else [table]
 
 
 def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> str:
@@ -361,10 +360,8 @@ def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> st
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     whole, alone = histories[model], to_pulse[model]
     if whole.overturned or alone.overturned or (whole.peak_ratio and not alone.peak_ratio):
-        return (
-            f"By the {model} model it {whole.words} under the record; under the {called} in it alone it {alone.words}."
-        )
+        return f"By the {model} model, it {whole.words} under the record; under the {called} alone it {alone.words}."
     if not whole.peak_ratio:
-        return f"By the {model} model it {whole.words} under the record."
+        return f"By the {model} model, it {whole.words} under the record."
     share = 100 * alone.peak_ratio / whole.peak_ratio
-    return f"By the {model} model the {called} alone rocks it to {share:.3g} % of its peak under the record."
+    return f"By the {model} model, the {called} alone causes {share:.3g} % of the peak rotation under the record."

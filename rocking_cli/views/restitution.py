@@ -25,12 +25,12 @@ def restitution_data(structure: Prepared) -> dict[str, Any]:
 
 
 def restitution_used(structure: Prepared) -> str:
-    """A sentence on that."""
+    """Return a sentence on the restitution that the histories used."""
     source = restitution_source(structure.mechanism)
     if not structure.mechanism.rocks_both_ways:
-        how = "as given" if source == "given" else "by Housner's impacts in sequence, not measured"
+        how = "as given" if source == "given" else "computed from a sequence of impacts after Housner, not measured"
         return (
-            f"It rocks in the {structure.mechanism.one_sided} direction only: an impact throws it back with "
-            f"{structure.etas[0]:.4g} of its rate, {how}."
+            f"It rocks in the {structure.mechanism.one_sided} direction only: the rebound from the side walls is "
+            f"{structure.etas[0]:.4g} of the rate before the impact, {how}."
         )
     return restitution_in_words(structure.etas, given=source == "given")

@@ -28,7 +28,7 @@ class Several:
     structure : Prepared
         What is shaken.
     models : tuple of str
-        The models followed.
+        The models simulated.
     """
 
     def __init__(self, structure: Prepared, models: Sequence[ModelName]) -> None:
@@ -45,7 +45,7 @@ class Several:
         self._contacts: dict[str, Contact] = {}
 
     def add(self, found: Answer) -> None:
-        """Take up what became of it under one motion."""
+        """Add the response to one motion."""
         assert found.given is not None
         pga = f"{abs(found.given.factor) * found.given.motion.of_ground.pga:.4g}"
         severities = []
@@ -77,16 +77,16 @@ class Several:
             rows = [row[:-2] for row in rows]
         yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
         fallen = f"{self._fallen} of {len(self._worst)} motions overturn it" if self._fallen else ""
-        yield f"By the {self._best} model {fallen or f'none of {len(self._worst)} motions overturns it'}."
+        yield f"By the {self._best} model, {fallen or f'none of {len(self._worst)} motions overturns it'}."
         if self._around is not None:
-            yield f"Neighbours: {self._around.count} motions next to each, {self._around.words}."
+            yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {self._around.words}."
         yield governing(self._worst)
         yield from self._joints()
         yield from models_used(self._models)
         yield self._restitution
 
     def _joints(self) -> Iterator[str]:
-        """What the motions ask of the joints: of those under which they do not hold, else of the one that asks most."""
+        """Yield the contact demands under which the joints do not hold, else those of the most demanding motion."""
         fail = {name: found for name, found in self._contacts.items() if not found.holds}
         asks = {name: found for name, found in self._contacts.items() if found.friction_needed >= 0}
         if not fail and asks:

@@ -18,13 +18,13 @@ from rocking_cli.views.overturning import FROM_KINEMATICS, numbers
 from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
-HUNG = "Lengths are scaled, and where loads and ties are; their masses, stiffness and forces are not."
-LISTED = 3  # histories that could not be followed
+HUNG = "All lengths are scaled, including the positions of loads and ties; their masses, stiffness and forces are not."
+LISTED = 3  # histories that could not be simulated
 
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """Spectra, the motions they are of, the fractiles to show (0.5 among them), and the polarity as asked for."""
+    """Spectra, the motions they are of, the fractiles to show (0.5 among them), and the polarity as given."""
 
     spectra: Sequence[Spectrum]
     motions: Sequence[Scaled]
@@ -51,7 +51,7 @@ def view(results: Results) -> View:
     said = [_verdict(results, each) for each in results.spectra]
     if any(each.shape.slenderness is None for each in results.spectra):
         said.append(
-            "Scale: the structure with all its lengths times this. The larger, the smaller its frequency parameter p."
+            "Scale multiplies all lengths of the structure. Larger structures have a smaller frequency parameter p."
         )
     if any(each.shape.hung for each in results.spectra):
         said.append(HUNG)
@@ -73,12 +73,12 @@ def _all(results: Results) -> dict[str, Any]:
 
 
 def title(results: Results) -> str:
-    """What the spectra are under, and how the structures are followed."""
+    """Return the motions and the model of the spectra, as a heading."""
     return f"{results.shaking}, {results.spectra[0].shape.structure.model.name}"
 
 
 def lost(results: Results) -> str:
-    """Which responses could not be followed; nothing if all were."""
+    """List the responses that could not be simulated; empty if all could."""
     found = [
         f"{each.shape.structure.name} at 2 pi/p = {each.periods[k]:.4g} s under {results.motions[m].motion.name}"
         for each in results.spectra
@@ -89,7 +89,7 @@ def lost(results: Results) -> str:
     more = f" and {len(found) - LISTED} more" if len(found) > LISTED else ""
     every = sum(each.peak_ratio.size for each in results.spectra)
     return (
-        f"{len(found)} of {every} responses could not be followed and are left out: {'; '.join(found[:LISTED])}{more}"
+        f"{len(found)} of {every} responses could not be simulated and are left out: {'; '.join(found[:LISTED])}{more}"
     )
 
 
@@ -181,11 +181,11 @@ def _curve(results: Results, each: Spectrum) -> Iterator[Table | str]:
     if each.shape.own is not None:
         ends = (f"at {each.uplifts[k]:.4g} g at scale {each.scales[k]:.3g}" for k in (0, -1))
         yield (
-            "Masses or loads that do not grow with it change how it rocks: every size was built and followed by itself."
-            f" Uplift is {' and '.join(ends)}."
+            "Masses or loads that do not scale with the structure change how it rocks, so every size was built and "
+            f"simulated separately. Uplift is {' and '.join(ends)}."
         )
     if not results.one:
-        yield "Median and fractiles of the peak phi/phi_cr; overturning counts as larger than any."
+        yield "Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak."
     yield Table("", heads, rows, numbers=range(len(heads)))
 
 
@@ -212,13 +212,13 @@ def _itself(results: Results, each: Spectrum) -> str:
     peaks = each.peak_ratio[:, each.given]
     if results.one:
         if np.isnan(peaks[0]):
-            return "its motion could not be followed"
+            return "its motion could not be simulated"
         if np.isinf(peaks[0]):
             return f"it {OVERTURNS}"
         return f"it {ROCKS} to {peaks[0]:.3g} of phi_cr" if peaks[0] else f"it {NO_UPLIFT}"
     falls, count = np.flatnonzero(np.isinf(peaks)), np.count_nonzero(~np.isnan(peaks))
     if not count:
-        return "no motion could be followed"
+        return "no motion could be simulated"
     names = shorten(", ".join(results.motions[k].motion.name for k in falls.tolist()), 90, placeholder=" ...")
     median = float(each.fractile(0.5)[each.given])
     said = f"{falls.size} of {count} motions overturn it ({names})" if falls.size else f"none of {count} overturns it"
@@ -257,7 +257,7 @@ def _blocks(results: Results, each: Spectrum) -> str:
 def _most(falls: Integers, of: Integers, names: Sequence[str]) -> str:
     """How many motions overturn a size at most, and above which size none does."""
     worst, last = int(np.argmax(falls / np.maximum(of, 1))), int(np.flatnonzero(falls)[-1])
-    said = f"at most {falls[worst]} of {of[worst]} motions overturn one, at {names[worst]}"
+    said = f"at most {falls[worst]} of {of[worst]} motions overturn any one size, at {names[worst]}"
     if last == len(names) - 1:
         return said
-    return f"{said}, and none {'overturns a larger one' if worst == last else f'does above {names[last]}'}"
+    return f"{said}, and none {'overturns a larger size' if worst == last else f'does above {names[last]}'}"

@@ -18,11 +18,14 @@ TOP = 20
 NAME = 30  # characters of a name in the table
 BLOCK = 10_000  # rows of a file written at a time
 FORMULA = ("=", "+", "-", "@")
-"""What a text begins with that a spreadsheet would take for a formula."""
+"""First characters of a text that a spreadsheet would read as a formula."""
 RANKED = {
-    "lambda": "by the ground acceleration that lifts them",
-    "ratio": "by what the code of the site allows over what it asks for: those below 1 do not pass",
-    "response": "by the share of motions that overturn them, then by the largest peak of the others, then by uplift",
+    "lambda": "by ground acceleration at uplift",
+    "ratio": "by the ratio of capacity to demand under the code of the site; structures with ratios below 1 fail",
+    "response": (
+        "by the share of motions that overturn them, then by the largest peak under the others, then by uplift "
+        "acceleration"
+    ),
 }
 
 
@@ -107,7 +110,7 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_sprea
 
 
 def headings(found: Survey) -> list[str]:
-    """Those of `cells`."""
+    """Return the headings of the columns of `cells`."""
     shaken = ["overturn\nit", "largest\npeak"] if found.motions else []
     ratio = ["ratio"] if found.by == "ratio" else []
     return ["rank", "name", "mechanism", *ratio, *shaken, "lambda", "p\n[rad/s]", "phi_cr\n[rad]", "kappa2", "eta"]
@@ -154,29 +157,30 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
     rows, many = found.rows, len(found.rows)
     said = [f"Ranked {RANKED[found.by]}."]
     if top is not None and many > top:
-        said[0] = f"Shown are {top} of {many:,}, ranked {RANKED[found.by]}."
+        said[0] = f"Showing {top} of {many:,}, ranked {RANKED[found.by]}."
     if found.motions:
         under = [each.under for each in rows if each.under is not None]
         falls = sum(each.overturned > 0 for each in under)
         lifts = sum(each.overturned > 0 or each.peak_ratio > 0 for each in under)
         motions = f"the {len(found.motions)} motions" if len(found.motions) > 1 else found.motions[0]
         said.append(
-            f"Under {motions}, by the nonlinear model, {lifts:,} of {many:,} uplift and {falls:,} overturn. A peak is "
-            "the largest over the critical rotation, of the motions under which it stays up. One history is one "
-            "sample: `rocking respond` and `rocking margin` say how close it is."
+            f"Under {motions}, by the nonlinear model, {lifts:,} of {many:,} uplift and {falls:,} overturn. The peak "
+            "is the largest rotation over the critical rotation among the motions that do not overturn the "
+            "structure. One time history is one sample: use `rocking respond` and `rocking margin` to see how close "
+            "the result is."
         )
     without = [each for each in rows if each.no_block is not None]
     if without:
         said.append(
-            f"No single block is equivalent to {_named(without)}: there is a lambda, and no p; `rocking equiv` says "
-            "why."
+            f"{_named(without)}: no equivalent single block, so only lambda is given and not p; `rocking equiv` gives "
+            "the reason."
         )
     return said
 
 
 def _named(rows: Sequence[Surveyed], most: int = 3) -> str:
     names = ", ".join(cut(one_line(each.name), NAME) for each in rows[:most])
-    return names if len(rows) <= most else f"{len(rows):,} of them ({names}, ...)"
+    return names if len(rows) <= most else f"{len(rows):,} structures ({names}, ...)"
 
 
 def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:

@@ -7,7 +7,7 @@ from typing import Any
 from rocking_cli.views.mechanisms import fields
 
 LONG = 40  # characters of a field and its value, above which the comment stands
-UNITS = "A bare number is in the unit in brackets; 800 mm or 12 ft are read too."
+UNITS = "A number without a unit is in the unit in brackets; 800 mm or 12 ft is also accepted."
 
 
 def template(cls: Any) -> str:

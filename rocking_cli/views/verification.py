@@ -109,14 +109,14 @@ def _capacity(each: Verified, where: str) -> Table:
         ]
         if at.demand is not None:
             rows += [
-                [f"asked at {name}", number(at.demand), number(line.demand), "m", clause[f"S_De(T_{name})"]],
-                [f"d over it, {name}", number(at.ratio, 4), number(line.ratio, 4), "passes from 1", ""],
+                [f"demand at {name}", number(at.demand), number(line.demand), "m", clause[f"S_De(T_{name})"]],
+                [f"capacity/demand, {name}", number(at.ratio, 4), number(line.ratio, 4), "passes if >= 1", ""],
             ]
     return Table(f"{where}: capacity", ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
 
 
 def _methods(each: Verified) -> Table:
-    """What each method says that it can take."""
+    """Table of the capacity by each method."""
     known = any(method.return_period is not None for method in each.methods.values())
     rows = []
     for key, method in each.methods.items():
@@ -134,8 +134,8 @@ def _methods(each: Verified) -> Table:
                 governs,
             ]
         )
-    heads = ["", "a_g [g]\nexact", "straight\nline", "asked\n[g]", "zeta_E", *(["TR\n[years]"] if known else [])]
-    return Table("It can take", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
+    heads = ["", "a_g [g]\nexact", "straight\nline", "demand\n[g]", "zeta_E", *(["TR\n[years]"] if known else [])]
+    return Table("Capacity by method", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
 
 
 def _years(method: Method) -> str:
@@ -150,7 +150,7 @@ def _years(method: Method) -> str:
 
 def _records(found: Dynamic) -> Table:
     rows = [[each.name, *(_peak(d, found) for d in (each.with_confidence, each.without))] for each in found.records]
-    return Table("Histories: largest d [m]", ["record", "with FC", "without"], rows, numbers=(1, 2))
+    return Table("Time histories: largest d [m]", ["record", "with FC", "without"], rows, numbers=(1, 2))
 
 
 def _peak(d: float | None, found: Dynamic) -> str:

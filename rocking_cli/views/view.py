@@ -58,10 +58,10 @@ def heading(mechanism: Mechanism) -> str:
 
 
 def number(value: float | None, digits: int = 6) -> str:
-    """A number as people read it; a dash where there is none."""
+    """A number as people read it; a dash if it does not exist."""
     return ABSENT if value is None or isnan(value) else f"{value:.{digits}g}"
 
 
 def in_degrees(phi: float) -> str:
-    """A rotation [rad] as people read it [deg]; a dash where there is none."""
+    """A rotation [rad] as people read it [deg]; a dash if it does not exist."""
     return number(degrees(phi), 5)

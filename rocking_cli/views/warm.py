@@ -16,7 +16,7 @@ def view(folder: Path, found: Sequence[Compiled]) -> View:
     ]
     said = [
         f"{CALLED[each.kernel].replace('_', ' ')}: "
-        + ("were compiled already" if each.before else f"compiled in {each.seconds:.1f} s")
+        + ("already compiled" if each.before else f"compiled in {each.seconds:.1f} s")
         for each in found
     ]
     return View({"cache": str(folder), "kernels": kernels}, [*said, f"The machine code is kept in {folder}."])

@@ -40,9 +40,9 @@ class PulseShapes(Plugins[type[Pulse]]):
     def accept(loaded: object, point: EntryPoint) -> type[Pulse]:
         """What was loaded, if it is a complete shape of its name."""
         if not (isinstance(loaded, type) and issubclass(loaded, Pulse)) or loaded.__abstractmethods__:
-            raise MechanismError(f"{origin(point)} is no pulse shape: it must derive from Pulse and be complete")
+            raise MechanismError(f"{origin(point)} is not a pulse shape: it must derive from Pulse and be complete")
         if getattr(loaded, "name", None) != point.name or not isinstance(getattr(loaded, "title", None), str):
-            raise MechanismError(f"{origin(point)} is no pulse shape: it needs name = {point.name!r} and a title")
+            raise MechanismError(f"{origin(point)} is not a pulse shape: it needs name = {point.name!r} and a title")
         return loaded
 
 
@@ -70,7 +70,7 @@ def parse_pulse(text: str) -> Pulse:
     amplitude, unit = _quantity(text, words[0], "amplitude", form, tuple(UNITS))
     period, time = _quantity(text, words[1], "period", form, (*_TIMES, "Hz"))
     if time == "Hz" and period == 0:
-        raise InputError(f"pulse '{text}': a frequency of zero is no pulse")
+        raise InputError(f"pulse '{text}': the frequency must not be zero")
     seconds = 1 / period if time == "Hz" else period * _TIMES[time]
     rest = {}
     for field, word in zip(further, words[2:], strict=False):
@@ -81,7 +81,7 @@ def parse_pulse(text: str) -> Pulse:
 def _quantity(text: str, word: str, what: str, form: str, units: tuple[str, ...]) -> tuple[float, str]:
     match = _QUANTITY.fullmatch(word)
     if match is None:
-        raise InputError(f"pulse '{text}': '{word}' is no {what}: {form}")
+        raise InputError(f"pulse '{text}': '{word}' is not a valid {what}: {form}")
     unit = next((each for each in units if each.lower() == (match[2] or "").strip().lower()), None)
     if unit is None:
         found = f"unknown unit '{match[2].strip()}'" if match[2] else "no unit"

@@ -1,4 +1,4 @@
-"""The columns of a table: their names, which of them are times, which accelerations, and which one is asked for."""
+"""The columns of a table: their names, which are times, which accelerations, and which one is requested."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def choose(
     increases: Callable[[NDArray[np.float64]], bool],
     wanted: Wanted,
 ) -> Choice:
-    """Find the column that is asked for, or the only one with values of the kind that is wanted.
+    """Find the requested column, or the only one with values of the kind that is wanted.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def choose(
     Raises
     ------
     InputError
-        If there are several and none is asked for, or no such one; it lists them.
+        If there are several and none is requested, or no such one exists; it lists them.
     """
     times = _times(table, names, increases)
     values = [k for k in range(len(table)) if k not in times and _may_be(str(names[k]), wanted)]
@@ -199,14 +199,16 @@ def _place(
     asked: str | None,
     wanted: Wanted,
 ) -> int:
-    """Index in `values` of the column that is asked for."""
+    """Return the index in `values` of the requested column."""
     listed = _listed(table, names, times, values, wanted)
     if asked is None:
         message = (
             f"the table has {len(values)} columns that may be {_values(wanted)}, and only one can shake a structure"
         )
         if not any(label.name for label in names) and not times:
-            listed += "\n  values that run on from line to line are no table: give the file as the data centre made it"
+            listed += (
+                "\n  values that run on from line to line do not form a table: give the file as the data centre made it"
+            )
         raise InputError(Problem(message, file, hint=f"choose one with `channel`, by place or name:{listed}"))
     word = _plain(asked)
     if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:
@@ -221,7 +223,7 @@ def _place(
             message = f"{len(found)} columns are called '{asked}'"
             raise InputError(Problem(message, file, field="`channel`", hint=f"give the place of one:{listed}"))
     message = f"there is no channel '{asked}'"
-    hint = f"there {'is' if len(values) == 1 else 'are'}:{listed}"
+    hint = f"the file has:{listed}"
     raise InputError(Problem(message, file, field="`channel`", hint=hint))
 
 
@@ -235,12 +237,12 @@ def _without_unit(name: str) -> str:
 
 
 def _values(wanted: Wanted) -> str:
-    """What is asked for, several of them."""
+    """Return the plural of the requested quantity."""
     return "values" if wanted.raw else plural(wanted.quantity)
 
 
 def _units(label: str, wanted: Wanted) -> set[str]:
-    """The units that a label states for what is asked for."""
+    """Return the units that a label states for the requested quantity."""
     if wanted.raw or wanted.quantity == "acceleration":
         return header_units(label)
     return {unit for unit in _BRACKETED.findall(label) if quantity_of(unit) == wanted.quantity}
@@ -253,7 +255,7 @@ def _listed(
     out = []
     for place, k in enumerate(values, start=1):
         units = _units(str(names[k]), wanted)
-        unit = f"in {units.pop()}" if len(units) == 1 else "unit not said"
+        unit = f"in {units.pop()}" if len(units) == 1 else "unit not stated"
         name = f"{names[k]}, " if names[k].name else ""
         out.append(f"\n    {place}: {name}column {k + 1}, {unit}, peak {float(np.abs(table[k]).max()):.4g}")
     for k, label in enumerate(names):

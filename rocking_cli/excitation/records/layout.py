@@ -341,7 +341,7 @@ def number(file: str, line_number: int, line: str, token: str, what: str, *, lea
 def choose(
     file: str, form: str, channels: Sequence[Channel], asked: str | None = None, dt: float | None = None
 ) -> GroundMotion:
-    """Make a ground motion of the channel that is asked for, or of the only one.
+    """Make a ground motion of the requested channel, or of the only one.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ class Opened(NamedTuple):
     member : str
         Which of several files of an archive it is; empty if there is no choice.
     channel : str or None
-        What is left of the channel that was asked for, once a file of an archive is chosen.
+        What is left of the requested channel, once a file of an archive is chosen.
     """
 
     data: bytes
@@ -88,7 +88,7 @@ def open_record(path: str | Path, channel: str | None = None) -> Opened:
     path : str or Path
         A file, or `-` for standard input. A gzip file is expanded; of a zip archive one file is.
     channel : str, optional
-        The channel that is asked for. Of an archive with several files it is the place, counted from 1, or the name
+        The requested channel. Of an archive with several files it is the place, counted from 1, or the name
         of one, with a colon and the channel in it where that has several too.
 
     Raises
@@ -122,7 +122,7 @@ def _from_standard_input() -> bytes:
     file = name_of(STANDARD_INPUT)
     stream: Any = sys.stdin
     if stream is None:
-        raise InputError(Problem("there is none", file, hint="give a file"))
+        raise InputError(Problem("there is no standard input", file, hint="give a file"))
     if stream in _again:
         _again.discard(stream)
         return _taken[stream]
@@ -134,7 +134,7 @@ def _from_standard_input() -> bytes:
     except (OSError, ValueError) as error:  # ValueError: it is closed
         raise InputError(Problem(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)) from None
     if data is None:
-        raise InputError(Problem(f"this is no record file: it is larger than {LARGEST / 1e6:.4g} MB", file))
+        raise InputError(Problem(f"this cannot be a record file: it is larger than {LARGEST / 1e6:.4g} MB", file))
     _taken[stream] = data
     return data
 
@@ -151,9 +151,11 @@ def _of_gzip(data: bytes, file: str) -> bytes:
 
 
 def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bool, str | None]:
-    """Content and name of the file that is asked for, or the only one; whether there are several; the channel in it."""
+    """Return content and name of the requested file, or the only one; whether there are several; the channel in it."""
     if data.count(b"PK\x01\x02") > MEMBERS:  # their list is read as a whole
-        raise InputError(Problem(f"an archive of more than {MEMBERS} files is no record", file, hint=_UNPACK))
+        raise InputError(
+            Problem(f"the archive has more than {MEMBERS} files: too many for a record", file, hint=_UNPACK)
+        )
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
         members = [each for each in archive.infolist() if not _is_no_record(each)]
@@ -188,7 +190,7 @@ def _is_no_record(member: zipfile.ZipInfo) -> bool:
 
 
 def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, str | None]:
-    """Find which file of an archive is asked for, and the channel in it."""
+    """Find which file of an archive is requested, and the channel in it."""
     if channel is not None:
         for asked, rest in ((channel, None), channel.rpartition(":")[::2]):
             if (place := _place(names, asked.strip(), alone=len(names) == 1)) is not None:
@@ -223,7 +225,7 @@ def _damaged(what: str, error: Exception, file: str) -> Problem:
 
 
 def _too_large(file: str) -> Problem:
-    return Problem(f"this is no record file: unpacked it is larger than {EXPANDED / 1e6:.4g} MB", file)
+    return Problem(f"this cannot be a record file: unpacked it is larger than {EXPANDED / 1e6:.4g} MB", file)
 
 
 def _printable(text: str) -> str:

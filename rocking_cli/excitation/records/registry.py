@@ -2,7 +2,7 @@
 
 A reader is a module, or any object, with a `TITLE` (the name of its format), a `SIGN` (what it recognises a file
 by, for the messages) and the functions `sniff` and `read` of `Reader`. One that has `BINARY = True` too is given the
-bytes of a file in place of its text. One with `TAKES_WANTED = True` can be asked for other values than accelerations:
+bytes of a file in place of its text. One with `TAKES_WANTED = True` can read other values than accelerations:
 its `read` takes `wanted`, a `sensor.Wanted`.
 """
 
@@ -172,7 +172,7 @@ def takes_bytes(reader: Reader) -> bool:
 
 
 def takes_wanted(reader: Reader) -> bool:
-    """Whether a reader can be asked for other values than accelerations at even times."""
+    """Return whether a reader can read other values than accelerations at even times."""
     return bool(getattr(reader, "TAKES_WANTED", False))
 
 

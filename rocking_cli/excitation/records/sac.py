@@ -66,7 +66,7 @@ def read(
         hint = "interpolate it at a constant interval first"
         raise InputError(Problem("the header says the samples are unevenly spaced (LEVEN)", file, hint=hint))
     if header.kind not in (_TIME_SERIES, _XY):
-        message = f"the header says this is no time series (IFTYPE = {header.kind})"
+        message = f"the header says this is not a time series (IFTYPE = {header.kind})"
         raise InputError(Problem(message, file, hint="give the file with the acceleration"))
     said = _OTHERS.get(header.quantity, wanted.quantity)
     if said != wanted.quantity and not wanted.raw:

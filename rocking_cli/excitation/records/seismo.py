@@ -63,7 +63,7 @@ def traces(data: bytes, file: str, form: str) -> list[Any]:
             raise InputError(Problem(message, file, hint=hint)) from None
     if told:
         message = f"obspy has doubts about this file: {_in_a_line(told[0].message)}"
-        hint = "it may be damaged: download it again; if you know it is whole, write it anew with obspy"
+        hint = "it may be damaged: download it again; if you know it is whole, write it again with obspy"
         raise InputError(Problem(message, file, hint=hint))
     return found
 

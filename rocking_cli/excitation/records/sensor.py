@@ -102,7 +102,7 @@ class Wanted(NamedTuple):
         known = ", ".join(units_of(self.quantity))
         size = None if units is None else size_of(units, self.quantity)
         if units is not None and size is None:
-            message = f"'{units}' is no unit of a {self.quantity}"
+            message = f"'{units}' is not a unit of {self.quantity}"
             raise InputError(Problem(message, field="`units`", hint=f"choose one of: {known}"))
         self._refuse_another(file, header)
         stated = self._stated(header)
@@ -180,12 +180,12 @@ class Gain:
             raise _refused(f"{text!r} is a gain without a unit")
         per = None if quantity_of(unit) else _PER.fullmatch(unit)
         if per is not None and per[2].lower() in TIMES:
-            raise _refused(f"{unit!r} is no unit known here, and {per[2]!r} no output of an instrument")
+            raise _refused(f"{unit!r} is not a known unit, and {per[2]!r} is not an output of an instrument")
         of = unit if per is None else per[1]
         quantity = quantity_of(of)
         if quantity is None:
             known = [name for each in QUANTITIES for name in units_of(each)]
-            raise _refused(f"{of!r} is no unit of an acceleration, a velocity or a length", did_you_mean(of, known))
+            raise _refused(f"{of!r} is not a unit of acceleration, velocity or length", did_you_mean(of, known))
         size = size_of(of, quantity)
         assert size is not None
         return cls(float(number) * size, quantity, f"{exact(float(number))} {unit}")

@@ -38,7 +38,7 @@ def read(
     except _TwiceError as error:
         message = f"the key {_shown(error.key)} is there more than once"
         last = [None, *(text.count("\n", 0, match.start()) + 1 for match in _places(text, error.key))][-1]
-        hint = "leave one of each: which of them is meant is not guessed"
+        hint = "keep one of each: the intended one is not guessed"
         raise InputError(Problem(message, file, last, hint=hint)) from None
     except (json.JSONDecodeError, RecursionError) as error:
         line, column = getattr(error, "lineno", None), getattr(error, "colno", None)

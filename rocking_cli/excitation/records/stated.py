@@ -1,4 +1,4 @@
-"""What a header says of its own values - their peak, when it is, how long they last - held against the values."""
+"""Checks of what a header states of its values - their peak, its time, their duration - against the values."""
 
 from __future__ import annotations
 

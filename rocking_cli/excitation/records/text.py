@@ -67,7 +67,7 @@ def read(
     numbers_in(file, start + 1, lines[start], [cell.replace(",", ".") for cell in cells] if commas else cells)
     columns = len(cells)
     if columns > MOST:
-        raise InputError(Problem(f"a table of {columns} columns is no record", file, start + 1))
+        raise InputError(Problem(f"a table of {columns} columns cannot be a record", file, start + 1))
     header = _header(file, head, delimiter, columns)
     names, label_lines = labels(header, delimiter, columns)
     _refuse_other_times(file, names, label_lines)
@@ -168,7 +168,9 @@ def only_channel(file: str, asked: str | None) -> None:
 def check_interval(file: str, line_number: int | None, own: float, given: float | None) -> None:
     """Refuse a sample interval [s] of the file that is none, or one given by the user that is another."""
     if not _INTERVALS[0] <= own <= _INTERVALS[1]:
-        raise InputError(Problem(f"the sample interval is {own:g} s, which no record has", file=file, line=line_number))
+        raise InputError(
+            Problem(f"the sampling interval is {own:g} s, which is not plausible", file=file, line=line_number)
+        )
     if given is not None and not math.isclose(own, given, rel_tol=_DT_TOLERANCE):
         message = f"the file's sample interval is {own:g} s, but `dt` says {given:g} s"
         raise InputError(Problem(message, file=file, line=line_number, hint="leave `dt` out: the file states its own"))

@@ -116,10 +116,8 @@ def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[flo
     longest = int(steps.argmax())
     count = (time[-1] - time[0]) / dt * (1 + 1e-9)
     if not count < SPARSE * len(time):
-        message = (
-            f"nothing was recorded from {time[longest]:g} to {time[longest + 1]:g} s, at steps of {dt:g} s elsewhere"
-        )
-        raise UnevenTimeError(message, "cut the file there: straight lines over such gaps are no record", longest + 1)
+        message = f"gap in the record from {time[longest]:g} to {time[longest + 1]:g} s; the step is {dt:g} s elsewhere"
+        raise UnevenTimeError(message, "cut the file there: straight lines over such gaps are not data", longest + 1)
     even = time[0] + dt * np.arange(int(count) + 1)
     odd = int((np.abs(steps - dt) > 0.01 * dt).sum())
     text = (

@@ -140,7 +140,7 @@ def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
             continue
         match = _SAID.search(line) or (_SAID_LABEL.search(line) if index == len(header) - 1 else None)
         if match and canonical(match[1]) is None:
-            message = f"the header says '{match[1]}', which is no unit of acceleration known here"
+            message = f"the header says '{match[1]}', which is not a known unit of acceleration"
             return Problem(message, file=file, line=number, hint=hint)
     return Problem("the file does not say what unit its accelerations are in", file=file, hint=hint)
 

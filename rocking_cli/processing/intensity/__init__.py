@@ -53,11 +53,11 @@ class IntensityMeasures(Plugins[type[Measure]]):
         kinds = (MotionMeasure, RelativeMeasure, RunMeasure)
         if not (isinstance(loaded, type) and issubclass(loaded, kinds)) or loaded.__abstractmethods__:
             what = "it must derive from MotionMeasure, RelativeMeasure or RunMeasure and be complete"
-            raise MechanismError(f"{origin(point)} is no measure: {what}")
+            raise MechanismError(f"{origin(point)} is not a measure: {what}")
         if getattr(loaded, "name", None) != point.name or not isinstance(getattr(loaded, "title", None), str):
-            raise MechanismError(f"{origin(point)} is no measure: it needs name = {point.name!r} and a title")
+            raise MechanismError(f"{origin(point)} is not a measure: it needs name = {point.name!r} and a title")
         if issubclass(loaded, MotionMeasure) and not isinstance(loaded.power, int | float):
-            raise MechanismError(f"{origin(point)} is no measure: it needs a power, of the factor on the motion")
+            raise MechanismError(f"{origin(point)} is not a measure: it needs a power, of the factor on the motion")
         return loaded
 
 

@@ -1,4 +1,4 @@
-"""What a measure of intensity is: a name, a unit, and how it goes with the factor on a motion."""
+"""Measures of intensity: a name, a unit, and how they depend on the factor on a motion."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Measure(ABC):
     unit: ClassVar[str] = ""
     """Of its values; a dimensionless one has none."""
     usual: ClassVar[tuple[str, ...]] = ()
-    """What stands for it where all measures are asked for; itself, where it has no parameters without a default."""
+    """Names that stand for it if all measures are requested; itself if every parameter has a default."""
     source: ClassVar[str] = ""
     """Where it comes from."""
     needs: ClassVar[tuple[str, ...]] = ()
@@ -82,7 +82,7 @@ class Measure(ABC):
     @property
     @abstractmethod
     def power(self) -> float | None:
-        """The power of the factor on a motion that it goes with; None where it is computed of every run."""
+        """Power of the factor on a motion that it is proportional to; None if it is computed for every run."""
 
     @property
     def is_relative(self) -> bool:
@@ -141,7 +141,7 @@ class Measure(ABC):
 
     @classmethod
     def usually(cls) -> tuple[str, ...]:
-        """What stands for it where all measures are asked for."""
+        """Return the names that stand for it if all measures are requested."""
         return cls.usual or ((cls.name,) if all(field.default is not MISSING for field in fields(cls)) else ())
 
 
@@ -158,7 +158,7 @@ class MotionMeasure(Measure):
 
     @abstractmethod
     def of(self, motion: GroundMotion) -> float | None:
-        """Its value, not negative; None where the motion has none."""
+        """Return the non-negative value of the measure; None if it is undefined for the motion."""
 
     def value(self, motion: GroundMotion) -> float:
         """Its value; NaN where the motion has none. Raises `PluginError` if it gives no number, or a negative one."""
@@ -182,7 +182,7 @@ class RelativeMeasure(Measure):
         found = parse_measure(self.to)
         if not isinstance(found, MotionMeasure):
             raise PluginError(
-                f"the measure {self.name} is relative to {self.to}, which is no measure of a motion alone"
+                f"the measure {self.name} is relative to {self.to}, which is not a measure of a motion alone"
             )
         return found
 
@@ -197,7 +197,7 @@ class RelativeMeasure(Measure):
 
 
 class RunMeasure(Measure):
-    """A measure of a motion and a structure that goes with no power of the factor: it is computed of every run.
+    """A measure of a motion and a structure that scales with no power of the factor: it is computed for every run.
 
     A subclass gives `of`.
     """
@@ -233,7 +233,7 @@ def _read(word: str, field: Field[Any], form: str) -> float:
     """A parameter: a number, in its unit or with one."""
     unit, found = field.metadata.get("unit", ""), _NUMBER.fullmatch(word.strip())
     if found is None:
-        raise InputError(f"{word.strip()!r} is no {field.name}: {form}")
+        raise InputError(f"{word.strip()!r} is not a valid {field.name}: {form}")
     given = found[2].strip()
     try:
         if given == "%" == unit:
@@ -243,5 +243,5 @@ def _read(word: str, field: Field[Any], form: str) -> float:
     except UnitError as error:
         raise InputError(Problem(f"{error.message}: {form}", hint=error.hint)) from None
     if not isfinite(value):
-        raise InputError(f"{word.strip()!r} is no {field.name}: {form}")
+        raise InputError(f"{word.strip()!r} is not a valid {field.name}: {form}")
     return value

@@ -293,8 +293,8 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
     if not found:  # the same fields: a mechanism may still make something else of them
         found = [each for pair in zip(known.trials, now.trials, strict=True) for each in _other_mechanics(*pair)][:MOST]
     if found:
-        hint = "give `restart` to run all anew, or `store` OTHER.db to keep both"
-        *others, last = [Problem(each, field="changed since the store was begun") for each in found]
+        hint = "give `restart` to run everything again, or `store` OTHER.db to keep both"
+        *others, last = [Problem(each, field="changed since the store was created") for each in found]
         raise InputError(*others, replace(last, hint=hint))
 
 

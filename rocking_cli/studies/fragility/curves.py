@@ -20,7 +20,10 @@ Kind = Literal["lognormal", "logistic", "step", "none"]
 LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
 REJECTED = 0.05  # p-value below which a curve is rejected
 LIKELIER = 1e-6  # of a log-likelihood: less is rounding
-_DECREASING = "nothing increases: fewer exceed as the intensity grows, so this measure does not tell what exceeds"
+_DECREASING = (
+    "no increasing curve exists: fewer runs exceed the limit at higher intensities, so this measure does not predict "
+    "exceedance"
+)
 TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
 
 
@@ -187,7 +190,7 @@ def fit_capacities(
     confidence : float
         Of the intervals and the band.
     weight : ndarray, shape (n,), optional
-        How much each counts beside the others; alike unless given.
+        Weight of each among the others; equal unless given.
 
     Returns
     -------
@@ -255,8 +258,11 @@ def _step_or_none(bare: Curve, below: Reals, above: Reals) -> Curve | None:
     low, high = float(below.max()), float(above.min())
     if low < high:
         step = Estimate(float(np.sqrt(low * high)), low, high)
-        why = f"no run exceeds the limit up to {low:.4g} and all do from {high:.4g} on, so that no scatter is seen"
-        return replace(bare, kind="step", step=step, why=f"{why}; levels between these two would show it")
+        why = (
+            f"no run exceeds the limit up to {low:.4g} and all runs do from {high:.4g}, so the dispersion cannot be "
+            "estimated"
+        )
+        return replace(bare, kind="step", step=step, why=f"{why}; add levels between these two")
     under, over = below[below < low], above[above > low]
     if not (under.size and over.size):
         side = "none exceeds below" if under.size else "all exceed above"
@@ -264,7 +270,7 @@ def _step_or_none(bare: Curve, below: Reals, above: Reals) -> Curve | None:
         return replace(bare, why=why)
     step = Estimate(low, float(under.max()), float(over.min()))
     why = f"both outcomes occur at {low:.4g} only, none exceeds up to {step.low:.4g} and all do from {step.high:.4g} on"
-    return replace(bare, kind="step", step=step, why=f"{why}: the scatter needs levels between them")
+    return replace(bare, kind="step", step=step, why=f"{why}: estimating the dispersion needs levels between them")
 
 
 def _choice(curves: dict[Kind, Curve]) -> tuple[Kind, str]:
@@ -305,9 +311,9 @@ def _tested(curve: Curve) -> str:
     if p is None:
         said = f"whether the data fit a {curve.kind} curve is not tested: {curve.goodness.why}"
     elif _rejected(curve):
-        said = f"do not rely on it: the data reject a {curve.kind} curve (p = {p:.2g})"
+        said = f"do not rely on this curve: the goodness-of-fit test rejects a {curve.kind} curve (p = {p:.2g})"
     else:
-        said = f"the data do not reject a {curve.kind} curve (p = {p:.2g})"
+        said = f"the goodness-of-fit test does not reject a {curve.kind} curve (p = {p:.2g})"
     if curve.fit.intervals[1].low <= 0:
         said += f"; at {100 * curve.confidence:g} % {_why_open(curve)}"
     return said

@@ -48,7 +48,7 @@ def _measure(value: object) -> object:
 
 
 def _level_measure(value: object) -> object:
-    """What levels may be of: the factor on the records, or a measure that goes with it."""
+    """Return what levels are of: the factor on the records, or a measure proportional to a power of it."""
     if isinstance(value, str) and value.strip().lower() == SCALE:
         return SCALE
     found = _measure(value)
@@ -178,7 +178,7 @@ class Levels(Part):
         elif count is not None and sound("count") and sound("spacing"):
             levels = _spaced(least, most, count, given.get("spacing", "even"))
             if not all(_apart(one, other) for one, other in pairwise(levels)):
-                yield ("most",), f"is so close to least that {count} levels between them repeat"
+                yield ("most",), f"is too close to least for {count} distinct levels"
 
     def levels(self) -> list[float]:
         """The levels, growing."""
@@ -281,17 +281,17 @@ class Definition(Sampling, Common):
         if varied and "samples" not in given:
             yield ("samples",), "is missing: how many structures are drawn from the distributions"
         if not varied and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
-            yield ("samples",), "nothing varies: give a structure a `vary`"
+            yield ("samples",), "nothing varies: add `vary` to at least one structure"
         if given.get("eta") is not None and "restitution" in varied:
-            yield ("eta",), "a structure varies its restitution: give one of the two"
+            yield ("eta",), "cannot be combined with a structure that varies its restitution: give one of the two"
         if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
-            yield ("limit_states",), "sliding needs `model: nonlinear`: linear motions do not say the forces at joints"
+            yield ("limit_states",), "sliding requires `model: nonlinear`: linear models do not give the joint forces"
         for name in ("polarities", "eta", "limit_states", "measures", "bivariate"):
             yield from _twice(given, name, sound)
 
     @property
     def fitted_measures(self) -> list[str]:
-        """The measures of curves: those asked for, else that of the levels; and that of the hazard."""
+        """The measures of curves: those requested, else that of the levels; and that of the hazard."""
         found: list[str] = list(self.measures or [])
         if not found:
             found = [PGA if self.levels.measure == SCALE else self.levels.measure]
@@ -305,7 +305,7 @@ class Definition(Sampling, Common):
 
     @property
     def measures_of_a_block(self) -> list[str]:
-        """The measures asked for that need an equivalent block."""
+        """The requested measures that need an equivalent block."""
         return [name for name in self.asked_measures if parse_measure(name).needs]
 
     @property
@@ -333,7 +333,7 @@ def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, st
     known = Levels.model_validate(levels).levels()
     for k in of_sets:
         if sound("records", k) and not among(entries[k]["level"], known):
-            yield ("records", k, "level"), f"{entries[k]['level']:g} is none of the levels {_said(known)}"
+            yield ("records", k, "level"), f"{entries[k]['level']:g} is not one of the levels {_said(known)}"
 
 
 def _said(levels: list[float]) -> str:
@@ -346,7 +346,7 @@ def checks_sliding(given: dict[str, Any]) -> bool:
     return isinstance(asked, list) and SLIDING in asked
 
 
-HINT = "docs/fragility.md shows one to start from"
+HINT = "see the example in docs/fragility.md"
 WORDS = {"owner": "the study", "lister": HINT}
 PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))  # of an entry, each worth a look by itself
 Piece = TypeVar("Piece", bound=BaseModel)

@@ -63,7 +63,7 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
     fact : callable
         `Store.fact`.
     limits : sequence of limit states
-        What is asked for; a store whose study asks for none keeps none.
+        The requested ones; a store whose study requests none keeps none.
 
     Returns
     -------

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 A = TypeVar("A")
 B = TypeVar("B")
-GOES_ON = "what was finished is kept, and the same command goes on from there"
+GOES_ON = "finished runs are kept: run the same command again to continue"
 AHEAD = 2  # units on their way for each worker: one at work, one that waits
 TRIES = 5  # workers that may be lost with a unit before it is given up
 QUIET = 20.0  # s without anything finished after which to see whether anybody is at work

@@ -92,7 +92,7 @@ def read_hazard(path: Path) -> HazardCurve:
     except OSError as error:
         raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from error
     except UnicodeDecodeError as error:
-        raise InputError(Problem("this is no text in UTF-8", str(path), hint="save it as CSV in UTF-8")) from error
+        raise InputError(Problem("this is not UTF-8 text", str(path), hint="save it as CSV in UTF-8")) from error
     lines = text.splitlines()
     used = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
     if used and lines[used[0]].lstrip()[0] not in "+-.0123456789":
@@ -128,7 +128,7 @@ class Rate:
         The integral of P(x) |d rate(x)| over the hazard curve, and beyond its end with P as it is there [1/year].
     low, high : float
         The same of the confidence limits of the curve: as if the curve were at its limit everywhere at once, so that
-        the interval is at least as wide as asked for. The hazard curve is taken as exact.
+        the interval is at least as wide as requested. The hazard curve is taken as exact.
     above : float
         What stronger shaking than the last point can add at most: P may grow to one there [1/year].
     below : float
@@ -174,7 +174,7 @@ def annual_rate(curve: Curve, hazard: HazardCurve) -> Rate:
     rate(median) exp(k^2 dispersion^2/2) [Cornell et al. 2002, J. Struct. Eng. 128, 526-533].
     """
     if curve.kind == "none":
-        raise InputError(f"there is no fragility curve to convolve: {curve.why}")
+        raise InputError(f"no fragility curve exists to convolve: {curve.why}")
     last = float(hazard.annual_rate[-1])
     if curve.step is not None:
         at, low, high = (_rate_at(hazard, x) for x in (curve.step.value, curve.step.high, curve.step.low))

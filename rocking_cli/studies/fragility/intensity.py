@@ -8,7 +8,7 @@ PGA, PGV = "PGA", "PGV"
 SCALE = "scale"
 """What levels are of that are plain factors on the records."""
 ALWAYS = (PGA, PGV, "PGA/(g lambda)", "p PGV/(g lambda)")
-"""Those that a table of runs has whatever is asked for: every store knows what they are of."""
+"""Measures that every table of runs has, whatever is requested: every store knows what they are of."""
 
 
 def spelled(text: str) -> str:

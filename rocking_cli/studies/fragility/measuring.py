@@ -23,7 +23,7 @@ Bools = NDArray[np.bool_]
 
 V_IMP = "v_imp"
 ORIGIN = ("magnitude", "distance")
-"""What records may state of their earthquake, kept beside measures so that these can be held against it."""
+"""What records may state of their earthquake, kept beside measures so that these can be checked against it."""
 Told = Callable[[int], None]
 """Called with how many records have been gone through since the last call."""
 

@@ -66,7 +66,7 @@ class Observations:
         runs : ndarray, shape (n,), optional
             How many runs are alike; one unless given.
         weight : ndarray, shape (n,), optional
-            How much each counts beside the others; alike unless given. On average over the runs it is made one.
+            Weight of each among the others; equal unless given. On average over the runs it is made one.
 
         Raises
         ------
@@ -76,7 +76,7 @@ class Observations:
         if not x.size == exceeding.size == record.size:
             raise InputError(f"{x.size} intensities, {exceeding.size} outcomes, {record.size} records")
         if not x.size:
-            raise InputError("a fragility curve needs runs, and there are none")
+            raise InputError("a fragility curve needs at least one run")
         wrong = ~((x > 0) & np.isfinite(x))
         if wrong.any():
             k = int(wrong.argmax())

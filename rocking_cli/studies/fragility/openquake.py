@@ -142,7 +142,7 @@ def chosen(curves: Sequence[Fragility]) -> Model:
         reason or _why_not_together(each, limits, held, fit) for each, reason in zip(curves, reasons, strict=True)
     ))))  # fmt: skip
     if not held:
-        raise InputError("there is no curve that OpenQuake takes: " + "; ".join(left_out or ["there are no curves"]))
+        raise InputError("OpenQuake accepts none of the curves: " + "; ".join(left_out or ["the study has no curves"]))
     order = _by_severity(limits, next(iter(held.values())))
     functions = _functions(held, order)
     return Model([limit_id(each) for each in order], functions, left_out, list(_doubts(functions)))
@@ -154,13 +154,13 @@ def _why_not(found: Fragility) -> str:
     if intensity_type(found.measure) is None:
         return f"all curves over {found.measure}: OpenQuake has no such intensity measure"
     if found.limit == SLIDING:
-        return f"{of}: sliding is no step on the way to overturning, and OpenQuake takes limit states by severity"
+        return f"{of}: sliding is not a step on the way to overturning, and OpenQuake orders limit states by severity"
     if found.curve.kind == "none":
-        return f"{of}: there is no curve: {found.curve.why}"
+        return f"{of}: no curve exists: {found.curve.why}"
     if found.curve.kind != "lognormal":
-        return f"{of}: its curve is a {found.curve.kind} one, and OpenQuake takes lognormal curves alone"
+        return f"{of}: its curve is a {found.curve.kind} one, and OpenQuake accepts only lognormal curves"
     if not np.isfinite(moments(found)).all():
-        return f"{of}: its dispersion is so large that its mean is no number"
+        return f"{of}: its dispersion is so large that its mean is not a finite number"
     return ""
 
 
@@ -175,7 +175,7 @@ def _why_not_together(
     same = "all of a file have the same limit states"
     if key not in held:
         missing = [str(limit) for limit in limits if limit not in fit[key]]
-        return f"{_name(found)}: {same}, and there is no lognormal curve for {', '.join(sorted(missing))}"
+        return f"{_name(found)}: {same}, and no lognormal curve exists for {', '.join(sorted(missing))}"
     if found.limit not in limits:
         other = next(each for each, own in held.items() if found.limit not in own)
         return f"{_name(found)}: {same}, and {other[0]} over {other[1]} has no lognormal curve for this one"

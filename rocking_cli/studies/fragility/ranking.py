@@ -1,4 +1,4 @@
-"""Which measure of intensity serves: how closely it goes with the rotation, and whether it leaves anything out.
+"""Which measure of intensity predicts best: how closely it follows the rotation, and whether it leaves anything out.
 
 Terms are those of Luco and Cornell (2007) and Padgett, Nielson and DesRoches (2008). Over the runs that rock and stand
 ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
@@ -27,7 +27,7 @@ Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
 TREND = 0.05  # p-value below which residuals have a trend
 OF_MOTION = ("Tm", "D5-95")
-"""What residuals are held against where not all records state magnitude and distance."""
+"""What residuals are tested against if not all records state magnitude and distance."""
 STRAIGHT = ("magnitude",)  # it is a logarithm already
 FEWEST = 3  # runs, and records
 SAME = 1e-9  # of a logarithm: measures that differ by no more than a factor are one
@@ -48,7 +48,7 @@ class Ranked:
     runs, records : int
         Runs that rock and stand, over which it goes, and the different records among theirs.
     trends : dict of str to float
-        Of what the residuals, averaged for each record, are held against: the p-value of their slope over it. NaN where
+        Of what the residuals, averaged for each record, are tested against: the p-value of their slope over it. NaN if
         that cannot be told.
     dispersions : dict of limit state to float
         Of the fragility curve of each limit state over the measure; NaN where it is not lognormal.
@@ -85,7 +85,7 @@ class Ranking:
     measures : tuple of Ranked
         The most efficient first.
     against : tuple of str
-        What residuals are held against.
+        What residuals are tested against.
     alike : dict of str to str
         Measures that are a constant times another one in every run, and that one.
     left_out : dict of str to str
@@ -146,7 +146,7 @@ def _known(plan: Plan, name: str) -> bool:
 
 
 def covariates(plan: Plan) -> dict[str, Reals]:
-    """What residuals are held against, of each record; empty where nothing is known of all that can be used."""
+    """Return what residuals are tested against, of each record; empty if nothing is known of all usable ones."""
     usable = np.array([record.reason is None for record in plan.records])
 
     def of(names: Iterable[str]) -> dict[str, Reals]:
@@ -181,7 +181,7 @@ def rank(
     progress : callable, optional
         Told how many numbers of runs have been gone through since the last call.
     against : mapping of str to ndarray, shape (records,), optional
-        What residuals are held against, a name and a value of each record; those of `covariates` unless given.
+        What residuals are tested against, a name and a value of each record; those of `covariates` unless given.
     """
     names = candidates(plan, definition)
     against = covariates(plan) if against is None else against
@@ -246,7 +246,7 @@ def serves(
     record : ndarray of int, shape (n,)
         The record of each.
     against : mapping of str to ndarray, shape (records,)
-        What residuals are held against.
+        What residuals are tested against.
     """
     fit = line(x, y)
     if fit is None:
@@ -297,7 +297,7 @@ def judge(ranking: Ranking) -> list[str]:
 def _of_trends(ranking: Ranking) -> list[str]:
     """Which is the most efficient among those whose residuals have no trend."""
     if not ranking.against:
-        return ["What its residuals depend on is not tested: the store has nothing to hold them against."]
+        return ["What its residuals depend on is not tested: the store has no data to test them against."]
     tested = [each for each in ranking.measures if each.sufficient is not None]
     if not tested:
         return [f"With fewer than {FEWEST} records no trend with {' and '.join(ranking.against)} can be told."]
@@ -309,5 +309,5 @@ def _of_trends(ranking: Ranking) -> list[str]:
     which = "It" if best is ranking.measures[0] else f"{best.measure}, with {best.efficiency:.2g},"
     return [
         f"{which} is the most efficient of the {len(free)} whose residuals show no trend with {over} "
-        f"(p of {TREND:g} or more); that none shows is no proof that there is none."
+        f"(p of {TREND:g} or more); the absence of a detected trend does not prove that there is none."
     ]

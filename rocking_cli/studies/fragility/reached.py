@@ -60,7 +60,7 @@ def held(study: Study) -> list[str]:
     limits = asked_for(study.definition.limit_states)
     return [
         f"{structure.name or structure.mechanism}: its top is held to the side and a hinge moves more, but limits "
-        f"such as {limits[0]} are of the top: ask for a ratio of rotations instead"
+        f"such as {limits[0]} are of the top: use a ratio of rotations instead"
         for structure in (study.structures if limits else ())
         if is_held(structure)
     ]

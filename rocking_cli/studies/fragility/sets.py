@@ -60,7 +60,7 @@ class Sets:
 
     @classmethod
     def plain(cls, records: int) -> Sets:
-        """Records that are all run at all levels, and count alike."""
+        """Build sets in which every record is run at every level with equal weight."""
         return cls.of([0.0], [None] * records, [1.0] * records, [str(k) for k in range(records)])
 
     @property
@@ -79,7 +79,7 @@ def among(level: float, levels: Sequence[float]) -> bool:
 
 
 def described(description: dict[str, Any], weights: Sequence[float] | None) -> Sets:
-    """The sets of a store, from the description of its study and the weights that were asked for last."""
+    """The sets of a store, from the description of its study and the weights that were requested last."""
     records, levels = description["records"], description["levels"]
     return Sets.of(
         levels["values"],

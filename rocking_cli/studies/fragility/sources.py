@@ -156,7 +156,7 @@ class KeptMotions:
             return self._kept[k]
         source = self._sources[k]
         if source.checksum() != self._checksums[k]:
-            raise InputError(Problem("has changed while the study ran", source.name, hint="begin the study anew"))
+            raise InputError(Problem("has changed while the study ran", source.name, hint="start the study again"))
         return self._keep(k, source.read())
 
     def _keep(self, k: int, motion: GroundMotion) -> GroundMotion:

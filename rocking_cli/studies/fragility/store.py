@@ -346,14 +346,16 @@ class Store:
         """What is wrong with the runs, a sentence each."""
         found = []
         if not self.checked:
-            found.append("an earlier version wrote this store without checksums: damage to its runs would not show")
+            found.append(
+                "this store was written by an earlier version without checksums: damage to its runs cannot be detected"
+            )
         if self.damaged:
             count, plan = len(self.damaged), self.plan()
             named = "; ".join(plan.name(k) for k in self.damaged[:NAMED]) + ("; ..." if count > NAMED else "")
             what = "1 run is damaged and left out" if count == 1 else f"{count} runs are damaged and left out"
             found.append(f"{what}: {named}")
         if self.unreadable:
-            found.append("pages of the file are damaged: runs that were finished may be missing")
+            found.append("parts of the file are damaged: finished runs may be missing")
         return found
 
     def begin(self, plan: Plan, facts: Mapping[str, Any]) -> None:
@@ -380,8 +382,8 @@ class Store:
             if not self._there:
                 self._go_on_with(open_locked(self.path))
             if not self.empty:
-                what = "another process has begun this study at the same moment"
-                raise InputError(Problem(what, str(self.path), hint="the same command goes on from there"))
+                what = "another process has just started this study"
+                raise InputError(Problem(what, str(self.path), hint="run the same command again to continue"))
             self._fill(plan, facts)
         self._name_who_is_at_work()
 
@@ -477,18 +479,18 @@ class Store:
             if self.checked:
                 found = self._connection.execute("SELECT value FROM study WHERE key = ?", (SEAL,)).fetchone()
                 if found is None or found[0] != self._digest():
-                    raise damaged(self.path, "what its runs are runs of does not agree with its checksum")
+                    raise damaged(self.path, "the description of the study does not match its checksum")
             try:
                 self._salt = _salt(self.facts()["hash"])
                 self.columns = _columns(self.fact("description"))
                 self._check_definition()
                 plan = self.plan()
             except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError) as error:
-                raise damaged(self.path, "what its runs are runs of cannot be read") from error
+                raise damaged(self.path, "the description of the study cannot be read") from error
             if not names.issuperset(self.columns):
                 raise damaged(self.path, "its tables are not those of a store")
             if not plan.size:
-                raise damaged(self.path, "it has lost what its runs are runs of")
+                raise damaged(self.path, "the description of the study is missing from it")
         finally:
             if not alone and self._connection.in_transaction:
                 self._connection.execute("COMMIT")
@@ -631,7 +633,7 @@ class Store:
             if self.damaged or self.unreadable:
                 rows = self._read(start, end)[0]
                 table = np.stack([getattr(rows, name) for name in names])
-            else:  # all have been held against their checksums
+            else:  # all have been checked against their checksums
                 found = self._connection.execute(query, (start, end)).fetchall()
                 table = np.array(found, dtype=np.float64).reshape(-1, len(names)).T
             whole, happens = table[:2].astype(np.int64), np.isfinite(table[5:])

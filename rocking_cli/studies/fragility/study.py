@@ -259,7 +259,7 @@ def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry,
     if entry.vertical is not None:
         found = _select(document, (*place, "vertical"), entry.vertical, folder)
         if max(len(files), len(found)) > 1:
-            what = "a vertical component belongs to one record: give each record an entry of its own"
+            what = "a vertical component belongs to a single record: give each record its own entry"
             document.problems.append(document.at((*place, "vertical"), what))
             return []
         vertical = found[0] if found else None

@@ -94,7 +94,7 @@ def fit_surface(
     confidence : float
         Of the intervals.
     weight : ndarray, shape (n,), optional
-        How much each counts beside the others; alike unless given.
+        Weight of each among the others; equal unless given.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def fit_surface(
             return replace(bare, why=fit)
     both, first, second = (fit for fit in fits if isinstance(fit, Fit))
     if (both.coefficients[1:] <= 0).all():
-        return replace(bare, why="nothing increases: fewer exceed as either measure grows")
+        return replace(bare, why="no surface increases: fewer runs exceed the limit as either measure increases")
     p_values = (_gain(both, second, 1, seen.repeated), _gain(both, first, 2, seen.repeated))
     aic = {"both": both.aic, "first": first.aic, "second": second.aic}
     why = _words(both, p_values, aic)
@@ -178,7 +178,10 @@ def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> s
     if max(p_values) >= ADDS:
         alike = min(p_values) >= ADDS  # neither adds to the other: then the likelier one
         better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < ADDS) else "second"
-        said.append(f"a curve over the {better} alone serves")
+        said.append(f"a curve over the {better} measure alone is sufficient")
     falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]
-    said += [f"at one value of the other measure fewer exceed as the {name} one grows" for name in falls]
+    said += [
+        f"at a fixed value of the other measure, fewer runs exceed the limit as the {name} one increases"
+        for name in falls
+    ]
     return "; ".join(said)

@@ -50,7 +50,7 @@ class Tally:
         return np.asarray(self.plan.of_sets.one[record])
 
     def weight(self, record: Integers) -> Reals | None:
-        """How much each counts; None where all count alike."""
+        """Weight of each run; None if all weights are equal."""
         sets = self.plan.of_sets
         return np.asarray(sets.weight[record]) if sets.weighted else None
 
@@ -128,7 +128,7 @@ class Cells:
         return self.place[2]
 
     def of(self, table: Integers) -> Integers:
-        """What a table of each sample, record and level holds for the cells."""
+        """Look up the entries of the cells in a table indexed by sample, record and level."""
         summed = table.sum(axis=0, keepdims=True) if self.together else table
         return np.asarray(summed[self.place])
 
@@ -177,7 +177,7 @@ def count(
     limits : sequence of limit states
         What is asked of the runs.
     measures : sequence of str
-        What their intensities will be asked for in; `Tally.over` gives no others.
+        Measures in which their intensities will be requested; `Tally.over` gives no others.
     ladders : bool
         Whether to find where ladders of levels first exceed.
     counted : callable, optional

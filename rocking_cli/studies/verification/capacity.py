@@ -90,10 +90,10 @@ class ExactCurve:
         if self._first is None:
             raise InputError(
                 Problem(
-                    f"in the {self.chain.direction.label} direction a* does not vanish before the kinematic limit: "
-                    "what holds the structure has no end",
+                    f"in the {self.chain.direction.label} direction, a* does not vanish before the kinematic limit: "
+                    "the restraints would hold the structure at any displacement",
                     field="ties" if self.chain.mechanism.ties else "loads",
-                    hint="the code counts what is there up to collapse: leave out what is not",
+                    hint="the code counts only restraints that act up to collapse: leave out the others",
                 )
             )
         self._hold_to_a_function(self._first)
@@ -122,8 +122,9 @@ class ExactCurve:
         moves = np.diff(self.chain.displacement(phi, self.control))
         if not ((drives > 0).all() and (moves > 0).all()):
             raise MechanismError(
-                f"in the {self.chain.direction.label} direction the control point does not move on up to the critical "
-                "rotation: its capacity is no curve over its displacement; choose another control point"
+                f"in the {self.chain.direction.label} direction, the displacement of the control point does not "
+                "increase up to the critical rotation, so it cannot serve as the abscissa of a capacity curve; "
+                "choose another control point"
             )
 
     def acceleration_at(self, phi: float, *, after: bool = False) -> float:

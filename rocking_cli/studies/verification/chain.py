@@ -78,7 +78,7 @@ class Chain:
     Parameters
     ----------
     mechanism : Mechanism
-        The structure, with what hangs on it.
+        The structure, with what is attached to it.
     direction : Direction
         Which way it rocks.
     """
@@ -168,7 +168,7 @@ class Chain:
 
     @property
     def alpha0(self) -> float:
-        """The multiplier that starts it."""
+        """Multiplier alpha0 at which the mechanism starts."""
         return (self.lifted + self.held_by(ties=False) + self.held_by(ties=True)) / self.first
 
     @cached_property
@@ -218,8 +218,8 @@ class Chain:
         dx = self.first / self.inertial if control.body is None else self._sideways(Spot(control.body, control.at))
         if not dx > LEAST * max(abs(block.dx) for block in self.blocks):
             raise InputError(
-                f"`control` does not move in the {self.direction.label} direction: at [{control.at.real:g}, "
-                f"{control.at.imag:g}] the virtual displacement is {dx:.4g} m per rad"
+                f"`control` does not move in the {self.direction.label} direction: its virtual displacement at "
+                f"[{control.at.real:g}, {control.at.imag:g}] is {dx:.4g} m/rad; choose a point that moves that way"
             )
         return dx
 

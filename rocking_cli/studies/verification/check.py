@@ -1,4 +1,4 @@
-"""A structure held against the code that a site file names."""
+"""Verification of a structure by the code that a site file names."""
 
 from __future__ import annotations
 

@@ -45,16 +45,16 @@ class State:
 
 @dataclass(frozen=True)
 class Method:
-    """What one method of verification says that the structure can take.
+    """Capacity of the structure by one method of verification.
 
     Parameters
     ----------
     title : str
         What to call it.
     a_g : float or None
-        Ground acceleration on rock that it can take [g]; None where the site does not say what that depends on.
+        Capacity, as ground acceleration on rock [g]; None if the site does not give what that depends on.
     asked : float or None
-        That of its limit state at the site [g].
+        Demand: that of its limit state at the site [g].
     clause : str
         Where in the code.
     return_period : float or None
@@ -72,12 +72,12 @@ class Method:
 
     @property
     def zeta(self) -> float | None:
-        """zeta_E, capacity over what is asked for."""
+        """zeta_E, capacity over demand."""
         return None if self.a_g is None or self.asked is None else self.a_g / self.asked
 
     @property
     def passes(self) -> bool | None:
-        """Whether it takes what is asked for; None where the site does not say."""
+        """Whether the capacity meets the demand; None if the site does not give the demand."""
         return None if self.zeta is None else self.zeta >= 1 - CLOSE
 
 
@@ -190,7 +190,7 @@ class Verified:
 
 @dataclass(frozen=True, eq=False)
 class Verification:
-    """A structure held against a code.
+    """Verification of a structure by a code.
 
     Parameters
     ----------

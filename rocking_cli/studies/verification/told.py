@@ -1,4 +1,4 @@
-"""Sentences that are known in several languages: English as they stand, and others when asked for."""
+"""Sentences that are known in several languages: English as they stand, and others on request."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ class Told(str):
         return told
 
     def said_in(self, language: str) -> str:
-        """It in a language."""
+        """Return the sentence in the given language."""
         values = {k: v.said_in(language) if isinstance(v, Told) else v for k, v in self._values.items()}
         return filled(self._texts[language][self._key], language, values)
 
 
 def said_in(language: str, text: str) -> str:
-    """A sentence in a language, where it is known in it; else as it stands."""
+    """Return a sentence in the given language if a translation exists, otherwise unchanged."""
     return text.said_in(language) if isinstance(text, Told) else text

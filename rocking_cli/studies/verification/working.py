@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 Standing = Literal["code", "ours", "plain"]
-"""Of a formula: of the code, and not yet held against its printed text; ours, where the code leaves it open; or plain
-mechanics and arithmetic, which need no code."""
+"""Of a formula: of the code, and not yet checked against its printed text; ours, where the code leaves it open; or
+plain mechanics and arithmetic, which need no code."""
 MEANING: dict[Standing, str] = {
-    "code": "a formula of the code that was not yet held against its printed text",
+    "code": "a formula of the code that has not yet been checked against its printed text",
     "ours": "our reading, or our choice where the code leaves it open",
     "plain": "mechanics or arithmetic, which need no code",
 }

@@ -1,1 +1,1 @@
-"""The calculation sheet of a verification: every formula with its numbers, in the language asked for."""
+"""The calculation sheet of a verification: every formula with its numbers, in a chosen language."""

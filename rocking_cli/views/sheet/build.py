@@ -42,8 +42,8 @@ def check_has_sheet(site: SiteFile) -> None:
     """Refuse a code that has no sheet. Raises `InputError`."""
     if site.site.code not in PARTS:
         problem = Problem(
-            f"there is no calculation sheet by {site.site.code}", site.document.file, field="code",
-            hint="without a sheet `rocking verify` says what it finds",
+            f"{site.site.code} has no calculation sheet", site.document.file, field="code",
+            hint="leave out the sheet: `rocking verify` then prints the result",
         )  # fmt: skip
         raise InputError(problem)
 

@@ -1,4 +1,4 @@
-"""How a sheet speaks: its texts, and how it writes numbers."""
+"""The language of a sheet: its texts, and how it writes numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sheet says in Italian, in the words of the code where it has them."""
+"""The Italian texts of a calculation sheet, in the words of the code where it has them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What histories on the capacity curve say, in a table and sentences."""
+"""The time histories on the capacity curve, as a table and sentences."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Steps to what each method says that the structure can take, as a ground acceleration and as a return period."""
+"""Steps to the capacity by each method, as a ground acceleration and as a return period."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class Asked:
     name, capacity, unit : str, float, str
         What the structure has.
     demand : str
-        What the ground asks for, in symbols.
+        The demand of the ground, in symbols.
     at : At or None
-        At which period it asks for a displacement; None for an acceleration at once.
+        The period of the displacement demand; None if the demand is an acceleration.
     """
 
     state: str
@@ -90,7 +90,7 @@ class Methods:
         return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
 
     def _items(self, name: str, method: Method, asked: Asked, more: str = "") -> Iterator[Item]:
-        """The a_g that it can take, how that is checked, zeta_E, and the return period."""
+        """Yield the capacity a_g, its check, zeta_E, and the return period."""
         say, spectrum = self.say, self.ground.spectrum(asked.state)
         assert spectrum is not None and method.a_g is not None and method.asked is not None  # its state is given
         rows: list[Working] = []
@@ -120,7 +120,7 @@ class Methods:
         yield from self._lasts(method, asked, more)
 
     def _checked(self, spectrum: Spectrum, asked: Asked) -> Iterator[Working]:
-        """What is asked for under another ground: to be held against the capacity."""
+        """Yield the steps to the demand under another ground, to be checked against the capacity."""
         say = self.say
         ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
         if asked.at is None or isinstance(spectrum, FloorSpectrum):
@@ -133,7 +133,7 @@ class Methods:
             yield from spectra.at_own_period(say, spectrum, self.ground.site.own_period, DAMPING)
 
     def _lasts(self, method: Method, asked: Asked, more: str) -> Iterator[Item]:
-        """The same as a return period."""
+        """Yield the capacity as a return period, and its check."""
         say, TR, hazard = self.say, method.return_period, self.ground.hazard
         if TR is None or hazard is None:
             return

@@ -1,4 +1,4 @@
-"""Steps to what the ground, or a floor, asks for at a period: spectra of acceleration and displacement."""
+"""Steps to the demand of the ground, or of a floor, at a period: spectra of acceleration and displacement."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def _branch(spectrum: GroundSpectrum, T: float) -> tuple[str, str]:
 
 
 def _of_table(say: Language, spectrum: TableSpectrum, at: At) -> Iterator[Working]:
-    """S_e between two ordinates, with the correction that grows in."""
+    """Yield the steps to S_e between two ordinates, with the correction that increases from T = 0."""
     T, a = np.array(spectrum.points, dtype=np.float64).T
     k = int(np.clip(np.searchsorted(T, at.T, side="right") - 1, 0, len(T) - 2))
     numbers = {"k": spectrum.factor, "a": a[k], "b": a[k + 1], "T": at.T, "Ta": T[k], "Tb": T[k + 1]}

@@ -1,4 +1,4 @@
-"""Steps from the capacity curve to what each limit state allows and the site asks for."""
+"""Steps from the capacity curve to the capacity and the demand at each limit state."""
 
 from __future__ import annotations
 

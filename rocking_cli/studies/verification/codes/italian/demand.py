@@ -1,6 +1,6 @@
 """What the ground, or a floor, asks of one degree of freedom: elastic spectra of the Italian code, floors, tables.
 
-Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3 [code: not yet held against the printed text].
+Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3 [code: not yet checked against the printed text].
 """
 
 from __future__ import annotations
@@ -215,9 +215,9 @@ class TableSpectrum:
         if period > last:
             raise InputError(
                 Problem(
-                    f"ends at {last:g} s, before the period of {period:.4g} s that is asked for",
+                    f"ends at {last:g} s, but the ordinate at {period:.4g} s is needed",
                     field=self.field,
-                    hint="give ordinates up to there: the displacement counts at long periods",
+                    hint="add ordinates up to that period: at long periods the displacement governs",
                 )
             )
 
@@ -291,7 +291,10 @@ class FloorSpectrum:
         return own if period <= self.T1 else max(own, self.ground.acceleration(period, damping))
 
     def displacement(self, period: float, damping: float) -> float:
-        """The displacement it asks for [m; C8.7.1.12]; above b T1 not below that there, nor below the ground's."""
+        """Displacement demand [m; C8.7.1.12].
+
+        Above T1 it is not less than that of the ground, above b T1 not less than its value at b T1.
+        """
         found = self.alone(period, damping) * (period / (2 * pi)) ** 2
         if period > self.T1:
             found = max(found, self.ground.displacement(period, damping))

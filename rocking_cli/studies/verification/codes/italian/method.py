@@ -1,7 +1,7 @@
 """The three methods of the Italian code for mechanisms of masonry: damage, linear, nonlinear.
 
-Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018 [code: not yet held against the printed
-text].
+Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018 [code: not yet checked against the
+printed text].
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class _Case:
     def method(
         self, title: str, clause: str, state: str, demand: Callable[[Spectrum], float], capacity: float
     ) -> Method:
-        """What a method says that the structure can take."""
+        """Capacity of the structure by one method."""
         spectrum = self.ground.spectrum(state)
         if spectrum is None:
             return Method(title, None, None, clause)
@@ -57,16 +57,16 @@ class _Case:
         return Method(title, a_g, spectrum.ag, clause, *self.ground.lasts(demand, capacity))
 
     def forces(self, spectrum: Spectrum) -> float:
-        """The acceleration that starts it [m/s2]: of the ground or the floor, of what vibrates its own."""
+        """Acceleration demand on the element [m/s2]: the peak of the ground or floor, or the ordinate at its own T0."""
         T0 = self.ground.site.own_period
         return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
 
     def methods(self, states: Mapping[str, State]) -> dict[str, Method]:
-        """All of them."""
+        """Return the methods, by key."""
         q, a0 = self.ground.site.q, self.curve.a0
         found = {
-            DAMAGE: self.method("damage: it begins to rock", "C8.7.1.6-9", "SLV", self.forces, a0),
-            LINEAR: self.method("linear: q times that", "C8.7.1.6-9", "SLV", self.forces, q * a0),
+            DAMAGE: self.method("damage: onset of rocking", "C8.7.1.6-9", "SLV", self.forces, a0),
+            LINEAR: self.method("linear: q a0*", "C8.7.1.6-9", "SLV", self.forces, q * a0),
         }
         for key, rule in zip((NONLINEAR, AT_COLLAPSE), RULES, strict=True):
             at = states[rule.state]
@@ -76,7 +76,7 @@ class _Case:
 
             title = f"nonlinear: displacement at {rule.state}"
             found[key] = self.method(title, "C8.7.1.2.1.6", rule.state, asked, at.d)
-        found["SLD"] = self.method("damage, held against SLD", "C8.7.1.6-9", "SLD", self.forces, a0)
+        found["SLD"] = self.method("damage, at SLD", "C8.7.1.6-9", "SLD", self.forces, a0)
         return found
 
 

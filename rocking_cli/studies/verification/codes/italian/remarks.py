@@ -4,27 +4,30 @@ from __future__ import annotations
 
 ENGLISH = {
     "and": "{one} and {other}",
-    "long": "A period of {T:.3g} s is above {most:g} s, where the code asks for a study of the site or for records.",
-    "missing": "The site file does not give {states}: nothing is held against it.",
+    "long": (
+        "The period of {T:.3g} s exceeds {most:g} s, above which the code requires a site-specific study or records."
+    ),
+    "missing": "The site file does not give {states}: no verification is made for what is missing.",
     "confidence": (
-        "FC = {FC:g}: it is {least:g}, that of LC1, as long as no compressive strength is taken into account."
+        "FC = {FC:g}: the value must be {least:g}, that of LC1, as long as no compressive strength is taken into "
+        "account."
     ),
     "seats": (
-        "The code ends d_SLC also where parts lose their seat, such as beams: a load may say its `seat`, and one here "
-        "does not."
+        "The code also limits d_SLC by the loss of support of parts such as beams: give loads their `seat`; here at "
+        "least one load has none."
     ),
-    "seat": "The load {name} is moved off its seat of {length:.3g} m at d = {d:.4g} m: d_SLC ends there.",
+    "seat": "The load {name} loses its seat of {length:.3g} m at d = {d:.4g} m, which limits d_SLC.",
     "no_soil": (
-        "No soil is given: displacements at long periods do not go down to those of the ground, which is on the "
-        "safe side."
+        "No soil class is given: at long periods, displacements are not reduced to the ground displacement, which is "
+        "conservative."
     ),
     "floor": (
-        "The floor amplifies by A = 1.1 xi1^-1/2 eta(xi) with xi1 as a ratio: our reading; in per cent, as the "
-        "code prints, A would reduce."
+        "The floor amplification A = 1.1 xi1^-1/2 eta(xi) is evaluated with xi1 as a ratio. This is our reading: with "
+        "xi1 in per cent, as printed in the code, A would be a reduction."
     ),
     "low_floor": (
-        "The peak of the floor, S_Z = {floor:.4g} g, is below that of the ground, a_g S = {ground:.4g} g: one mode "
-        "says too little so far down."
+        "The peak acceleration of the floor, S_Z = {floor:.4g} g, is below that of the ground, a_g S = {ground:.4g} "
+        "g: one mode is not sufficient so low in the building."
     ),
     "bound": "The return period of {state}, {TR:.4g} years, is taken as {bound:g} years.",
     "elastic": "d_{states} lie on the elastic branch of T0 = {T0:g} s.",
@@ -33,38 +36,42 @@ ENGLISH = {
     "more": "more",
     "less": "less",
     "line": (
-        "The straight line leaves the exact curve by up to {most:.2g} % of a0*; at d_SLV it is {there:.2g} % {side} "
-        "it. The exact curve counts."
+        "The straight line deviates from the exact curve by up to {most:.2g} % of a0*; at d_SLV it is {there:.2g} % "
+        "{side} it. The exact curve is used for the verdict."
     ),
     "ties": (
-        "A tie is in alpha0 by its force at rest: the rigid-plastic tie of the code is one with its yield force as "
-        "prestress, or a force. What is elastic here brings a* to {largest:.4g} m/s2 at most, {over:.3g} times a0*."
+        "A tie contributes to alpha0 with its force at rest. To model the rigid-plastic tie of the code, give its "
+        "yield force as the prestress, or as a force. The elastic ties here raise a* to at most {largest:.4g} m/s2, "
+        "{over:.3g} times a0*."
     ),
     "at_rest": (
-        "Held by what is elastic ({names}) a* would vanish nowhere, and the code counts what is there up to collapse: "
-        "it is taken as it pulls at rest, here and in histories. To count on more, give the "
-        "yield force as a load or as a prestress without stiffness."
+        "With its elastic ties ({names}), a* would never vanish, and the code counts only what acts up to collapse. "
+        "The ties are therefore taken with their force at rest, here and in time histories. To count on more, give "
+        "the yield force as a load, or as a prestress without stiffness."
     ),
-    "carries": "At d_SLV the tie {name} carries {force:.4g} kN: it and its anchors must hold that.",
+    "carries": "At d_SLV the tie {name} carries {force:.4g} kN: check that the tie and its anchorages can resist it.",
     "torn": (
-        "The courses of the crossing walls have slid apart at d = {d:.4g} m: d0* is that of the curve without them, "
-        "which alone is there up to collapse."
+        "The courses of the crossing walls lose their overlap at d = {d:.4g} m. d0* is therefore that of the curve "
+        "without them, the only one that holds up to collapse."
     ),
-    "ends": "That takes more than half of the largest a*, so that d_SLV ends there.",
+    "ends": "This removes more than half of the largest a*, so d_SLV is limited to that displacement.",
     "own_formula": (
-        "alpha0 = {alpha0:.6g} is not lambda = {lambda_:.6g}: the mechanism has its own formula of the latter."
+        "alpha0 = {alpha0:.6g} differs from lambda = {lambda_:.6g}: the mechanism has its own formula for lambda."
     ),
     "letter": (
-        "What is carried without horizontal inertia is in P y' only, our choice; by the letter every P is in P + Q: "
-        "alpha0 would be {by_letter:.4g} (here {alpha0:.4g}) and a0* {a_letter:.4g} m/s2 (here {a0:.4g})."
+        "Weights carried without horizontal inertia enter only the term P y'; this is our choice. By the letter of "
+        "the code every P belongs to P + Q: alpha0 would be {by_letter:.4g} (here {alpha0:.4g}) and a0* "
+        "{a_letter:.4g} m/s2 (here {a0:.4g})."
     ),
-    "control_same": "With this control point d0* is that of the barycentre of P + Q, {d0:.4g} m.",
+    "control_same": "With this control point, d0* is the same as with the centroid of P + Q, {d0:.4g} m.",
     "control": (
-        "With this control point d0* is {d0:.4g} m, {change:.3g} % {side} than {own:.4g} m by the barycentre of P + Q."
+        "With this control point, d0* is {d0:.4g} m, {change:.3g} % {side} than the {own:.4g} m obtained with the "
+        "centroid of P + Q."
     ),
     "control_a_g": (
-        "With this control point d0* is {d0:.4g} m, {change:.3g} % {side} than {own:.4g} m by the barycentre of P + Q; "
-        "the nonlinear method allows {a_g:.4g} g, by the barycentre {usual:.4g} g."
+        "With this control point, d0* is {d0:.4g} m, {change:.3g} % {side} than the {own:.4g} m obtained with the "
+        "centroid of P + Q; the capacity by the nonlinear method is {a_g:.4g} g, against {usual:.4g} g with the "
+        "centroid."
     ),
 }
 ITALIAN = {

@@ -24,7 +24,7 @@ Row = Annotated[list[Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=4,
 
 def _ordinates(**more: Any) -> Any:
     return quantity(
-        "elastic spectrum at 5 %: [period in s, acceleration in g], from T = 0 on, straight between",
+        "elastic spectrum at 5 % damping: [period in s, acceleration in g], starting at T = 0, linearly interpolated",
         default=None, min_length=2, max_length=MOST, **more,
     )  # fmt: skip
 
@@ -33,7 +33,7 @@ class Shaking(Part):
     """The ground of one limit state: by its parameters, or as ordinates of a spectrum."""
 
     ag: float | None = quantity("ground acceleration on rock", unit="g", symbol="a_g", default=None, gt=0, le=10)
-    F0: float | None = quantity("amplification of the spectrum", default=None, ge=1, le=10)
+    F0: float | None = quantity("maximum spectral amplification", default=None, ge=1, le=10)
     TC: float | None = quantity("end of its level part", unit="s", symbol="T_C", default=None, gt=0, le=10)
     S: float | None = quantity("factor of soil and topography", default=None, ge=0.5, le=5)
     spectrum: list[Ordinate] | None = _ordinates()
@@ -43,7 +43,7 @@ class Shaking(Part):
         """It is given in one way, and whole; a spectrum is a function."""
         there = [name for name in SIZES if given.get(name) is not None]
         if given.get("spectrum") is not None and there:
-            yield ("spectrum",), f"goes not with {there[0]}: give the parameters or the ordinates"
+            yield ("spectrum",), f"cannot be combined with {there[0]}: give either the parameters or the ordinates"
         elif given.get("spectrum") is None and cls._needs_sizes(given):
             for name in SIZES:
                 if name not in there:
@@ -69,17 +69,20 @@ def _no_function(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, s
     if not points or not sound("spectrum"):
         return
     if points[0][0] != 0:
-        yield ("spectrum", 0), f"begins at {points[0][0]:g} s: the first ordinate is at T = 0, that of the ground"
+        yield (
+            ("spectrum", 0),
+            f"starts at {points[0][0]:g} s: the first ordinate must be at T = 0, the peak ground acceleration",
+        )
     for k, (T, acceleration) in enumerate(points):
         if acceleration <= 0:
-            yield ("spectrum", k), f"has no acceleration at {T:g} s: it must be more than 0"
+            yield ("spectrum", k), f"has no positive acceleration at {T:g} s: every ordinate must be more than 0"
             return
     for k, ((before, _), (after, _)) in enumerate(pairwise(points), 1):
         if after == before:
-            yield ("spectrum", k), f"is no function: it has two ordinates at {after:g} s"
+            yield ("spectrum", k), f"has two ordinates at {after:g} s: give one ordinate per period"
             return
         if after < before:
-            yield ("spectrum", k), f"goes back from {before:g} to {after:g} s: periods must increase"
+            yield ("spectrum", k), f"steps back from {before:g} s to {after:g} s: periods must increase"
             return
 
 
@@ -89,7 +92,7 @@ class Floor(Part):
     z: float = quantity("height of the floor above the foundation", unit="m", gt=0, le=1000)
     H: float = quantity("height of the building", unit="m", gt=0, le=1000)
     T1: Period = quantity("first period of the building", unit="s")
-    xi1: float = quantity("its damping, a ratio: 0.05 for 5 %", gt=0, le=0.5)
+    xi1: float = quantity("damping ratio of the building: 0.05 for 5 %", gt=0, le=0.5)
     n: int = quantity("number of storeys", ge=1, le=200)
 
     @classmethod
@@ -97,7 +100,7 @@ class Floor(Part):
         """A floor is not above the roof."""
         z, H = given.get("z"), given.get("H")
         if z is not None and H is not None and sound("z") and sound("H") and z > H:
-            yield ("z",), f"is above the roof: the building is {H:g} m high, got {z:g} m"
+            yield ("z",), f"is above the roof: got {z:g} m, but the building is {H:g} m high"
 
 
 KAPPA = {"cantilever": 6.2, "spanning": 2.2}
@@ -137,9 +140,9 @@ class ItalianSite(Shaking, Site):
     )
     VN: float | None = quantity("nominal life", unit="years", default=None, gt=0, le=1000)
     CU: float | None = quantity("coefficient of use", default=None, gt=0, le=10)
-    floor: Floor | None = Field(None, description="the floor on which the structure stands; left out, the ground")
+    floor: Floor | None = Field(None, description="the floor on which the structure stands; if omitted, the ground")
     T0: Period | None = quantity(
-        "period of an element that is free to vibrate before it rocks, such as a parapet", unit="s", default=None
+        "period of an element that vibrates freely before it rocks, such as a parapet", unit="s", default=None
     )
 
     element: Element | None = Field(None, description="instead of T0: the element, from which T0 follows")
@@ -154,15 +157,15 @@ class ItalianSite(Shaking, Site):
         """The ground is given in one way; a hazard has what belongs to it."""
         yield from super().between(given, sound)
         if given.get("element") is not None and given.get("T0") is not None:
-            yield ("element",), "goes not with T0, which follows from it: give one of them"
+            yield ("element",), "cannot be combined with T0, which is computed from it: give one of the two"
         if given.get("hazard") is None:
             for name in ("VN", "CU"):
                 if given.get(name) is not None:
-                    yield (name,), "goes with a hazard, the table of return periods"
+                    yield (name,), "requires `hazard`, the table of return periods"
             return
         for name in (*SIZES, "spectrum", "SLC", "SLD"):
             if given.get(name) is not None:
-                yield (name,), "goes not with hazard, from which it follows: give one of them"
+                yield (name,), "cannot be combined with hazard, from which it is computed: give one of the two"
         for name in ("VN", "CU", "soil"):
             if given.get(name) is None:
                 yield (name,), f"is missing: a hazard needs the {cls.model_fields[name].description}"

@@ -18,10 +18,10 @@ from rocking_cli.studies.verification.results import Method, State, Verified
 from rocking_cli.studies.verification.ties import carried, elastic
 from rocking_cli.studies.verification.told import Told
 
-LONG = 4.0  # s: above it the code asks for a study of the site, or records
+LONG = 4.0  # s: above it the code requires a study of the site, or records
 LEAST_CONFIDENT = 1.35  # FC of the least knowledge, LC1
 ROUNDING = 1e-9
-CURVED = 0.01  # of a*: how far the straight line may be off before it is said
+CURVED = 0.01  # of a*: how far the straight line may be off before it is stated
 
 
 def _told(key: str, **values: Any) -> Told:

@@ -176,7 +176,7 @@ def _of_states(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -
         off = rule.at_seats and curve.seat is not None and at.d == curve.seat.d
         formula = "displacement of a break" if broken else "loss of a seat" if off else f"{rule.share:g} d0*"
         put = "" if broken or off else f"{rule.share:g} x {_n(curve.d0)}"
-        yield Working(f"d_{s}", f"displacement allowed at {s}", formula, put, at.d, "m", "C8.7.1.2.1.6")
+        yield Working(f"d_{s}", f"displacement capacity at {s}", formula, put, at.d, "m", "C8.7.1.2.1.6")
         formula = f"alpha g/(e* FC) at d_{s}"
         yield Working(f"a*(d_{s})", "acceleration there", formula, "", at.a, "m/s2", "C8.7.1.3")
         put = f"{rule.factor:g} pi sqrt({_n(at.d)}/{_n(at.a)})"
@@ -189,7 +189,7 @@ def _of_states(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -
 def _of_demand(rule: Rule, at: State, demand: float, ground: Ground) -> Working:
     spectrum = ground.spectrum(rule.state)
     eta = f"eta = sqrt(10/(5 + {100 * rule.damping:g})) = {_n(correction(rule.damping))}"
-    meaning = f"displacement asked for at {rule.state}"
+    meaning = f"displacement demand at {rule.state}"
     symbol = f"S_De(T_{rule.state})"
     if isinstance(spectrum, FloorSpectrum):
         formula = "S_eZ T^2/4 pi^2, above b T1 not less than there, above T1 not less than the ground's"

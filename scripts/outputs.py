@@ -1,0 +1,187 @@
+"""Keep what the commands print for the shipped examples, and compare two such states of the program.
+
+    python scripts/outputs.py keep FOLDER           # run all commands with the program that this Python imports
+    python scripts/outputs.py compare BEFORE AFTER  # exit code 1 if anything but sentences differs
+
+To keep the outputs of another commit, check it out beside this one and put it first on PYTHONPATH. Compared are exit
+codes, keys, numbers, truth values and nulls of the JSON, and the heads and numbers of written tables; sentences that
+differ are listed, they do not count.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import shlex
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import chdir
+from pathlib import Path
+from typing import Any
+
+import yaml
+from click.testing import CliRunner
+
+PROJECT = Path(__file__).resolve().parent.parent
+STRUCTURES = sorted(
+    file.relative_to(PROJECT).as_posix()
+    for folder in ("", "linkages", "masonry", "walls")
+    for file in (PROJECT / "examples" / folder).glob("*.yaml")
+)
+ACCEL = "--record examples/accel.csv"
+SITE = "--site examples/verify/site.yaml"
+OF_EACH = (
+    "equiv {0} --json",
+    "equiv {0}",
+    "draw {0} --plot draw.png --json",
+    "error {0} --at 0.5 --a 2 --json",
+    f"respond {{0}} {ACCEL} --json --out history.csv",
+    f"respond {{0}} {ACCEL} --scale 2 --polarity both",
+    f"margin {{0}} {ACCEL} --json",
+    f"verify {{0}} {SITE} --json --sheet sheet.html",
+    f"verify {{0}} {SITE} {ACCEL} --json",
+    "collapse {0} --json",
+)
+"""Commands run for every example of a structure."""
+
+ONCE = (
+    f"margin examples/frame.yaml {ACCEL}",
+    f"verify examples/verify/facade.yaml {SITE}",
+    f"verify examples/verify/facade.yaml {SITE} --json",
+    f"verify examples/verify/facade.yaml {SITE} {ACCEL} --json",
+    f"survey examples/survey/parapets.csv {ACCEL} --json --out survey.csv",
+    f"survey examples/survey/parapets.csv {SITE} --json",
+    'design examples/block.yaml --vary width=0.3m:1m --until "lambda >= 0.3" --json',
+    f'design examples/block.yaml --vary width=0.3m:1m {ACCEL} --until "peak_ratio < 0.3" --json',
+    "record examples/accel.csv --json",
+    "record examples/accel.csv --trim 1:11 --highpass 0.3 --lowpass 15 --json --out corrected.csv",
+    "record examples/accel.csv --fit-pulse --measures all --json",
+    "respond examples/frame.yaml --pulse ricker:0.4g:1.2s --json",
+    f"respond examples/frame.yaml {ACCEL} --with examples/accel_transverse.csv --azimuth all --json",
+    f"respond examples/block.yaml {ACCEL} --floor T1=0.4,xi=0.05,z=0.67,gamma=1.29 --json",
+    f"respond examples/block.yaml {ACCEL} --release 0.05 --json",
+    "pulse --a 2 --omega 3 --json",
+    "pulse --a 4 --omega 6",
+    "overturning examples/block.yaml --json",
+    "overturning examples/masonry/buttressed_arch.yaml --json",
+    "overturning --compare examples/block.yaml examples/frame.yaml examples/wall.yaml --json",
+    "equivalent examples/block.yaml examples/frame.yaml --ag 0.6g --period 0.5 --json",
+    f"spectrum examples/block.yaml {ACCEL} --slenderness 0.2,0.3 --json",
+    f"spectrum examples/masonry/portal.yaml {ACCEL} --json",
+    "fragility examples/study/pedestal.yaml --restart --json",
+    "results examples/study/pedestal.db --json",
+    f"report examples/frame.yaml {ACCEL} -o report.html --json",
+    "mechanisms --json",
+    "measures --json",
+    "new site",
+    "new study",
+)
+
+
+def commands() -> list[str]:
+    """Return all commands to run, those that fail on purpose among them."""
+    starters = ("facade", "parapet", "gable", "pinnacle", "corner", "bell_cell", "column_with_tendon", "statue")
+    names = [file.stem for file in sorted((PROJECT / "mechanisms").glob("*.py")) if not file.stem.startswith("_")]
+    return [
+        *(command.format(file) for file in STRUCTURES for command in OF_EACH),
+        *ONCE,
+        *(f"new {name}" for name in (*starters, *names) if name != "__init__"),
+        *(f"mechanisms {name} --json" for name in names if name != "__init__"),
+    ]
+
+
+def keep(folder: Path) -> None:
+    """Run all commands in an empty folder, and write what each gave to `outputs.json` there."""
+    from rocking_cli.cli.main import main  # of the program under trial, which PYTHONPATH names
+
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(PROJECT / "examples", folder / "examples")
+    kept = {}
+    with chdir(folder):
+        for command in commands():
+            there = set(Path().rglob("*"))
+            arguments = shlex.split(command)
+            done = CliRunner().invoke(main, arguments, env={"COLUMNS": "100", "SOURCE_DATE_EPOCH": "0"})
+            made = {
+                file.name: file.read_text(encoding="utf-8")
+                for file in sorted(set(Path().rglob("*")) - there)
+                if file.suffix in (".csv", ".json")
+            }
+            kept[command] = {"exit": done.exit_code, "out": done.stdout, "err": done.stderr, "files": made}
+            for name in ("history.csv", "sheet.html", "draw.png", "survey.csv", "corrected.csv", "report.html"):
+                Path(name).unlink(missing_ok=True)
+            print(done.exit_code, command, file=sys.stderr)
+    (folder / "outputs.json").write_text(json.dumps(kept, indent=1), encoding="utf-8")
+
+
+def compare(before: Path, after: Path) -> int:
+    """Print what differs, sentences apart from the rest; return 1 if anything but a sentence does."""
+    one, other = (json.loads((folder / "outputs.json").read_text(encoding="utf-8")) for folder in (before, after))
+    wrong: list[str] = []
+    sentences: dict[tuple[str, str], str] = {}
+    for command in sorted({*one, *other}):
+        if command not in one or command not in other:
+            wrong.append(f"{command}: only {'before' if command in one else 'after'}")
+            continue
+        for place, a, b in differences(parsed(command, one[command]), parsed(command, other[command])):
+            if isinstance(a, str) and isinstance(b, str):
+                sentences.setdefault((a, b), f"{command} {place}")
+            else:
+                wrong.append(f"{command} {place}: {a!r} -> {b!r}")
+    for (a, b), place in sentences.items():
+        print(f"{place}\n  - {a.strip()}\n  + {b.strip()}")
+    print(f"{len(one)} commands; {len(sentences)} sentences differ, {len(wrong)} other differences")
+    print(*wrong, sep="\n")
+    return 1 if wrong else 0
+
+
+def parsed(command: str, done: dict[str, Any]) -> dict[str, Any]:
+    """Return what a command gave as data: JSON and YAML read, tables as rows of numbers and words."""
+    if "--json" in command:
+        out: Any = [json.loads(line) for line in done["out"].splitlines()]
+    elif command.startswith("new "):
+        out = yaml.safe_load(done["out"])
+    else:
+        out = done["out"]
+    files = {name: cells(text) if name.endswith(".csv") else json.loads(text) for name, text in done["files"].items()}
+    return {"exit": done["exit"], "out": out, "err": done["err"], "files": files}
+
+
+def cells(text: str) -> list[list[float | str]]:
+    """Return the cells of a table; those of its head are keys, so each is a number or a list of one word."""
+    return [[number_or_word(cell) for cell in row] for row in csv.reader(text.splitlines()) if row[:1] != ["#"]]
+
+
+def number_or_word(cell: str) -> float | str:
+    """Return a cell as a number if it is one."""
+    try:
+        return float(cell)
+    except ValueError:
+        return cell
+
+
+def differences(one: Any, other: Any, place: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Yield place and both values of whatever differs."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        if one.keys() != other.keys():
+            yield f"{place} keys", sorted(one.keys() - other.keys()), sorted(other.keys() - one.keys())
+        for key in one.keys() & other.keys():
+            yield from differences(one[key], other[key], f"{place}.{key}")
+    elif isinstance(one, list) and isinstance(other, list):
+        if len(one) != len(other):
+            yield f"{place} length", one, other
+        for k, (a, b) in enumerate(zip(one, other, strict=False)):
+            yield from differences(a, b, f"{place}[{k}]")
+    elif type(one) is not type(other) or (one != other and one == one):
+        yield place, one, other
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("MPLBACKEND", "Agg")
+    what, *folders = sys.argv[1:]
+    if what == "keep":
+        keep(Path(folders[0]).resolve())
+    else:
+        sys.exit(compare(*map(Path, folders)))

@@ -1,0 +1,96 @@
+"""The help of every command speaks one language: section 6 of the style guide, checked command by command."""
+
+import re
+from importlib import import_module
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from rocking_cli.cli.help import OF_RECORDS, OPTIONS
+from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.cli.options import CORRECTIONS
+
+WIDEST = 60
+NO_VERBS = ("The", "A", "An", "Its", "What", "Which", "Who", "How", "Where", "Whether")
+QUESTIONS = ("Which", "How many", "How much", "What", "Who", "Where", "Whether")
+DIFFERENT = {
+    "--a": "of `error` it is a constant acceleration, of the others the amplitude of a pulse",
+    "--at": "`draw` draws one rotation, `error` evaluates several",
+    "--check": "`fragility` shows a plan, `mechanisms` checks a mechanism",
+    "--out": "the text names what is written",
+    "--period": "of `record` it is that of a spectrum, of the others that of a pulse",
+    "--plot": "the text names what is plotted",
+    "--record": "`figure` takes one, for Figure 14",
+}
+"""Options whose meaning differs between commands, and why one text would be false."""
+ONCE = {*(f"--{name}" for name in CORRECTIONS), ("figure", "--record")}
+"""Options that are declared as multiple only to refuse a second one by themselves."""
+
+COMMANDS_BY_NAME = {name: import_module(f"rocking_cli.cli.{name}").command for name in COMMANDS}
+EVERY_OPTION = [
+    (name, max(each.opts, key=len), each)
+    for name, command in COMMANDS_BY_NAME.items()
+    for each in command.params
+    if isinstance(each, click.Option) and not each.hidden
+]
+
+
+def words(option):
+    """Return the help text of an option without its default, which may differ between commands."""
+    return re.sub(r"  \[default: .*\]$", "", option.help or "")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_short_help_of_a_command_is_a_verb_and_its_object(name):
+    said = COMMANDS_BY_NAME[name].get_short_help_str(1000)
+    assert len(said) <= WIDEST, f"{name}: {len(said)} characters: {said}"
+    assert said.endswith("."), f"{name}: no full stop: {said}"
+    for text in (said, COMMANDS_BY_NAME[name].help):
+        first = text.split()[0]
+        assert re.fullmatch(r"[A-Z][a-z]+,?", first) and first not in NO_VERBS, f"{name}: {first} is not a verb: {text}"
+
+
+def test_options_of_one_name_have_one_text():
+    texts = {}
+    for name, option, each in EVERY_OPTION:
+        texts.setdefault(option, {}).setdefault(words(each), []).append(name)
+    for option, found in texts.items():
+        assert (len(found) > 1) == (option in DIFFERENT), f"{option}: {found}"
+
+
+@pytest.mark.parametrize(
+    ("name", "option", "each"), EVERY_OPTION, ids=lambda value: value if isinstance(value, str) else ""
+)
+def test_an_option_says_what_its_value_is(name, option, each):
+    said = words(each)
+    assert said[:1].isupper() and said.rstrip().endswith((".", "standard output.")), f"{name} {option}: {said!r}"
+    for question in QUESTIONS:
+        assert not re.match(rf"{question}\b", said), f"{name} {option} begins with {question}: {said}"
+    if each.multiple and option not in ONCE and (name, option) not in ONCE:
+        assert "Repeatable." in said, f"{name} {option} may be given several times and does not say Repeatable.: {said}"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_options_of_records_have_a_heading_of_their_own(name):
+    result = CliRunner().invoke(main, [name, "--help"], env={"COLUMNS": "100"})
+    before, _, after = result.output.partition(f"\n{OF_RECORDS}:\n")
+    assert f"\n{OPTIONS}:\n" in before, f"{name}: no {OPTIONS}"
+    assert "--help" in before, f"{name}: --help is not among its {OPTIONS}"
+    rows = re.findall(r"^  \S+", before.partition(f"\n{OPTIONS}:\n")[2] + after, re.MULTILINE)
+    assert all(row.startswith("  -") for row in rows), f"{name}: {rows} are not all options"
+    for _, option, each in (found for found in EVERY_OPTION if found[0] == name):
+        of_records = getattr(each, "heading", OPTIONS) == OF_RECORDS
+        listed = re.compile(rf"^  (-\w, )?{option}\b(?!-)", re.MULTILINE)
+        assert bool(listed.search(after)) == of_records, f"{name} {option} is listed under the wrong heading"
+        assert bool(listed.search(before)) != of_records, f"{name} {option} is listed under the wrong heading"
+
+
+def test_every_command_that_reads_records_has_the_same_options_for_that():
+    listed = {}
+    for name, option, each in EVERY_OPTION:
+        if getattr(each, "heading", None) == OF_RECORDS and not option.startswith(
+            ("--vertical", "--scale", "--target")
+        ):
+            listed.setdefault(name, []).append(option)
+    assert len(listed) == 11 and len({tuple(each) for each in listed.values()}) == 1, listed
