@@ -12,6 +12,7 @@ import click
 
 import rocking_cli
 from rocking_cli import core
+from rocking_cli.cli.help import OF_RECORDS, RecordOption
 from rocking_cli.cli.main import main
 from rocking_cli.views.mechanisms import fields
 
@@ -19,13 +20,17 @@ EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
 
 def command_line() -> str:
-    """Return usage, help and options of the group and of every command."""
+    """Return usage, help and options of the group and of every command; options of records come once, at the end."""
     group = click.Context(main, info_name="rocking", **main.context_settings)
     parts = [described(main, group)]
+    of_records: dict[str, str] = {}
     for name in main.list_commands(group):
         command = main.get_command(group, name)
         assert command is not None
-        parts.append(f"## rocking {name}\n\n" + described(command, click.Context(command, group, info_name=name)))
+        ctx = click.Context(command, group, info_name=name)
+        parts.append(f"## rocking {name}\n\n" + described(command, ctx))
+        of_records |= listed(command, ctx, of_records=True)
+    parts += [f"## {OF_RECORDS}", "Each command above names those of these options that it has.", bullets(of_records)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -44,10 +49,23 @@ def paragraph(text: str) -> str:
 
 
 def options(command: click.Command, ctx: click.Context) -> str:
-    """Return a list of the entries of `--help`."""
-    listed = [each for each in command.get_params(ctx) if isinstance(each, click.Option)]
-    records = [found for each in listed if (found := each.get_help_record(ctx)) is not None]
-    return "\n".join(f"- `{names}`: {plain(meaning)}" for names, meaning in records)
+    """Return a list of the entries of `--help`, and the names of the options of records."""
+    found = bullets(listed(command, ctx, of_records=False))
+    names = [f"`{each.split()[0]}`" for each in listed(command, ctx, of_records=True)]
+    link = f"[{OF_RECORDS}](#{OF_RECORDS.lower().replace(' ', '-')})"
+    return found + (f"\n\n{link}: {', '.join(names)}." if names else "")
+
+
+def listed(command: click.Command, ctx: click.Context, *, of_records: bool) -> dict[str, str]:
+    """Return the meanings of the options under one heading of `--help`, by their names."""
+    wanted = (each for each in command.get_params(ctx) if isinstance(each, click.Option))
+    found = (each.get_help_record(ctx) for each in wanted if isinstance(each, RecordOption) == of_records)
+    return dict(each for each in found if each is not None)
+
+
+def bullets(meanings: dict[str, str]) -> str:
+    """Return a list of options and their meanings."""
+    return "\n".join(f"- `{names}`: {plain(meaning)}" for names, meaning in meanings.items())
 
 
 def plain(text: str) -> str:

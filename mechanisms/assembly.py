@@ -114,7 +114,8 @@ class Assembly(Membered):
     verified: ClassVar[str] = "arches, portals and stacks by hand; static and kinematic multiplier; brute force"
     caution: ClassVar[str] = (
         "The assembly rocks on the joints that open first, and the result is valid only while no other joint opens: "
-        "see `valid_to`. If friction is given, sliding joints also open (associated flow), which overestimates lambda."
+        "`rocking collapse` gives the rotation up to which this is so. If friction is given, a joint that slides is "
+        "assumed to open as well (associated flow), which overestimates lambda."
     )
 
     starter: ClassVar[tuple[str, ...]] = ("density", "depth")

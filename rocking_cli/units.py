@@ -122,7 +122,7 @@ def read(text: str, unit: str) -> float:
     if not given:
         raise UnitError(f"{shown!r} is a text without a unit")
     if not known:
-        raise UnitError(f"{shown!r} has a unit: give a number without one")
+        raise UnitError(f"{shown!r} has a unit", "give a number without one")
     if given == _plain(unit):
         return float(number)
     if kind and given in known:

@@ -31,7 +31,7 @@ def launch():
 
 @contextmanager
 def opened(browser, path, **context):
-    """A page of a file; at the end it must have asked for nothing but itself, and complained of nothing."""
+    """A page of a file; at the end it must have requested nothing but itself, and reported no error."""
     asked, said = [], []
     shown = browser.new_context(**{"viewport": {"width": 1000, "height": 900}, "reduced_motion": "reduce", **context})
     try:

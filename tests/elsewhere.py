@@ -96,18 +96,18 @@ def under_version(version: tuple[int, int]) -> tuple[str, int, str]:
     return what, done.returncode, done.stdout
 
 
-def main(asked: list[str]) -> int:
-    """Run what is asked for, as much at a time as there are processors; 1 if anything fails."""
+def main(suites: list[str]) -> int:
+    """Run the requested suites, as many at a time as there are processors; return 1 if any of them fails."""
     known: dict[str, list[Callable[[], tuple[str, int, str]]]] = {
         "kernels": [lambda name=name: under_kernel(name) for name in KERNELS],
         "versions": [lambda version=version: under_version(version) for version in VERSIONS],
     }
-    if not asked or not set(asked) <= set(known):
+    if not suites or not set(suites) <= set(known):
         print(f"give {' or '.join(known)}", file=sys.stderr)
         return 2
     began, failed = monotonic(), False
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for what, code, said in pool.map(lambda job: job(), [job for name in asked for job in known[name]]):
+        for what, code, said in pool.map(lambda job: job(), [job for each in suites for job in known[each]]):
             failed |= code != 0
             last = said.strip().splitlines()[-1:]
             print(f"{what}: {said if code else ''.join(last)}", flush=True)

@@ -1,4 +1,4 @@
-"""The exact answer to a pulse, as the data of `rocking pulse` have it: what there is none of is None."""
+"""The exact answer to a pulse, as the data of `rocking pulse` have it: values that do not exist are None."""
 
 from math import isnan
 from types import SimpleNamespace

@@ -58,7 +58,7 @@ def test_lambda_of_voussoirs_is_the_static_multiplier(beta, ratio, n):
 
 @pytest.mark.parametrize(("beta", "ratio"), CONTINUOUS)
 def test_lambda_of_a_continuous_ring_is_the_static_multiplier_of_many_joints(beta, ratio):
-    # 1000 joints leave an excess of about 3e-6 (it falls as 1/n^2, next test), within the 1e-5 asked for.
+    # 1000 joints leave an excess of about 3e-6 (it falls as 1/n^2, next test), within the 1e-5 required.
     static = Voussoirs(np.radians(beta), ratio, 1000).static_lambda()
     ring = arch(beta, ratio)
     for direction in BOTH:

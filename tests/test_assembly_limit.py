@@ -167,7 +167,7 @@ def test_a_gap_in_metres_is_that_of_small_blocks_beside_large_ones():
 
 
 def test_a_corner_on_an_edge_is_no_joint_and_corners_that_meet_are_none():
-    with pytest.raises(ContactFault, match="a corner on an edge is no joint") as caught:
+    with pytest.raises(ContactFault, match="a corner on an edge does not count as a joint") as caught:
         contacts([Block("diamond", (0j, 1 + 1j, 2j, -1 + 1j), 2.0, 1j)], FLOOR)
     assert caught.value.blocks == ("diamond",)
     one, other = rectangle("one", 0, 0, 1, 1), rectangle("other", 1, 1, 2, 2)

@@ -1,4 +1,4 @@
-"""`rocking pulse` on a structure, and what it says where it is asked for what it cannot do."""
+"""`rocking pulse` on a structure, and its messages if it cannot do what is requested."""
 
 import json
 import subprocess
@@ -111,15 +111,15 @@ def test_where_the_closed_form_holds_it_is_the_first_rebound(block):
     assert closed["valid"]
     assert closed["off_first_rebound"] == approx(0, abs=1e-12)
     said = run(block, "--ag", f"{4 * one.lambda_ * 9.80665!r}m/s2", "--period", period).stdout
-    assert "linear2: all conditions hold, the closed form can be used" in said
+    assert "linear2: all conditions are met, so the closed form can be used" in said
 
 
 def test_where_it_fails_the_condition_and_the_difference_are_said(block):
     said = " ".join(run(block, "--ag", "0.4g", "--period", 0.5).stdout.split())
-    assert "do not use the closed form here, it holds only where the first impact comes after the pulse" in said
+    assert "do not use the closed form here, because it holds only where the first impact comes after the pulse" in said
     got = run_json(block, "--ag", "0.4g", "--period", 0.5)["closed_form"]["linear1"]
     assert got["max_ratio"] is None and got["reason"] in said
-    assert f"Eq. 41 says {got['printed_ratio']:.4g}" in said
+    assert f"Eq. 41 gives {got['printed_ratio']:.4g}" in said
     assert f"{got['off_peak_ratio']:.3g}" in said
 
 
@@ -134,8 +134,8 @@ def test_both_directions_of_an_asymmetric_structure_and_both_polarities():
     first, other = (got["polarities"][sign]["responses"]["linear2"]["peak_ratio"] for sign in ("1", "-1"))
     assert first != other
     said = run(FRAME, "--ag", "0.4g", "--period", 0.8, "--polarity", "both").stdout
-    assert "No closed form: Eqs. 41-42 are for a structure that rocks alike in both directions." in said
-    assert "Polarity 1: as it is" in said
+    assert "No closed form: Eqs. 41-42 apply to a structure with the same properties in both directions." in said
+    assert "Polarity 1: as given" in said
     assert "Polarity -1: reversed" in said
 
 
@@ -144,7 +144,9 @@ def test_a_shape_that_is_no_chain_of_sines_is_sampled_and_that_is_said(block):
     got = run_json(*arguments)
     assert [each["exact"] for each in got["responses"].values()] == [False] * 3
     assert got["closed_form"] is None
-    assert "no exact answer either: the linear models are followed on a sampled one" in run(*arguments).stdout
+    assert (
+        "no exact solution either: the linear models are simulated under the sampled pulse." in run(*arguments).stdout
+    )
     fine = respond(load_structure(block), parse_pulse("ricker:0.5g:0.6s").sampled(20_000), tail=0.0)
     for name, history in fine.items():
         assert got["responses"][name]["peak_ratio"] == approx(history.peak_ratio, rel=1e-4)
@@ -160,7 +162,7 @@ def test_further_numbers_of_a_shape_follow_its_name(block):
 def test_too_weak_a_pulse_is_an_answer(block):
     said = run(block, "--ag", "0.1g", "--period", 0.8).stdout
     assert "The structure does not uplift." in said
-    assert "No closed form: by the equivalent blocks it does not uplift (a <= 1)." in said
+    assert "No closed form: by the equivalent blocks, the structure does not uplift (a <= 1)." in said
     got = run_json(block, "--ag", "0.1g", "--period", 0.8)
     assert {each["peak_ratio"] for each in got["responses"].values()} == {0.0}
 
@@ -197,19 +199,19 @@ def test_sampling_is_refined_until_it_changes_nothing(block):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ((), "Missing --a and --omega"),
-        (("--a", 2), "Missing --omega"),
+        ((), "--a and --omega are missing"),
+        (("--a", 2), "--omega is missing"),
         (("--a", 2, "--omega", 3, "--ag", "0.4g"), "--a is for the dimensionless block, --ag for a structure"),
-        (("--ag", "0.4g", "--period", 1, "--eta", 0.9), "eta is the restitution in its file"),
+        (("--ag", "0.4g", "--period", 1, "--eta", 0.9), "eta is `restitution` in its file"),
         (("--ag", "0.6", "--period", 0.8), "'0.6' has no unit: give one of g, m/s2"),
         (("--ag=-0.6g", "--period", 0.8), "--polarity -1 reverses the pulse"),
-        (("--ag", "0.6g"), "needs --period in seconds"),
-        (("--polarity", "-1"), "needs --ag, such as 0.6g"),
+        (("--ag", "0.6g"), "requires --period in seconds"),
+        (("--polarity", "-1"), "requires --ag, such as 0.6g"),
         (("--ag", "0.6g", "--period", 0), "'0' is not positive"),
         (("--ag", "0.6g", "--period", "1kg"), "1kg is a mass, not a time"),
         (("--ag", "0.6g", "--period", 1, "--shape", "sin"), "did you mean sine?"),
         (("--ag", "0.6g", "--period", 1, "--shape", "sine:3"), "expected sine:AMPLITUDE:PERIOD"),
-        (("--a", 2, "--omega", 3, "--shape", "ricker"), "for another one give FILE, --ag and --period"),
+        (("--a", 2, "--omega", 3, "--shape", "ricker"), "for other shapes, give FILE, --ag and --period"),
         (("--a", 2, "--omega", -3), "-3 is not a positive number"),
         (("--a", 2, "--omega", 3, "--eta", 1.2), "1.2 is not in the range"),
         (("nowhere.yaml", "--ag", "0.6g", "--period", 1), "nowhere.yaml: no such file"),
@@ -231,7 +233,7 @@ def test_the_dimensionless_block_takes_other_shapes_without_a_closed_form(shape)
     assert got["shape"] == shape
     assert got["closed_form"] is None
     assert got["exact"]["max_ratio"] == exact_pulse(2, 8, 0.9, shape).max_ratio
-    assert "There is no closed form for this shape" in run("--a", 2, "--omega", 8, "--shape", shape).stdout
+    assert "No closed form exists for this shape" in run("--a", 2, "--omega", 8, "--shape", shape).stdout
 
 
 @pytest.mark.parametrize("shape", ["sine", "rectangular"])

@@ -151,7 +151,7 @@ def test_another_set_takes_the_place_of_the_one_before(files):
     assert len(list(files.glob("set/*.csv"))) == 4
     told = run("select", "r*.AT2", *ASKED, "--count", 2, "-o", "set").stderr
     assert len(list(files.glob("set/*.csv"))) == 2
-    assert "of an earlier set taken away" in told
+    assert "of an earlier set removed" in told
     before = {path.name: path.read_bytes() for path in files.glob("set/*")}
     (files / "set/mine.csv").write_text("t [s],a [m/s2]\n0,0\n1,1\n")
     assert "mine.csv" in run("select", "r*.AT2", *ASKED, "--count", 3, "-o", "set", code=2).stderr
@@ -176,7 +176,10 @@ def test_what_it_did_not_write_is_not_replaced(files, prepare, message):
 
 
 def test_the_folder_of_the_records_is_not_written_into(files):
-    assert "folder of what is read" in run("select", "r*.AT2", *ASKED, "--count", 2, "-o", ".", code=2).stderr
+    assert (
+        "--out is the folder of an input file"
+        in run("select", "r*.AT2", *ASKED, "--count", 2, "-o", ".", code=2).stderr
+    )
     assert not (files / "set.yaml").exists()
 
 
@@ -197,7 +200,7 @@ def test_nothing_that_can_be_used_is_wrong_input():
 def test_the_target_is_no_record():
     told = run("select", "*.AT2", "code.csv", *ASKED, "--count", 2).stderr
     assert "code.csv is the target" in told
-    assert "Nothing to choose from" in run("select", "code.csv", *ASKED, "--count", 2, code=2).stderr
+    assert "No records to choose from" in run("select", "code.csv", *ASKED, "--count", 2, code=2).stderr
 
 
 def test_standard_input_is_kept_as_what_it_gave(files):
@@ -220,13 +223,13 @@ def test_two_records_of_one_name_are_two(files):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--count", "2", "--band", "2:0.2"), "does not grow"),
-        (("--count", "2", "--band", "0.2"), "is no range"),
+        (("--count", "2", "--band", "2:0.2"), "is not increasing"),
+        (("--count", "2", "--band", "0.2"), "is not a range"),
         (("--count", "2", "--band", "0.2:9"), "the target goes from 0 to 4 s"),
-        (("--count", "9",), "--count: a set of 9 is asked for, and there are 7 records"),
+        (("--count", "9",), "--count: a set of 9 was requested, but 7 records are available"),
         (("--count", "5",), "one per event leaves 4"),
         (("--count", "0",), "--count"),
-        (("--count", "2", "--within", "1.3:0.9"), "does not grow"),
+        (("--count", "2", "--within", "1.3:0.9"), "is not increasing"),
         (("--count", "2", "--damping", "100%"), "--damping"),
         (("--count", "2", "--damping", "-5%"), "--damping"),
         (("--count", "2", "--one-per", "fault"), "--one-per"),
@@ -242,7 +245,7 @@ def test_wrong_input_is_pointed_at(words, message):
 
 def test_what_the_target_leaves_open_is_said(files):
     (files / "code.csv").write_text(TARGET.partition("\n")[2])
-    assert "names no unit" in run("select", "r*.AT2", *ASKED, "--count", 2).stderr
+    assert "does not name a unit" in run("select", "r*.AT2", *ASKED, "--count", 2).stderr
     (files / "code.csv").write_text("T,Sa\n0.1,30\n3,20\n")
     told = run("select", "r*.AT2", *ASKED, "--count", 2, "--factors", "0.1:1000").stderr
     assert "reaches 30 g" in told

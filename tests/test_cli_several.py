@@ -71,7 +71,7 @@ class TestRespond:
                 else:
                     assert cell == ("-" if found["uplift_time"] is None else f"{found['peak_ratio']:.4g}")
         assert {cell for row in rows.values() for cell in row[1:]} >= {"overturns", "uplift"}
-        assert "By the nonlinear model 1 of 3 motions overturn it." in text
+        assert "By the nonlinear model, 1 of 3 motions overturn it." in text
         assert (
             "none of 2 motions overturns it"
             in run("respond", FRAME, "--pulse", "sine:0.1g:1s", "--pulse", "ricker:0.1g:1s").stdout
@@ -81,7 +81,7 @@ class TestRespond:
         both = run("respond", FRAME, "--record", records, "--polarity", "both").stdout
         table, _, said = both.partition("By the")
         assert table.count(".csv, reversed") == 3 and table.count(".csv") == 6
-        assert said.count("needs a friction of") == 1  # of the motion that asks most of the joints
+        assert said.count("requires a coefficient of friction of") == 1  # of the motion that demands most of the joints
         pulses = run("respond", FRAME, "--record", records, "--with-pulse", "sine", "--target-pga", "0.3").stdout
         assert pulses.count("its sine pulse alone") == 3
 
@@ -106,7 +106,7 @@ class TestRespond:
         before = (tmp_path / "o-east-r.csv").read_bytes()
         (tmp_path / "east-r.csv").write_bytes(before)
         asked = ("respond", "--record", "east-r.csv", "--record", "o-east-r.csv", "--out", "o.csv")
-        assert "would overwrite what is read" in run(*asked, code=2).stderr
+        assert "would overwrite an input file" in run(*asked, code=2).stderr
         assert (tmp_path / "o-east-r.csv").read_bytes() == before
 
     def test_a_bad_one_is_reported_and_the_others_are_shown(self, records):
@@ -146,11 +146,14 @@ class TestRespond:
     @pytest.mark.parametrize(
         ("options", "said"),
         [
-            (("--record", "r/*.csv", "--vertical", "r/east.csv"), "that of one motion"),
-            (("--record", "r/east.csv", "--pulse", "sine:0.3g:1s"), "exclude each other"),
-            (("--record", "r/east.csv", "r/north.csv"), "pattern in quotes: --record '*.csv'"),
-            (("--record", "r/east.csv", "r/north.csv", "r/west.csv"), "pattern in quotes: --record '*.csv'"),
-            ((BLOCK, BLOCK, "--record", "r/east.csv"), "of one structure, and 2 are given"),
+            (("--record", "r/*.csv", "--vertical", "r/east.csv"), "--vertical applies to a single motion"),
+            (
+                ("--record", "r/east.csv", "--pulse", "sine:0.3g:1s"),
+                "--record and --pulse cannot be combined: choose one",
+            ),
+            (("--record", "r/east.csv", "r/north.csv"), "use a quoted pattern: --record '*.csv'"),
+            (("--record", "r/east.csv", "r/north.csv", "r/west.csv"), "use a quoted pattern: --record '*.csv'"),
+            ((BLOCK, BLOCK, "--record", "r/east.csv"), "takes one structure, but 2 are given"),
         ],
     )
     def test_what_does_not_go_together(self, records, options, said):
@@ -182,6 +185,6 @@ class TestOthers:
 
     def test_figure_14_is_of_one_record(self, records):
         assert (
-            "of one record, and 2 are given"
+            "uses a single record, but 2 are given"
             in run("figure", "14", "--record", "r/east.csv", "--record", "r/west.csv", code=2).stderr
         )

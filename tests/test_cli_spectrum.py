@@ -144,7 +144,7 @@ class TestReported:
         full = json.loads(run(*asked).stdout)["spectra"][0]
         monkeypatch.setattr(study, "respond_many", some_fail)
         result = run(*asked, code=5)
-        assert "2 of 18 responses could not be followed" in result.stderr
+        assert "2 of 18 responses could not be simulated" in result.stderr
         assert "pedestal at 2 pi/p = 1 s under r0.csv; pedestal at 2 pi/p = 1.565 s under r1.csv" in result.stderr
         found = json.loads(result.stdout)["spectra"][0]
         assert found["motions"] == [2, 2, 3, 3, 3, 3]
@@ -178,12 +178,15 @@ class TestWrongUse:
             (("--record", ACCEL, "--slenderness", "5"), "alpha = atan(b/h)"),
             (("--record", ACCEL, "--slenderness", "0.1,x"), "'x' is not a number"),
             (("--record", ACCEL, "--slenderness", "1.2"), "too stocky"),
-            (("--record", ACCEL, "--fractiles", "0.16,1"), "1 is no fractile"),
-            (("--record", ACCEL, "--sizes", "3:1"), "give the smaller first"),
-            (("--record", ACCEL, "--sizes", "1:3:1"), "'1' is no number of sizes"),
-            (("--record", ACCEL, "--sizes", "1:3:4:5"), "is no range"),
-            (("--record", ACCEL, "--eta", "1.5"), "not a coefficient of restitution"),
-            (("--record", ACCEL, "--scale", "2", "--target-pga", "1"), "exclude each other"),
+            (("--record", ACCEL, "--fractiles", "0.16,1"), "1 is not a fractile between 0 and 1"),
+            (("--record", ACCEL, "--sizes", "3:1"), "'3:1' is not increasing: give the smaller value first"),
+            (("--record", ACCEL, "--sizes", "1:3:1"), "'1' is not a number of sizes"),
+            (("--record", ACCEL, "--sizes", "1:3:4:5"), "'1:3:4:5' is not a range"),
+            (("--record", ACCEL, "--eta", "1.5"), "1.5 is not a valid coefficient of restitution"),
+            (
+                ("--record", ACCEL, "--scale", "2", "--target-pga", "1"),
+                "--scale, --target-pga and --target-pgv cannot be combined",
+            ),
             (("none.yaml", "--record", ACCEL), "none.yaml: no such file"),
             (("--record", ACCEL, "--out", "s.txt"), "does not end in .csv"),
         ],

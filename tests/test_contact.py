@@ -112,10 +112,12 @@ def test_less_friction_than_lambda_slides_before_it_rocks():
     above = _stretches(found.times, found.demand, 0.15)
     assert found.duration == pytest.approx((above[1] - above[0]).max())
     said = contact_words(found, weak)
-    assert said.startswith("It would slide at joint O' from 0.") and "the answer does not hold beyond" in said
+    assert (
+        said.startswith("Sliding would start at joint O' at 0.") and "the result is not valid beyond that time" in said
+    )
     _, enough = checked(BLOCK.model_copy(update={"friction": 0.9}), shaking())
     assert np.isnan(enough.slides) and enough.duration == 0 and enough.holds
-    assert "there is 0.9" in contact_words(enough, BLOCK)
+    assert "; 0.9 is available" in contact_words(enough, BLOCK)
 
 
 def test_of_a_structure_that_stays_at_rest_there_is_nothing_to_say():
@@ -249,10 +251,10 @@ def test_of_several_motions_those_are_named_under_which_joints_do_not_hold(tmp_p
     text = (EXAMPLES / "block.yaml").read_text(encoding="utf-8")
     file.write_text(text + "friction: 0.2\n", encoding="utf-8")
     said = " ".join(run("respond", *asked).stdout.split())
-    assert said.count("It would slide") == 1 and "sine:0.4g:0.8s: It would slide at joint" in said
+    assert said.count("Sliding would start") == 1 and "sine:0.4g:0.8s: Sliding would start at joint" in said
     assert "sine:0.1g:0.8s:" not in said
     file.write_text(text, encoding="utf-8")
-    assert " ".join(run("respond", *asked).stdout.split()).count("needs a friction of") == 1
+    assert " ".join(run("respond", *asked).stdout.split()).count("requires a coefficient of friction of") == 1
 
 
 def test_an_impact_that_throws_a_joint_apart_loses_contact():
@@ -275,8 +277,8 @@ def test_respond_says_it(tmp_path):
     assert found["friction"] == 0.25 < found["friction_needed"] and found["joint"] == "B" and found["lost"] is None
     assert found["slides"] < found["time"] and found["duration"] > 0 and found["per_unit_mass"] is False
     said = " ".join(run("respond", *asked).stdout.split())
-    assert f"It would slide at joint {found['slides_joint']} from {found['slides']:.4g} s" in said
-    assert f"Joint B needs a friction of {found['friction_needed']:.3g} at" in said
+    assert f"Sliding would start at joint {found['slides_joint']} at {found['slides']:.4g} s" in said
+    assert f"Joint B requires a coefficient of friction of up to {found['friction_needed']:.3g}, at" in said
     both = run_json("respond", *asked, "--polarity", "both")["polarities"]
     assert both["1"]["responses"]["nonlinear"]["contact"] == found != both["-1"]["responses"]["nonlinear"]["contact"]
     pulse = run_json("respond", *asked, "--with-pulse", "sine")["pulse_responses"]["nonlinear"]["contact"]
@@ -289,7 +291,7 @@ def test_an_answer_in_python_has_it_too():
     answer = rk.respond(rk.Block(width=0.7, height=2.8, friction=0.2), "sine:0.4g:0.8s", models="nonlinear")
     found = answer.to_dict()["responses"]["nonlinear"]["contact"]
     assert found["slides"] == pytest.approx(answer["nonlinear"].uplift_time) and found["per_unit_mass"] is True
-    assert any("would slide" in each for each in answer.sentences)
+    assert any("Sliding would start" in each for each in answer.sentences)
     assert json.dumps(found)
 
 
@@ -310,11 +312,11 @@ def test_impulses_of_one_direction_alone_do_not_say_what_impacts_need():
         assert np.isfinite(found.impact_friction) == known
 
 
-def test_the_picture_shows_it_where_it_is_asked_for(tmp_path):
+def test_the_picture_shows_it_where_it_is_requested(tmp_path):
     asked = ("respond", EXAMPLES / "block.yaml", "--record", EXAMPLES / "accel.csv", "--neighbours", 0)
     sizes = []
     for k, more in enumerate(((), ("--contact",))):
         run(*asked, "--plot", tmp_path / f"{k}.svg", *more)
-        sizes.append((tmp_path / f"{k}.svg").read_text(encoding="utf-8").count("friction needed"))
+        sizes.append((tmp_path / f"{k}.svg").read_text(encoding="utf-8").count("friction required"))
     assert sizes == [0, 1]
     assert "give --plot FILE" in " ".join(run(*asked, "--contact", code=2).stderr.split())

@@ -133,8 +133,8 @@ FACADE = "mechanism: block\nwidth: 0.6\nheight: 8\n"
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (FACADE + "crushing: {strength: 1 MPa}\n", "s.yaml:4:11: crushing: needs the weight of the structure"),
-        (FACADE + "mass: 100000\ncrushing: {strength: 1 MPa}\n", "crushing.depth: is missing: give the length"),
+        (FACADE + "crushing: {strength: 1 MPa}\n", "s.yaml:4:11: crushing needs the weight of the structure"),
+        (FACADE + "mass: 100000\ncrushing: {strength: 1 MPa}\n", "crushing.depth is missing: give the length"),
         (
             FACADE + "density: 1800\ndepth: 1\ncrushing: {strength: 0.1 MPa}\n",
             "s.yaml:6:11: crushing: the structure cannot stand on what is left: a pivot moves inwards by 0.4",
@@ -142,7 +142,7 @@ FACADE = "mechanism: block\nwidth: 0.6\nheight: 8\n"
         (FACADE + "density: 1800\ndepth: 1\ncrushing: {strenght: 1 MPa}\n", "did you mean strength?"),
         (
             FACADE + "density: 1800\ndepth: 1\ncrushing: {strength: 1 MPa}\none_sided: positive\n",
-            "rebound: is missing",
+            "rebound is missing",
         ),
         (
             "mechanism: arch\nradius: 10\nthickness: 1.5\ninclusion_angle_deg: 157.5\ndensity: 1800\ndepth: 1\n"
@@ -152,7 +152,7 @@ FACADE = "mechanism: block\nwidth: 0.6\nheight: 8\n"
         (
             "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [0, 2]]\ndensity: 1800\ndepth: 1\ncorner_radius: 0.05\n"
             "crushing: {strength: 1 MPa}\n",
-            "corner_radius: goes not with crushing",
+            "corner_radius cannot be combined with crushing",
         ),
     ],
 )  # fmt: skip

@@ -134,17 +134,17 @@ def test_a_file_is_read_from_the_folder_of_the_structure(sign, tmp_path):
     [
         (None, "c.csv: no such file"),
         ("", "has fewer than two rows"),
-        ("0, 0.2\n0.1, 0.1\n0.1, 0.05\n0.2, 0\n", "line 3: the curve is no function: it has two ratios at 0.1 m"),
+        ("0, 0.2\n0.1, 0.1\n0.1, 0.05\n0.2, 0\n", "line 3: the curve has two ratios at 0.1 m"),
         (
             "d, r\n0, 0.2\n0.2, 0.1\n0.1, 0\n",
             "line 4: the curve goes back from 0.2 to 0.1 m: displacements must increase",
         ),
         ("0.1, 0.2\n0.2, 0\n", "line 1: the curve begins at 0.1 m"),
-        ("0, 0\n0.1, 0.2\n0.3, 0\n", "line 1: the curve has the ratio 0 at rest"),
-        ("0, 0.2\n0.1, 0.1\n", "line 2: the curve ends at the ratio 0.1: go on to zero"),
-        ("0, 0.2\n0.1, -0.1\n0.2, 0\n", "line 3: the curve does not fall at its end"),
+        ("0, 0\n0.1, 0.2\n0.3, 0\n", "line 1: the curve has the ratio 0 at zero displacement"),
+        ("0, 0.2\n0.1, 0.1\n", "line 2: the curve ends at the ratio 0.1: continue to zero"),
+        ("0, 0.2\n0.1, -0.1\n0.2, 0\n", "line 3: the curve does not decrease at its end"),
         ("0, 0.2\n0.1, high\n", "line 2 is not two numbers"),
-        ("0;0,2\n0,1;0\n", "line 1 has 3 numbers, not two: displacement and ratio; a decimal comma"),
+        ("0;0,2\n0,1;0\n", "line 1 has 3 numbers, not two: displacement and ratio; write a decimal point"),
         ("0, 0.2\n0.1, nan\n", "line 2: the curve must be finite numbers"),
     ],
 )
@@ -166,8 +166,8 @@ NUMBERS = TEXT.replace("file: c.csv", "points: [[0, 0.2], [0.5, 0]]")
     ("text", "place", "field", "said"),
     [
         (TEXT.replace("file: c.csv\n", ""), (1, 1), "points", "is missing: give the points of the curve, or a file"),
-        (NUMBERS + "file: c.csv\n", (7, 7), "file", "goes not with points"),
-        (NUMBERS.replace("[0.5, 0]", "[0, 0]"), (2, 20), "points[2]", "is no function"),
+        (NUMBERS + "file: c.csv\n", (7, 7), "file", "cannot be combined with points"),
+        (NUMBERS.replace("[0.5, 0]", "[0, 0]"), (2, 20), "points[2]", "has two ratios at 0 m"),
         (NUMBERS.replace("[0.5, 0]", "[0.5, 0, 1]"), (2, 20), "points[2]", "must be two numbers"),
         (NUMBERS + "negative_points: [[0, 0.2], [0.5, 0.1]]\n", (7, 29), "negative_points[2]", "ends at the ratio 0.1"),
         (NUMBERS.replace("2780", "2000"), (6, 10), "inertia", "at least m h_c^2 (1 + r(0)^2) = 2038.4 kg m2"),

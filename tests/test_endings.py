@@ -85,4 +85,7 @@ def test_results_on_a_full_disk(arguments):
         ended = subprocess.run(
             [sys.executable, "-c", code, *map(str, arguments)], stdout=full, stderr=subprocess.PIPE, text=True
         )
-    assert ended.returncode == 1 and ended.stderr == "error: the system refused: No space left on device\n"
+    assert (
+        ended.returncode == 1
+        and ended.stderr == "error: the operating system reported an error: No space left on device\n"
+    )

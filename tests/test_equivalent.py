@@ -104,8 +104,8 @@ class TestRestitution:
         assert own.members[1].eta == equivalent_block(wall).positive.eta
         assert [each.eta for each in given.members] == [0.8, 0.8]
         assert first.one_eta and given.one_eta and not own.one_eta
-        assert "equivalence needs one for all" in " ".join(judge(own))
-        assert "equivalence needs one for all" not in " ".join(judge(first))
+        assert "equivalence requires the same value for all" in " ".join(judge(own))
+        assert "equivalence requires the same value for all" not in " ".join(judge(first))
         assert len({each.members[1].history.peak_ratio for each in (first, own, given)}) == 3
 
     def test_one_that_cannot_be_used_is_refused(self):
@@ -201,16 +201,16 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("arguments", "complaint"),
         [
-            ([BLOCK, "--ag", "1g", "--period", "1"], "two FILEs or more"),
-            (["--ag", "1g", "--period", "1"], "two FILEs or more"),
+            ([BLOCK, "--ag", "1g", "--period", "1"], "at least two FILEs"),
+            (["--ag", "1g", "--period", "1"], "at least two FILEs"),
             ([BLOCK, WALL, "--period", "1"], "Missing option '--ag'"),
             ([BLOCK, WALL, "--ag", "1g"], "Missing option '--period'"),
             ([BLOCK, WALL, "--ag", "0.6", "--period", "1"], "has no unit: give one of g, m/s2"),
             ([BLOCK, WALL, "--ag", "-1g", "--period", "1"], "is not positive"),
             ([BLOCK, WALL, "--ag", "0.6g", "--period", "0"], "is not positive"),
             ([BLOCK, WALL, "--ag", "0.6g", "--period", "1kg"], "1kg is a mass, not a time"),
-            ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--eta", "0"], "neither a number above 0"),
-            ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--eta", "mine"], "neither a number above 0"),
+            ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--eta", "0"], "is not valid: give a number above 0"),
+            ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--eta", "mine"], "is not valid: give a number above 0"),
             ([BLOCK, WALL, "--ag", "0.6g", "--period", "1", "--shape", "sinus"], "did you mean sine?"),
             ([BLOCK, "nowhere.yaml", "--ag", "0.6g", "--period", "1"], "no such file"),
         ],

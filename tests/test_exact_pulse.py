@@ -622,7 +622,7 @@ def test_a_second_process_finds_the_machine_code(tmp_path):
 
 def test_what_cannot_be_answered_is_said():
     equivalence, sine = equivalent_block(BLOCK), SHAPE["sine"](4.0, 1.0)
-    with pytest.raises(InputError, match=r"ricker is no chain of sines and constants: .*sampled"):
+    with pytest.raises(InputError, match=r"ricker is not a chain of sines and constants: .*sampled"):
         exact_response(equivalence, PulseShapes()["ricker"](4.0, 1.0), kappa=1, gravity=G)
     with pytest.raises(InputError, match="kappa must be 1 or 2, got 3"):
         exact_response(equivalence, sine, kappa=3, gravity=G)

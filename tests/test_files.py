@@ -73,7 +73,7 @@ def test_outputs_are_kept_apart_from_inputs_and_from_each_other(tmp_path):
     read, new = tmp_path / "read.csv", tmp_path / "new.csv"
     read.touch()
     keep_apart([("--out", new), ("--plot", None)], [str(read), None, str(tmp_path / "none")])
-    with pytest.raises(InputError, match="--out would overwrite what is read"):
+    with pytest.raises(InputError, match="--out would overwrite an input file"):
         keep_apart([("--out", tmp_path / "." / "read.csv")], [str(read)])
     with pytest.raises(InputError, match="--out and --plot cannot be the same file"):
         keep_apart([("--out", new), ("--plot", tmp_path / "." / "new.csv")], [])
@@ -136,7 +136,7 @@ class TestSpecialFiles:
 
     def test_a_pipe_that_nobody_reads_is_refused_at_once(self, tmp_path):
         os.mkfifo(tmp_path / "a.csv")
-        with pytest.raises(InputError, match="nobody reads from this pipe"):
+        with pytest.raises(InputError, match="no program is reading from this pipe"):
             write_whole(tmp_path / "a.csv", lambda file: file.write(b"1"))
 
     def test_a_link_that_leads_back_to_itself_is_refused(self, tmp_path):

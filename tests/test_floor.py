@@ -95,7 +95,7 @@ class TestFloor:
             ("T1=0.4,z=0.5,gamma=1e30", "gamma must be a positive number, 100 at most"),
             ("T1=-1,z=0.5,n=2", "positive number of seconds"),
             ("T1=0.4,xi=2,z=0.5,n=2", "damping ratio"),
-            ("T1=0.4,zz=0.5,n=2", "'zz' is none of"),
+            ("T1=0.4,zz=0.5,n=2", "'zz' is not one of"),
             ("T1=0.4,z=0.5,z=0.6,n=2", "z is given twice"),
             ("0.4", "is not of the form T1=0.4"),
             ("T1=0.4 kg,z=0.5,n=2", "is a mass"),
@@ -107,7 +107,7 @@ class TestFloor:
 
     def test_a_floor_that_no_memory_holds(self):
         long = GroundMotion("long", 0.01, np.zeros(1_000_001))
-        with pytest.raises(InputError, match=r"asks for 6.4e\+07 samples"):
+        with pytest.raises(InputError, match=r"needs 6.4e\+07 samples"):
             Floor(1e-3, 0.05, 1, 1.5).of(long)
 
     def test_targets_are_of_the_ground(self):
@@ -182,12 +182,12 @@ class TestTurned:
     @pytest.mark.parametrize(
         ("options", "words"),
         [
-            (("--with", "EAST"), "give --azimuth"),
+            (("--with", "EAST"), "--with FILE requires --azimuth"),
             (("--azimuth", "30"), "give --with FILE"),
             (("--with", "EAST", "--azimuth", "x"), "give degrees, such as 30"),
-            (("--with", str(ACCEL), "--azimuth", "30"), "--with: is the first component too"),
+            (("--with", str(ACCEL), "--azimuth", "30"), "--with is the first component too"),
             (("--with", "AGAIN", "--azimuth", "30"), "give the channel of the second with --with-channel"),
-            (("--with", "EAST", "--azimuth", "all", "--polarity", "both"), "has both polarities in it"),
+            (("--with", "EAST", "--azimuth", "all", "--polarity", "both"), "already covers both polarities"),
         ],
     )
     def test_wrong_options(self, pair, options, words):
@@ -197,7 +197,7 @@ class TestTurned:
 
     def test_all_is_for_respond(self, pair):
         result = run("record", ACCEL, "--with", pair, "--azimuth", "all", code=2)
-        assert "--azimuth all is for `rocking respond`" in result.stderr
+        assert "--azimuth all works with `rocking respond` only" in result.stderr
 
 
 class TestAllAround:

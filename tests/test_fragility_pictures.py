@@ -101,7 +101,7 @@ def test_of_many_intensities_some_are_marked_as_they_are(levels, every):
     seen = Observations.of(x, exceeded, np.repeat(np.arange(20), levels))
     figure = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a block"))
     np.testing.assert_allclose(marks(figure.axes[0])[0][:, 1], seen.parts(0.95).part[::every])
-    assert (f"one of {every} intensities is marked" in words(figure)[1]) == (every > 1)
+    assert (f"one of every {every} intensities is marked" in words(figure)[1]) == (every > 1)
 
 
 def test_a_surface_of_few_records_carries_the_warning():
@@ -123,8 +123,8 @@ def test_a_step_a_curve_and_nothing_share_a_picture():
     (axes,) = figure.axes
     said = words(figure)
     assert "step, between 0.2 and 0.4" in said[0] and "lognormal" in said[1]
-    assert "no curve, none of the 80 runs exceed" in said[2]
-    assert said[4].startswith(r"the shade of a step lies between two levels, without a confidence: uplift \$1")
+    assert "no curve: none of the 80 runs exceed" in said[2]
+    assert said[4].startswith(r"shade of a step: the interval between two levels, not a confidence band: uplift \$1")
     curves = [line for line in axes.get_lines() if len(line.get_xdata()) > 10 and line.get_linewidth() > 1]
     assert len(curves) == 2
     assert not axes.texts
@@ -156,7 +156,7 @@ def test_the_records_of_an_ida_rise_into_the_band_of_overturning():
     np.testing.assert_allclose(lines["16 %"], [0.0, 0.2, 0.4, 0.6])
     np.testing.assert_allclose(lines["84 %"], [0.2, 0.5, height, np.nan])
     assert [(text.get_text(), text.xy[0]) for text in axes.texts] == [("1", 0.6), ("3", 0.8)]
-    assert any("of 4 overturn" in each for each in words(figure))
+    assert any("records that overturn, of 4" in each for each in words(figure))
 
 
 @pytest.mark.parametrize("peak", [0.0, np.nan])
@@ -213,7 +213,7 @@ def test_of_very_many_runs_an_even_share_is_drawn():
     figure = rendered(draw_surface(bivariate(x1, x2, x1 * x2 > 3 * random.random(20_000)), ("a", "b"), "a frame"))
     below, above, _ = figure.axes[0].collections
     assert 2500 < len(below.get_offsets()) + len(above.get_offsets()) <= 3001
-    assert words(figure)[-1] == "one of 7 is drawn"
+    assert words(figure)[-1] == "one of every 7 runs is drawn"
 
 
 def test_a_band_that_the_data_leave_open_is_not_painted_and_said():
@@ -222,7 +222,7 @@ def test_a_band_that_the_data_leave_open_is_not_painted_and_said():
     seen = Observations.of(x, random.random(40) < 0.4 + 0.1 * (x > 1), np.arange(40))
     figure = rendered(draw_curves([drawn("uplift", seen)], "PGA [g]", "a block"))
     assert not [each for each in figure.axes[0].collections if each.get_alpha() == 0.14]
-    assert words(figure)[-1] == "no band: the data leave that of uplift open"
+    assert words(figure)[-1] == "no confidence band, as the data do not bound it: uplift"
 
 
 def test_bands_of_several_are_their_edges_and_labels_are_whole():

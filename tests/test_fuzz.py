@@ -30,7 +30,7 @@ EXPANSION = 1000  # samples that a byte of a record may become, and then some
 
 
 def fuzz(share: float, in_the_suite: int):
-    """So many examples: the same ones in the suite, and a share of all that are asked for."""
+    """Return the settings of a test: a few fixed examples in the suite, or a share of all that are requested."""
     return settings(
         max_examples=max(int(share * INPUTS), 1) if INPUTS else in_the_suite,
         derandomize=not INPUTS,

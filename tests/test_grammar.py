@@ -50,13 +50,15 @@ def test_the_same_quantity_in_any_spelling_gives_the_same(command, option, alike
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("record", ACCEL, "--target-pga", "3m"), "'m' is no unit of acceleration: give one of g, m/s2"),
+        (("record", ACCEL, "--target-pga", "3m"), "'m' is not a unit of acceleration: give one of g, m/s2"),
         (("record", ACCEL, "--target-pgv", "3m"), "3m is a length, not a velocity"),
         (("record", ACCEL, "--dt", "10 Hz"), "'Hz' is not a unit of time"),
-        (("record", ACCEL, "--dt", "x"), "'x' is no time: give such as 0.01s"),
+        (("record", ACCEL, "--dt", "x"), "'x' is not a valid time: give a value such as 0.01s"),
         (("respond", BLOCK, "--record", ACCEL, "--tail", "2h"), "'h' is not a unit of time"),
-        (("respond", BLOCK, "--record", ACCEL, "--tail", "61min"), "beyond what is followed: 0 to 3600 s"),
-        (("margin", BLOCK, "--record", ACCEL, "--within-amplitude", "2x"), "'2x' is not a share: give such as 0.02 or"),
+        (("respond", BLOCK, "--record", ACCEL, "--tail", "61min"),
+         "'61min' is outside the supported range: 0 to 3600 s"),
+        (("margin", BLOCK, "--record", ACCEL, "--within-amplitude", "2x"),
+         "'2x' is not a fraction: give a number such as 0.02 or"),
         (("overturning", BLOCK, "--ag", "0.1:2"), "'0.1' has no unit: give one of g"),
     ],
 )  # fmt: skip
@@ -106,20 +108,21 @@ def test_an_old_name_does_the_same_with_a_note_beside_the_result(old, new):
     before, today = run(*old, "--json"), run(*new, "--json")
     assert before.stdout == today.stdout
     name = next(word for word in old if word.startswith("--") and word not in (*new, "--points"))
-    assert f"{name.partition('=')[0]} is called {next(w for w in new if w.startswith('--') and w not in old)} now" in (
-        before.stderr
+    assert (
+        f"{name.partition('=')[0]} has been renamed to {next(w for w in new if w.startswith('--') and w not in old)}"
+        in (before.stderr)
     )
-    assert "is called" not in today.stderr
+    assert "has been renamed" not in today.stderr
 
 
 def test_a_file_called_like_an_old_name_is_a_file(tmp_path):
     (tmp_path / "--pulse").write_bytes(Path(ACCEL).read_bytes())
     result = run("record", "--", "--pulse")
-    assert "is called" not in result.stderr and "mean acceleration" in result.stdout
+    assert "has been renamed" not in result.stderr and "mean acceleration" in result.stdout
 
 
 def test_where_pictures_and_figures_go_by_their_old_names(tmp_path):
-    assert "--folder is called --out now" in run("figure", "3", "--folder", "there").stderr
+    assert "--folder has been renamed to --out" in run("figure", "3", "--folder", "there").stderr
     assert sorted(path.name for path in (tmp_path / "there").iterdir()) == ["figure3.csv", "figure3.png"]
 
 
@@ -138,7 +141,7 @@ def test_a_clean_record_goes_to_the_file_or_into_the_folder_that_is_named(tmp_pa
 
 
 def test_to_csv_writes_into_this_folder_as_it_did(tmp_path):
-    assert "--to csv is called --out now" in run("record", ACCEL, "--to", "csv").stderr
+    assert "--to csv has been renamed to --out" in run("record", ACCEL, "--to", "csv").stderr
     assert [path.name for path in tmp_path.iterdir()] == ["accel.csv"]
 
 

@@ -1,4 +1,4 @@
-"""Every turn a history can take: uplift, impact, rest, overturning and the ways back, and what must never happen."""
+"""Every event of a time history: uplift, impact, rest, overturning and the ways back, and what must never happen."""
 
 from functools import cache
 from math import acosh, ceil, log, sqrt
@@ -220,7 +220,7 @@ def test_a_faint_impact_is_no_rest_while_the_ground_pushes_outwards(model):
     history, rest_rate = caught(push), 1e-6 * ONE.p * ONE.phi_cr
     assert 0.1 * rest_rate < history.impacts[0, 2] < 0.9 * rest_rate
     expected = reference(model, 0.2, push * shape, 0.03)
-    agree(history, expected, 1e-8)  # how fast the graze is hangs on the last digits of the push
+    agree(history, expected, 1e-8)  # the speed of the graze depends on the last digits of the push
     np.testing.assert_array_equal(history.impacts[:3, 1], [1, -1, 1])
     assert history.impacts[1, 0] < history.impacts[0, 0] + 1e-6
 

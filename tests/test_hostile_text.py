@@ -129,8 +129,8 @@ def test_names_in_a_study_are_printable(tmp_path):
         encoding="utf-8",
     )
     said = run("fragility", "st.yaml", "--check", code=2).stderr
-    assert "st.yaml:1:7: name: must be printable" in said
-    assert "st.yaml:2:35: structures[1].name: must be printable" in said
+    assert "st.yaml:1:7: name must be printable" in said
+    assert "st.yaml:2:35: structures[1].name must be printable" in said
 
 
 def test_what_a_study_varies_may_have_units(tmp_path):

@@ -1,4 +1,4 @@
-"""What hangs on a structure, and what keeps it to one side, as pictures, pages, tables and reports show them."""
+"""Loads and ties of a structure, and what keeps it to one side, as pictures, pages, tables and reports show them."""
 
 from __future__ import annotations
 
@@ -327,11 +327,11 @@ class TestReport:
         why = "its restoring moment does not vanish before the kinematic limit of 1.571 rad"
         assert why in data["no_block"]
         for said in (
-            "The nonlinear one, the only one there is. No single block is equivalent",
+            "The nonlinear model; no other is available. No single block is equivalent",
             "No linear models: No single block is equivalent",
-            "There is no map: its axes are measured by the frequency parameter p",
-            "There is no equivalent block here, and so no error of one: no single block",
-            "Hold the largest forces of this report against what it and its ends can bear",
+            "No map is given: its axes need the frequency parameter p of an equivalent block",
+            "No equivalent block exists here, so there is no error to report: no single block",
+            "Check the largest tie forces in this report against the capacity of the ties and their anchorages.",
         ):
             assert said in text
         assert "φcr and does not come back" not in text and "κ" not in text
@@ -344,7 +344,8 @@ class TestReport:
         runs = [each["responses"]["nonlinear"] for each in motion["polarities"].values()]
         ratio = max(run["peak_ratio"] for run in runs)
         turned = np.degrees(max(max(run["peak_positive"], run["peak_negative"]) for run in runs))
-        assert f"by at most {turned:.3g}°, {100 * ratio:.3g} % of the tilt at which its motion would end" in text
+        of_limit = f"{100 * ratio:.3g} % of the kinematic limit, at which its motion would end."
+        assert f"its largest rotation is {turned:.3g}°, {of_limit}" in text
 
     @pytest.mark.parametrize(("which", "tie"), [("tied", "tendon"), ("leaning", "bar")])
     def test_ties_are_told_with_their_largest_force_of_either_way_round(self, told, which, tie):
@@ -352,18 +353,18 @@ class TestReport:
         (motion,) = data["motions"]
         runs = [each["responses"]["nonlinear"] for each in motion["polarities"].values()]
         force = max(abs(run["ties"][tie]["peak_force"]) for run in runs) / 1000
-        assert f"The largest force is that of {tie}: it pulls with {force:.4g} kN under {motion['name']}." in text
+        assert f"{tie} has the largest force: {force:.4g} kN in tension, under {motion['name']}." in text
 
     def test_loads_are_told_with_their_shares(self, told):
         text, _ = told["leaning"]
         assert "floor block 0.2, 5 2000 1 0.333 0.5" in text
-        assert "It is taken to lean on side walls that do not move." in text
+        assert "The side walls it leans on are assumed not to move." in text
         assert "It rocks in the positive direction only" in text
         assert "Constant forces" in text
 
     def test_a_bare_structure_has_no_such_section(self, frame_report):
         page = frame_report[0].read_text("utf-8")
-        assert "What hangs on it" not in page and "farthest the top moves sideways" in page
+        assert ">Loads and ties<" not in page and "peak horizontal displacement of the top" in page
 
     def test_a_fall_has_no_largest_movement(self, leaning, tmp_path):
         text = leaning.read_text().replace("stiffness: 100 kN/m", "stiffness: 1 N/m")
@@ -371,8 +372,8 @@ class TestReport:
         out = tmp_path / "r.html"
         run("report", leaning, "--pulse", "sine:1g:1.5s", "--neighbours", 5, "-o", out)
         page = out.read_text("utf-8")
-        assert "it overturns, at least one way round: there is no largest movement" in page
-        assert "The largest force is that of bar: it pulls with" in page  # which it bore before
+        assert "the structure overturns in at least one polarity: it has no largest displacement" in page
+        assert re.search(r"bar has the largest force: \S+ kN in tension, under sine:1g:1\.5s\.", page)  # borne before
 
 
 class TestStudies:
@@ -390,7 +391,7 @@ limit_states: [uplift, 0.0005, overturning]
         found = run_json("fragility", tmp_path / "study.yaml", "--store", "s.db")
         assert found["runs"] == found["finished"] == 6 and found["failed"] == 0 and found["left_out"] == []
         (said,) = found["without_block"]
-        assert said.startswith("tied: no single block is equivalent") and "kinematic limit" in said
+        assert said.startswith("tied: no equivalent single block exists") and "kinematic limit" in said
         run("results", "s.db", "--out", "runs.csv")
         with open("runs.csv", encoding="utf-8") as file:  # noqa: PTH123
             rows = list(csv.DictReader(file))

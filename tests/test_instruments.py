@@ -79,7 +79,7 @@ class TestDerivatives:
         assert read_record(bare, quantity="displacement", units="m").pga == pytest.approx(
             np.abs(ACC).max() / STANDARD_GRAVITY, rel=5e-3
         )
-        with pytest.raises(InputError, match="'g' is no unit of a displacement"):
+        with pytest.raises(InputError, match="'g' is not a unit of displacement"):
             read_record(moved, quantity="displacement", units="g")
         with pytest.raises(InputError, match="a velocity or displacement, not an acceleration"):
             read_record(moved)
@@ -162,13 +162,13 @@ class TestGain:
             ("0.05", "is a gain without a unit"),
             ("m/V", "is not a number with a unit"),
             ("0 m/V", "is not a number"),
-            ("1 kg/V", "'kg' is no unit of"),
-            ("1 V/m", "'V' is no unit of"),
+            ("1 kg/V", "'kg' is not a unit of"),
+            ("1 V/m", "'V' is not a unit of"),
             ("nan m/V", "is not a number"),
             ("1e308 g/V", "is not a number"),
             ("1e-320 m/V", "is not a number"),
-            ("5 g/s", "'s' no output of an instrument"),
-            ("1 m/min", "'min' no output of an instrument"),
+            ("5 g/s", "'s' is not an output of an instrument"),
+            ("1 m/min", "'min' is not an output of an instrument"),
         ],
     )
     def test_what_is_none(self, text, words):
@@ -255,7 +255,7 @@ class TestUnevenTimes:
 
     def test_a_gap_is_not_filled_with_a_line(self, tmp_path):
         file = write(tmp_path / "gap.csv", "t [s],a [g]", np.array([0, 0.01, 0.02, 1e9]), np.zeros(4))
-        with pytest.raises(InputError, match=r"gap.csv:5: nothing was recorded from 0.02 to 1e\+09 s"):
+        with pytest.raises(InputError, match=r"gap.csv:5: gap in the record from 0.02 to 1e\+09 s"):
             read_record(file, uneven=True)
 
     def test_time_must_still_go_on(self, tmp_path):

@@ -194,14 +194,14 @@ def test_a_symmetric_structure_has_one_table_and_an_asymmetric_one_two():
 def test_the_words_follow_the_numbers():
     assert "kappa2 agrees" in run_json("error", EXAMPLES / "block.yaml")["verdict"]
     arch = run_json("error", EXAMPLES / "arch.yaml")["verdict"]
-    assert "Prefer kappa2" in arch and "kappa2 serves a first estimate" in arch and "more than 5 %" in arch
+    assert "Prefer kappa2" in arch and "kappa2 is good for a first estimate" in arch and "more than 5 %" in arch
     stocky = arch_of(3.0, 100.0)
     curves = [linearisation(stocky, Direction.POSITIVE, np.linspace(0.05, 0.95, 9), np.geomspace(1.1, 10, 9))]
-    assert "use the nonlinear history" in trust(curves, [linearisation(stocky, Direction.POSITIVE, 0.1, 1.1)])
+    assert "use the nonlinear time history" in trust(curves, [linearisation(stocky, Direction.POSITIVE, 0.1, 1.1)])
 
 
 GRADES = (("agrees", 0.05), ("first_estimate", 0.15), ("disregard", np.inf))
-SENTENCES = {"agrees": "kappa{} agrees (", "first_estimate": "kappa{} serves a first estimate (",
+SENTENCES = {"agrees": "kappa{} agrees (", "first_estimate": "kappa{} is good for a first estimate (",
              "disregard": "disregard kappa{} ("}  # fmt: skip
 TALL = AsymmetricFrame(
     column_width=4.0, left_height=3.0, right_height=30.0, spacing=4.5, beam_depth=12.0, density=2500.0, depth=1.0
@@ -250,8 +250,8 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
         better.pop() if found["kappa1"] == found["kappa2"] else min(found, key=found.__getitem__)
     )  # fmt: skip
     assert data["prefer"] == expected
-    last = {None: "Rely on neither there", "either": "Either kappa will do there"}.get(
-        expected, f"Prefer {expected} there"
+    last = {None: "Rely on neither at these amplitudes", "either": "Either kappa is adequate at these amplitudes"}.get(
+        expected, f"Prefer {expected} at these amplitudes"
     )
     assert last in said and said.count("Prefer") == (expected in ("kappa1", "kappa2"))
 

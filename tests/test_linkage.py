@@ -310,7 +310,7 @@ class TestMotion:
 class TestNoMotion:
     def test_three_hinges_in_line(self):
         joints = [Pin("A", ("l",), 0j), Pin("B", ("l", "u"), 1 + 0j), Pin("C", ("u",), 2 + 0j)]
-        with pytest.raises(NoMotion, match="infinitesimal rotation only"):
+        with pytest.raises(NoMotion, match="the joints allow only an infinitesimal rotation"):
             LinkageMotion({"l": 0.5 + 0j, "u": 1.5 + 0j}, joints, "l", Direction.POSITIVE)
 
     def test_two_slides_at_one_height(self):
@@ -318,14 +318,14 @@ class TestNoMotion:
         with pytest.raises(NoMotion):
             LinkageMotion({"b": 0.5 + 0.5j}, joints[:2], "b", Direction.POSITIVE)
         # Three level lines: it goes along them, and turns not.
-        with pytest.raises(NoMotion, match="b cannot lead: it does not turn"):
+        with pytest.raises(NoMotion, match="b cannot lead, because it does not rotate"):
             LinkageMotion({"b": 0.5 + 0.5j}, joints, "b", Direction.POSITIVE)
 
     def test_what_is_loose_is_named(self):
         joints = [Pin("A", ("l",), 0j), Pin("B", ("l", "u"), 1j)]
-        with pytest.raises(NoMotion, match="with l held still u can still move"):
+        with pytest.raises(NoMotion, match="with l held still, u can still move"):
             LinkageMotion({"l": 0.5j, "u": 1.5j}, joints, "l", Direction.POSITIVE)
-        with pytest.raises(NoMotion, match="no joint holds u: if it rests, fix it to the ground"):
+        with pytest.raises(NoMotion, match="no joint holds u: if it stays at rest, fix it to the ground"):
             LinkageMotion({"l": 0.5j, "u": 1.5j}, joints[:1], "l", Direction.POSITIVE)
         LinkageMotion({"l": 0.5j, "u": 1.5j}, joints[:1], "l", Direction.POSITIVE, ground=["u"])
 
@@ -354,19 +354,19 @@ WRONG = [
     # what is changed, into what, line, what is said
     ("pivot: lower, at: [0.3, 0]", "pivot: lower, at: [0, 0]", 10, "A closes: there lower and the ground"),
     ("at: [0, 1.5]}", "at: [0.3, 1.5]}", 11, "B closes: there lower and upper would go into one another"),
-    ("at: [0, 1.5]}", "at: [0, 15]}", 11, "[0, 15] is 13.5 m beside lower: a joint is on what it joins"),
-    ("lead: lower", "lead: middle", 8, "there is no body 'middle'; there are lower, upper"),
+    ("at: [0, 1.5]}", "at: [0, 15]}", 11, "[0, 15] is 13.5 m outside lower: a joint must lie on the bodies it joins"),
+    ("lead: lower", "lead: middle", 8, "there is no body 'middle'; the bodies are lower, upper"),
     ("[lower, upper]", "[lower, uper]", 11, "there is no body 'uper'"),
     ("[lower, upper]", "[lower, lower]", 11, "joins lower to itself"),
     ("pivot: lower", "pivot: lower, hinge: [lower, upper]", 10, "give one of pivot, hinge, slide and fixed"),
     (", along: [0, 1]", "", 12, "is missing: a slide needs it"),
-    (", along: [0, 1]", ", along: [0, 0]", 12, "is no direction"),
-    ("    C: {slide: upper, at: [0.3, 3], along: [0, 1]}\n", "", 8, "with lower held still upper can still move"),
+    (", along: [0, 1]", ", along: [0, 0]", 12, "is not a valid direction"),
+    ("    C: {slide: upper, at: [0.3, 3], along: [0, 1]}\n", "", 8, "with lower held still, upper can still move"),
     ("slide: upper, at: [0.3, 3], along: [0, 1]", "pivot: upper, at: [0.3, 3]", 12, "nothing can move: without one of"),
     ("lead: lower", "lead: upper", 8, "upper turns the wrong way: let another body lead"),
     ("negative: mirror", "negative: none", 13, "give one_sided: positive"),
     ("[0.3, 3], [0, 3]]", "[0, 3], [0.3, 3]]", 6, "its sides cross"),
-    ("depth: 1.0\n", "", None, "depth: is missing: density needs the size out of plane"),
+    ("depth: 1.0\n", "", None, "depth is missing: density needs the size out of plane"),
     ("[0.3, 3], [0, 3]]}", "[0.4, 3], [0, 3]]}", 13, "has no mirror image"),
     ("upper: {polygon", "ground: {polygon", 6, "is what joints call the ground"),
 ]

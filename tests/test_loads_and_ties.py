@@ -156,7 +156,7 @@ def tension_bar(mechanism):
 
 
 def hung(mechanism, kind):
-    """What hangs on a mechanism, by the name of its kind."""
+    """Return the loads and ties of a mechanism, by the name of its kind."""
     body, top, side, foot, own, _ = ON[mechanism]
     each = {"each": True} if mechanism == "symmetric_frame" else {}
     column = {**body, "at": foot}

@@ -23,7 +23,7 @@ def test_a_picture_is_known_by_its_content_and_kept_whole(tmp_path, content, kin
 
 def test_what_is_no_picture_or_too_large_is_refused(tmp_path):
     (tmp_path / "text").write_text("logo")
-    with pytest.raises(InputError, match="is no PNG, JPEG or SVG picture"):
+    with pytest.raises(InputError, match="the file is not a PNG, JPEG or SVG picture"):
         embedded(tmp_path / "text")
     (tmp_path / "large").write_bytes(PNG + bytes(LARGEST))
     with pytest.raises(InputError, match="large"):

@@ -107,27 +107,32 @@ class TestLevels:
 class TestWords:
     def test_no_factor_overturns(self):
         assert in_words(made(0, 0.05, 0), 0.5) == (
-            "At no factor on the motion from 1 to 3 (PGA from 0.5 g to 1.5 g) do 10 % of the motions next to it "
-            "overturn."
+            "At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g) do 10 % or more of the neighbouring motions "
+            "overturn the structure."
         )
 
     def test_each_level_in_turn(self):
         assert in_words(made(0, 0.2, 0.6), 0.4) == (
-            "With a factor on the motion at least 10 % of the motions next to it overturn first at 2 (PGA 0.8 g), "
-            "50 % at 3 (1.2 g) and 90 % at none up to 3; factors are 75 % apart."
+            "At least 10 % of the neighbouring motions first overturn the structure at a factor of 2 (PGA 0.8 g), "
+            "50 % at 3 (1.2 g) and 90 % at none up to 3; the factors tried are 75 % apart."
         )
 
     def test_islands_are_told(self):
-        assert in_words(made(0, 0.2, 0.0, 1.0), 0.5).endswith("Stronger is not always worse: at 3 (1.5 g) none does.")
-        assert in_words(made(0, 0.6, 0.3, 1.0), 0.5).endswith("always worse: at 3 (1.5 g) only 30 % do.")
-        assert in_words(made(0, 0.6, 1.0, 0.7, 0.8), 0.5).endswith("always worse: at 4 (2 g) only 70 % do.")
+        assert in_words(made(0, 0.2, 0.0, 1.0), 0.5).endswith(
+            "A stronger motion is not always worse: at a factor of 3 (1.5 g) none does."
+        )
+        assert in_words(made(0, 0.6, 0.3, 1.0), 0.5).endswith("always worse: at a factor of 3 (1.5 g) only 30 % do.")
+        assert in_words(made(0, 0.6, 1.0, 0.7, 0.8), 0.5).endswith("always worse: at a factor of 4 (2 g) only 70 % do.")
         assert "always worse" not in in_words(made(0, 0.2, 0.6, 1.0), 0.5)
 
     def test_the_numbers_are_those_of_the_shares(self):
         motion = parse_pulse("ricker:0.7g:0.9s").sampled()
         found = margin(build_model(BLOCK, "nonlinear"), motion, around=AROUND)
-        words = in_words(found, motion.pga).split("; factors")[0]
-        said = re.findall(r"(\d+) % (?:[a-z ]* first )?at ([\d.]+) \((?:PGA )?([\d.]+) g\)", words)
+        words = in_words(found, motion.pga).split("; the factors")[0]
+        said = re.findall(
+            r"(\d+) % (?:[a-z ]* first overturn the structure )?at (?:a factor of )?([\d.]+) \((?:PGA )?([\d.]+) g\)",
+            words,
+        )
         assert [level for level, *_ in said] == ["10", "50", "90"]
         for level, factor, pga in said:
             k = int(np.abs(found.factors - float(factor)).argmin())
@@ -179,7 +184,7 @@ class TestCommand:
     def test_the_table_has_a_row_each(self, width, monkeypatch):
         monkeypatch.setenv("COLUMNS", width)
         text = " ".join(run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5).stdout.split())
-        assert "accel.csv" in text and "Next to each factor 5 motions are followed" in text
+        assert "accel.csv" in text and "At each factor, 5 neighbouring motions are simulated" in text
 
     def test_a_picture(self, tmp_path):
         run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5, "--plot", tmp_path / "m.png")
@@ -190,7 +195,7 @@ class TestCommand:
         [
             ((), "--record PLACE or --pulse PULSE"),
             (("--record", "x", "--neighbours", 0), "at least 1"),
-            (("--record", "x", "--within-amplitude", 1), "below 1"),
+            (("--record", "x", "--within-amplitude", 1), "from 0 up to, but not including, 1"),
             (("--record", "x", "--within-restitution", -1), "from 0"),
             (("--record", "no.AT2"), "no such file"),
         ],

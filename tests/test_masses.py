@@ -1,4 +1,4 @@
-"""Kilograms that are none: of a structure without masses, moments and inertias are per unit mass, and it is said."""
+"""Structures without masses: their moments and inertias are per unit mass, and the output states this."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_a_mechanism_may_say_so_itself():
 
 def test_the_caution_of_the_wall_is_shown_where_it_is_looked_up_and_used(tmp_path):
     wall, file = Registry()["wall"], EXAMPLES / "wall.yaml"
-    assert "Not on the safe side without a load on top" in wall.caution
+    assert "Unconservative without a load on top" in wall.caution
     assert json.loads(run("mechanisms", "wall", "--json").stdout)["caution"] == wall.caution
     assert wall.caution in flat(run("mechanisms", "wall").stdout)
     assert wall.caution in flat(run("equiv", file).stdout) and run_json("equiv", file)["caution"] == wall.caution

@@ -162,19 +162,19 @@ class TestWithoutShaking:
 
 
 @pytest.mark.parametrize(
-    ("off", "said"), [(1e-9, "No motion governs: one, other do alike."), (1e-4, "other governs: 40 %")]
+    ("off", "said"), [(1e-9, "No motion governs: one, other have the same effect."), (1e-4, "other governs: 40 %")]
 )
 def test_what_differs_by_rounding_does_not_govern(off, said):
     assert governing({"one": (0.4, np.inf, 0.5), "other": (0.4, np.inf, 0.5 * (1 + off))}).startswith(said)
 
 
-NEAR = "(up to 2 % stronger or weaker, with up to 0.02 more or less restitution)"
+NEAR = "(with amplitudes up to 2 % higher or lower and a coefficient of restitution up to 0.02 higher or lower)"
 
 
 class TestWords:
     def test_where_nothing_can_lift_it(self):
         found = neighbours(build_model(BLOCK, "nonlinear"), parse_pulse("sine:0.1g:1s").sampled())
-        assert str(found) == f"None of 200 motions next to this one {NEAR} lifts it."
+        assert str(found) == f"None of 200 neighbouring motions {NEAR} uplifts the structure."
 
     def sentence(self, overturned, peaks):
         return str(Neighbours(Around(), "nonlinear", overturned, peaks, 1.0))
@@ -182,28 +182,39 @@ class TestWords:
     def test_a_share(self):
         said = self.sentence(0.43, (0.31, 0.52, np.inf))
         assert said == (
-            f"Of 200 motions next to this one {NEAR} 43 % overturn; 16 % stay within 0.31 phi_cr, half within 0.52."
+            f"Of 200 neighbouring motions {NEAR} 43 % overturn the structure; 16 % keep its peak rotation within 0.31 "
+            "phi_cr, half within 0.52."
         )
 
     def test_most(self):
-        assert self.sentence(0.7, (0.81, np.inf, np.inf)).endswith(" 70 % overturn; 16 % stay within 0.81 phi_cr.")
+        assert self.sentence(0.7, (0.81, np.inf, np.inf)).endswith(
+            " 70 % overturn the structure; 16 % keep its peak rotation within 0.81 phi_cr."
+        )
 
     @pytest.mark.parametrize(
         ("peaks", "said"),
         [
-            ((0.0, 0.0, 0.3), "; half do not uplift, 84 % stay within 0.3 phi_cr."),
-            ((0.0, 0.2, 0.3), "; 16 % do not uplift, half stay within 0.2 phi_cr, 84 % within 0.3."),
-            ((0.0, np.inf, np.inf), "; 16 % do not uplift."),
+            ((0.0, 0.0, 0.3), "; half do not uplift it, 84 % keep its peak rotation within 0.3 phi_cr."),
+            (
+                (0.0, 0.2, 0.3),
+                "; 16 % do not uplift it, half keep its peak rotation within 0.2 phi_cr, 84 % within 0.3.",
+            ),
+            ((0.0, np.inf, np.inf), "; 16 % do not uplift it."),
         ],
     )
     def test_some_stay_where_they_are(self, peaks, said):
         assert self.sentence(0.1, peaks).endswith(said)
 
     def test_all_and_none(self):
-        assert self.sentence(1.0, (np.inf,) * 3) == f"Of 200 motions next to this one {NEAR} all overturn."
-        said = "none overturns; 16 % stay within 0.1 phi_cr, half within 0.2, 84 % within 0.3."
+        assert self.sentence(1.0, (np.inf,) * 3) == f"Of 200 neighbouring motions {NEAR} all overturn the structure."
+        said = (
+            "none overturns the structure; 16 % keep its peak rotation within 0.1 phi_cr, half within 0.2, 84 % within "
+            "0.3."
+        )
         assert self.sentence(0.0, (0.1, 0.2, 0.3)).endswith(said)
-        assert self.sentence(0.0, (0.0, 0.0, 0.0)).endswith("none overturns; at most one in six uplifts.")
+        assert self.sentence(0.0, (0.0, 0.0, 0.0)).endswith(
+            "none overturns the structure; at most one in six uplifts it."
+        )
 
     @pytest.mark.parametrize("scale", [0.3, 0.7, 0.8, 0.9, 1.1])
     def test_the_numbers_are_those_of_the_neighbours(self, scale):
@@ -212,9 +223,9 @@ class TestWords:
         fallen = respond_many([model], [motion], runs).overturned.mean()
         said = str(neighbours(model, motion, around))
         if not can_lift(model, motion, 1.05):
-            assert said == f"None of 400 motions next to this one ({around.words}) lifts it." and fallen == 0
+            assert said == f"None of 400 neighbouring motions ({around.words}) uplifts the structure." and fallen == 0
             return
-        assert f"Of 400 motions next to this one ({around.words})" in said
+        assert f"Of 400 neighbouring motions ({around.words})" in said
         share = re.search(r"\) ([\d.]+) % overturn", said)
         told = float(share[1]) / 100 if share else {"all": 1.0, "none": 0.0}[re.search(r"\) (all|none)", said)[1]]
         assert told == pytest.approx(fallen, abs=5e-4)

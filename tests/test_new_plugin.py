@@ -125,11 +125,11 @@ class TestNames:
             ("", "such as leaning_pier"),
             ("a\x1b[31m\nb", r"'a\x1b[31m\nb' cannot be"),
             ("a" * (LONGEST + 1), f"at most {LONGEST} of a-z"),
-            ("class", "a word of Python"),
-            ("match", "a word of Python"),
+            ("class", "a keyword of Python"),
+            ("match", "a keyword of Python"),
             ("json", "Python has a module of this name"),
-            ("yes", "in a structure file this word is no text"),
-            ("block", "there is a mechanism block already, of rocking-cli"),
+            ("yes", "in a structure file this word is not read as text"),
+            ("block", "the mechanism block already exists, in rocking-cli"),
             ("cli", "its module would be rocking_cli"),
             ("con", "on Windows"),
             ("ties", "`rocking mechanisms ties` shows something else"),
@@ -182,9 +182,9 @@ class TestFolder:
     @pytest.mark.parametrize(
         ("out", "said"),
         [
-            ("full", "this folder is there already and is not empty"),
+            ("full", "this folder already exists and is not empty"),
             ("full/file", "there is a file of this name already"),
-            ("", "this folder is there already and is not empty"),
+            ("", "this folder already exists and is not empty"),
             ("no/such", "create it first"),
             ("full/file/x", "does not exist"),
         ],
@@ -196,7 +196,7 @@ class TestFolder:
         assert there(".") == ["full/file"] and Path("full/file").read_text(encoding="utf-8") == "kept"
 
     def test_it_goes_with_a_plugin_only(self):
-        assert "--out goes with --plugin" in run("new", "arch", "-o", "x", code=2).stderr
+        assert "--out requires --plugin" in run("new", "arch", "-o", "x", code=2).stderr
 
     @pytest.mark.parametrize("empty", [False, True])
     @pytest.mark.parametrize(

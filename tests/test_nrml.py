@@ -143,7 +143,7 @@ def test_measures_relative_to_the_structure_are_left_out():
     model = chosen([*some(), *some(measure="PGA/(g lambda)")])
     assert len(model.functions) == 1
     assert model.left_out == ["all curves over PGA/(g lambda): OpenQuake has no such intensity measure"]
-    with pytest.raises(InputError, match="no curve that OpenQuake takes: all curves over PGA/"):
+    with pytest.raises(InputError, match="OpenQuake accepts none of the curves: all curves over PGA/"):
         chosen(some(measure="PGA/(g lambda)"))
 
 
@@ -153,8 +153,8 @@ def test_curves_of_other_kinds_and_sliding_are_left_out_and_named():
     model = chosen(curves)
     assert len(model.limits) == 5 and len(model.left_out) == 3
     said = " ".join(model.left_out)
-    assert "0.9 over PGA: its curve is a step" in said and "2.0 over PGA: there is no curve: none of the" in said
-    assert "sliding is no step" in said
+    assert "0.9 over PGA: its curve is a step" in said and "2.0 over PGA: no curve exists: none of the" in said
+    assert "sliding is not a step" in said
 
 
 def test_several_structures_have_the_same_limit_states_and_most_curves_are_kept():
@@ -163,7 +163,7 @@ def test_several_structures_have_the_same_limit_states_and_most_curves_are_kept(
     model = chosen([*one, *other, *third])
     # 5 of one; uplift and overturning of two are 4; 0.5 of two is 2.
     assert [each.name for each in model.functions] == ["one"] and len(model.limits) == 5
-    assert len(model.left_out) == 3 and "no lognormal curve for 0.1, 0.5, 25 mm" in model.left_out[0]
+    assert len(model.left_out) == 3 and "no lognormal curve exists for 0.1, 0.5, 25 mm" in model.left_out[0]
     model = chosen([*one, *other, *[replace_name(each, f"more{k}") for k in range(2) for each in other]])
     assert len(model.functions) == 4 and model.limits == ["uplift", "overturning"]
     assert len(model.left_out) == 3 and "has no lognormal curve for this one" in model.left_out[0]
@@ -222,7 +222,7 @@ def test_the_command_refuses_places_and_says_when_nothing_is_left(store, tmp_pat
     study.write_text(text + "measures: [PGA/(g lambda)]\n", encoding="utf-8")
     out = tmp_path / "f.xml"
     found = command("fragility", study, "--nrml", out)
-    assert found.exit_code == 2 and "no curve that OpenQuake takes" in found.stderr and not out.exists()
+    assert found.exit_code == 2 and "OpenQuake accepts none of the curves" in found.stderr and not out.exists()
     assert "pedestal, over PGA/(g lambda)" in found.stdout
 
 
@@ -272,5 +272,5 @@ def test_a_curve_that_is_not_there_is_named_and_a_table_of_none_has_its_heading(
     assert command("fragility", study, "--restart").exit_code == 0
     out = tmp_path / "none.csv"
     found = command("results", study.with_suffix(".db"), "--curves", out)
-    assert "pedestal, overturning over PGA: no curve: none of the 22 runs exceed" in found.stderr
+    assert "pedestal, overturning against PGA: no curve: none of the 22 runs exceed" in found.stderr
     assert out.read_text(encoding="utf-8").count("\n") == 1

@@ -307,7 +307,7 @@ class TestShape:
         assert (shape.amplitude, shape.period, shape.phase, shape.cycles) == (1.0, 1.0, 90.0, 3.0)
 
     def test_amplitude_and_period_do_not_belong_to_it(self):
-        with pytest.raises(InputError, match="give the shape alone, sine"):
+        with pytest.raises(InputError, match="give only the shape, sine: amplitude and period are set separately"):
             parse_shape("sine:0.6g:0.8s")
 
     def test_an_unknown_one_gets_a_guess(self):
@@ -374,7 +374,7 @@ class TestCommand:
             rows = list(csv.DictReader(file))
         assert [row["first"] or None for row in rows] == data["first"] and data["tied"] == [None] * 8
         text = run("overturning", "--compare", *FILES, "--points", 8, "--model", "linear2").stdout
-        assert "goes first" in text and "Goes first" in text
+        assert "overturns first" in text and "Overturned by the smallest amplitude:" in text
 
     def test_a_tie_is_said_so(self, tmp_path):
         for name in ("one", "two"):
@@ -384,7 +384,7 @@ class TestCommand:
         tied = [each is not None for each in data["tied"]]
         assert any(tied) and data["first"] == [None] * 4 and ["one", "two"] in data["tied"]
         text = " ".join(run(*asked).stdout.split())
-        assert "a tie" in text and f"one and two together at {100 * sum(tied) / 4:.0f} %" in text
+        assert "several equal" in text and f"one and two together at {100 * sum(tied) / 4:.0f} %" in text
         assert '"tie: one, two"' in Path("c.csv").read_text(encoding="utf-8")
 
     def test_a_bad_file_is_reported_and_the_others_are_compared(self):
@@ -414,7 +414,7 @@ class TestCommand:
         data = json.loads(run(*arguments, "--json").stdout)
         assert data["shares"] == {"no_uplift": 1.0, "rocks": 0.0, "after_impact": 0.0, "without_impact": 0.0}
         assert set(data["least_a"]["overturning"]) == {None} and max(data["a"]) <= 1
-        assert f"the largest has a = {max(data['a']):.4g}, uplift needs a > 1" in run(*arguments).stdout
+        assert f"the largest has a = {max(data['a']):.4g}, and uplift requires a > 1" in run(*arguments).stdout
         with Path("map.csv").open(encoding="utf-8") as file:
             assert {row["outcome"] for row in csv.DictReader(file)} == {"does not uplift"}
 
@@ -425,36 +425,36 @@ class TestCommand:
         data = json.loads(run(*arguments, "--json").stdout)
         assert data["first"] == [None] * 4
         said = run(*arguments).stdout
-        low = re.search(r"Not even 0.1 g lifts (.*)\.", said)[1].split(", ")
+        low = re.search(r"0\.1 g, the largest amplitude tried, does not uplift (.*)\.", said)[1].split(", ")
         assert low == [each["name"] for each in data["structures"] if each["lambda"] >= 0.1]
 
     @pytest.mark.parametrize(
         ("arguments", "complaint"),
         [
-            (["--a", "5:2"], "give the smaller first"),
-            (["--a", "2:2"], "give the smaller first"),
+            (["--a", "5:2"], "is not increasing: give the smaller value first"),
+            (["--a", "2:2"], "is not increasing: give the smaller value first"),
             (["--omega", "0:4"], "is not positive"),
-            (["--omega", "4"], "give the least and the largest"),
-            (["--omega", "1:x"], "'x' is no number"),
-            (["--omega", "1g:2g"], "a number without a unit"),
+            (["--omega", "4"], "give the smallest and the largest value"),
+            (["--omega", "1:x"], "'x' is not a valid number"),
+            (["--omega", "1g:2g"], "'1g' has a unit: give a number without one, such as"),
             (["--eta", "0"], "above 0 and at most 1"),
             (["--eta", "1.2"], "above 0 and at most 1"),
             (["--pulse", "sinus"], "did you mean sine?"),
-            (["--pulse", "sine:1g:1s"], "give the shape alone"),
+            (["--pulse", "sine:1g:1s"], "give only the shape"),
             (["--period", "0.2:4"], "give --omega"),
             (["--model", "nonlinear"], "give FILE"),
             (["--points", "1"], "1 is not in the range"),
             (["--plot", "map.txt"], "does not end in"),
             (["--out", "nowhere/map.csv"], "does not exist"),
             ([FILES[0], "--ag", "0.1:2"], "has no unit: give one of g, m/s2"),
-            ([FILES[0], "--ag", "1ft:2ft"], "'ft' is no unit of acceleration"),
-            ([FILES[0], "--ag", "2g:1g"], "give the smaller first"),
+            ([FILES[0], "--ag", "1ft:2ft"], "'ft' is not a unit of acceleration"),
+            ([FILES[0], "--ag", "2g:1g"], "is not increasing: give the smaller value first"),
             ([FILES[0], "--period", "0:1"], "is not positive"),
             ([FILES[0], "--omega", "1:2"], "give --period, or add --dimensionless"),
             ([FILES[0], FILES[1]], "--compare"),
-            (["--compare", FILES[0]], "two structures or more"),
+            (["--compare", FILES[0]], "at least two structures"),
             (["--compare", *FILES, "--a", "1:2"], "give --ag"),
-            (["--compare", *FILES, "--dimensionless"], "leave --dimensionless out"),
+            (["--compare", *FILES, "--dimensionless"], "leave out --dimensionless"),
             (["nowhere.yaml"], "no such file"),
         ],
     )

@@ -173,7 +173,7 @@ def test_the_report_of_a_tied_structure_reads_on_a_telephone(browser, folder, sc
     run("report", structure, "--pulse", "sine:0.5g:0.7s", "--neighbours", 5, "-o", path)
     with opened(browser, path, viewport={"width": 360, "height": 700}, color_scheme=scheme) as page:
         assert page.evaluate("document.documentElement.scrollWidth") <= 360
-        page.locator("nav a", has_text="What hangs on it").click()
+        page.locator("nav a", has_text="Loads and ties").click()
         assert page.locator("#hung table").count() == 5
         assert page.locator(".tie").first.is_visible()
         for each in page.evaluate(CONTRASTS):

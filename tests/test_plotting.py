@@ -168,7 +168,7 @@ def test_where_nothing_lifts_the_picture_says_so_and_what_would():
     figure = draw_history(respond(BLOCK, quiet), quiet, "a block", uplift=(0.25, 0.2))
     ground, rotation = figure.axes
     assert [line.get_ydata()[0] for line in ground.lines[-2:]] == [-0.25, 0.2]
-    assert "0.2 g and -0.25 g would lift it" in " ".join(text.get_text() for text in ground.texts)
+    assert "uplift at 0.2 g and -0.25 g" in " ".join(text.get_text() for text in ground.texts)
     assert "does not uplift" in [text.get_text() for text in rotation.texts]
     rocks = draw_history(respond(BLOCK, PULSE.scaled(3.0)), PULSE, "a block", uplift=(0.25, 0.25))
     assert "does not uplift" not in [text.get_text() for each in rocks.axes for text in each.texts]
@@ -189,5 +189,5 @@ def test_the_friction_needed_is_a_panel_below():
     assert len(rubbed.axes) == len(plain.axes) + 1
     below = rubbed.axes[-1]
     curves = below.get_lines()
-    assert [line.get_label() for line in curves] == ["polarity 1", "polarity -1", "there is 0.3"]
+    assert [line.get_label() for line in curves] == ["polarity 1", "polarity -1", "available: 0.3"]
     assert max(curves[0].get_ydata()) == contacts[0].friction_needed < below.get_ylim()[1]

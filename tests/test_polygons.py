@@ -129,7 +129,7 @@ def test_what_is_too_small_to_be_drawn_is_refused(size):
 def test_a_stocky_body_is_drawn_as_far_as_it_goes(tmp_path):
     (tmp_path / "flat.yaml").write_text("mechanism: block\nwidth: 99\nheight: 0.01\n")
     run("draw", "flat.yaml")
-    assert "beyond the end of the mechanism" in run("draw", "flat.yaml", "--at", "1", code=2).stderr
+    assert "beyond the kinematic limit of the mechanism" in run("draw", "flat.yaml", "--at", "1", code=2).stderr
 
 
 @pytest.mark.parametrize("height", [1e-9, 1e-300])

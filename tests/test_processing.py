@@ -151,9 +151,9 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("step", "words"),
         [
-            ("lowpass 50", "50 Hz is not below 50 Hz"),
-            ("highpass 80", "is not below 50 Hz"),
-            ("highpass 0.05", "does not hold one period of 0.05 Hz"),
+            ("lowpass 50", "50 Hz is not below the Nyquist frequency, 50 Hz"),
+            ("highpass 80", "is not below the Nyquist frequency, 50 Hz"),
+            ("highpass 0.05", "15 s long, is shorter than one period of 0.05 Hz"),
             ("trim 2:20", "ends at 15 s, before 20 s"),
             ("trim 16:", "fewer than two samples"),
             ("trim 3:3.001", "fewer than two samples"),
@@ -169,18 +169,18 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("name", "given", "words"),
         [
-            ("baseline", "cubic", "none of constant, linear, quadratic"),
+            ("baseline", "cubic", "is not one of constant, linear, quadratic"),
             ("highpass", "-1", "is not a frequency in Hz above zero"),
             ("highpass", "0", "is not a frequency"),
             ("lowpass", "fast", "is not a frequency"),
-            ("taper", "0.7", "more than there is"),
+            ("taper", "0.7", "more than half of the record"),
             ("trim", "2", "is no.* range of times"),
             ("trim", "5:2", "ends before it begins"),
             ("trim", ":", "range of times"),
             ("resample", "0.01 kg", "is a mass"),
             ("resample", True, "cannot be True"),
             ("factor", "0", "is not a factor"),
-            ("hipass", "1", "no step of processing"),
+            ("hipass", "1", "is not a processing step"),
         ],
     )
     def test_what_no_step_takes(self, name, given, words):
@@ -189,7 +189,7 @@ class TestRefusals:
 
     def test_intervals_that_no_memory_holds(self):
         long = GroundMotion("long", 0.01, np.zeros(200_001))
-        with pytest.raises(InputError, match=r"2e\+08 samples would be made"):
+        with pytest.raises(InputError, match=r"would make 2e\+08 samples"):
             done(long, "resample 0.00001")
         with pytest.raises(InputError, match="is more than 100000 of the"):
             done(long, "resample 1500")
@@ -255,7 +255,7 @@ class TestCommands:
         ("options", "words"),
         [
             (("--highpass", "1", "--highpass", "2"), "is given twice"),
-            (("--lowpass", "80"), "--lowpass: 80 Hz is not below 50 Hz"),
+            (("--lowpass", "80"), "--lowpass: 80 Hz is not below the Nyquist frequency, 50 Hz"),
             (("--lowpass", "x"), "is not a frequency in Hz"),
             (("--gain", "3"), "is a gain without a unit"),
             (("--azimuth", "30"), "give --with FILE"),
@@ -283,8 +283,11 @@ class TestCommands:
         ("entry", "words"),
         [
             (f"{{file: '{ACCEL.as_posix()}', azimuth: 30}}", "an azimuth is between two components"),
-            (f"{{file: '{ACCEL.as_posix()}', with: east.csv}}", "--azimuth: is missing beside the file"),
-            (f"{{file: '{ACCEL.as_posix()}', with_channel: '2'}}", "--with-channel: is of one of two components"),
+            (
+                f"{{file: '{ACCEL.as_posix()}', with: east.csv}}",
+                "--azimuth is missing: the file of a second component needs it",
+            ),
+            (f"{{file: '{ACCEL.as_posix()}', with_channel: '2'}}", "--with-channel applies to one of two components"),
             ("{file: set.yaml}", "is a list of records itself"),
         ],
     )
@@ -334,7 +337,7 @@ class TestCommands:
         )
         said = run("respond", "--record", tmp_path / "set.yaml", code=2).stderr
         assert "set.yaml:3" in said and "did you mean highpass?" in said
-        assert "set.yaml:4" in said and "'kg' is no unit" in said
+        assert "set.yaml:4" in said and "'kg' is not a unit of acceleration, velocity or length" in said
 
 
 def test_a_report_says_what_was_done_and_how_to_do_it_again(tmp_path):

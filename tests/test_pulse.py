@@ -558,7 +558,7 @@ def test_how_far_off_the_closed_form_is_out_of_its_domain_is_said():
     assert closed["max_ratio"] is None and closed["overturns"] is None and "after the pulse" in closed["reason"]
     assert closed["off_peak_ratio"] == approx(closed["printed_ratio"] - peak)
     said = words("--a", 1.3, "--omega", 8)
-    value, high = re.search(r"Eq. 41 says ([\d.]+), (\d+) % too high", said).groups()
+    value, high = re.search(r"Eq. 41 gives ([\d.]+), (\d+) % too high", said).groups()
     assert float(value) == approx(closed["printed_ratio"], rel=1e-3)
     assert float(high) == approx(100 * closed["off_peak_ratio"] / peak, abs=0.5)
 

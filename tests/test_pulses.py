@@ -244,9 +244,9 @@ class TestSpecifications:
             ("sine:0.6g:0.8kg", "unknown unit 'kg' of period, give s, ms, Hz"),
             ("sine:0.6kg:0.8s", "unknown unit 'kg' of amplitude"),
             ("sine:0.8s:0.6g", "unknown unit 's' of amplitude"),
-            ("sine:x:0.8s", "'x' is no amplitude"),
-            ("sine:0.6g:", "'' is no period"),
-            ("sine:0.6g:0Hz", "a frequency of zero"),
+            ("sine:x:0.8s", "'x' is not a valid amplitude"),
+            ("sine:0.6g:", "'' is not a valid period"),
+            ("sine:0.6g:0Hz", "the frequency must not be zero"),
             ("sine:-0.6g:1s", "amplitude must be positive"),
             ("sine:1e999g:1s", "amplitude must be positive"),
             ("sine:1g:0s", "period must be positive"),
@@ -311,8 +311,8 @@ class TestPlugins:
     @pytest.mark.parametrize(
         ("name", "target", "words"),
         [
-            ("incomplete", f"{__name__}:Incomplete", "is no pulse shape: it must derive from Pulse"),
-            ("other", f"{__name__}:install", "is no pulse shape: it must derive from Pulse"),
+            ("incomplete", f"{__name__}:Incomplete", "is not a pulse shape: it must derive from Pulse"),
+            ("other", f"{__name__}:install", "is not a pulse shape: it must derive from Pulse"),
             ("nameless", f"{__name__}:Nameless", "it needs name = 'nameless' and a title"),
             ("rectangle", f"{__name__}:Triangle", "it needs name = 'rectangle'"),
             ("gone", "nowhere_at_all:Gone", "cannot be loaded"),

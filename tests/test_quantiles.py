@@ -122,9 +122,9 @@ def test_json_has_them_always_and_the_terminal_where_they_are_asked_for(whole):
             assert group["all"] == ["overturns" if np.isinf(value) else value for value in what.every]
             fallen += group["all"].count("overturns")
     assert fallen
-    assert "how far it rocks" not in command("results", place).stdout
+    assert "peaks of the runs that rock" not in command("results", place).stdout
     shown = command("results", place, "--quantiles").stdout
-    assert shown.count("how far it rocks, over") == len(found) and "overturns" in shown
+    assert shown.count("peaks of the runs that rock, against") == len(found) and "overturns" in shown
     assert ("in tenths" in shown) == any(not each.stripes for each in found)
 
 
@@ -161,11 +161,11 @@ def test_the_picture_shows_the_quantiles_and_the_shares():
     figure.savefig(io.BytesIO(), format="png", dpi=40)
     above, below = figure.axes
     lines = {line.get_label(): line.get_ydata() for line in above.get_lines()}
-    np.testing.assert_array_equal(lines["rock and stand, median"], [np.nan, 0.2, 0.4, np.nan])
-    np.testing.assert_array_equal(lines["all, median"][:3], [0.0, 0.1, 0.5])
+    np.testing.assert_array_equal(lines["runs that rock, median"], [np.nan, 0.2, 0.4, np.nan])
+    np.testing.assert_array_equal(lines["all runs, median"][:3], [0.0, 0.1, 0.5])
     band = next(each for each in above.patches).get_extents().transformed(above.transData.inverted())
-    assert band.y0 < lines["all, median"][3] < band.y1 and band.y0 > 1
-    assert band.y0 < lines["all, 84 %"][2] < band.y1 and np.isnan(lines["all, 84 %"][3])
+    assert band.y0 < lines["all runs, median"][3] < band.y1 and band.y0 > 1
+    assert band.y0 < lines["all runs, 84 %"][2] < band.y1 and np.isnan(lines["all runs, 84 %"][3])
     assert above.get_yticklabels()[-1].get_text() == "overturns" and below.get_xlabel() == "PGA [g]"
     still, rocks, fallen = below.collections
     heights = [each.get_paths()[0].get_extents() for each in (still, rocks, fallen)]

@@ -377,7 +377,7 @@ def test_simcenter_errors(write):
         (cosmos(kind="raw", unit="counts(50)"), "no acceleration, but raw"),
         (cosmos(kind="raw accel.", unit="counts(50)"), "no acceleration, but raw accel."),
         (geonet(unit="mm/s"), "a velocity or displacement"),
-        (knet(scale="2000(kine)/1000000"), "the header says 'kine', which is no unit"),
+        (knet(scale="2000(kine)/1000000"), "the header says 'kine', which is not a known unit of acceleration"),
         (csmip_v1(evenly="{count} POINTS OF VELOC DATA EQUALLY SPACED AT .005 SEC.  (UNITS: CM/SEC)"), "VELOC data"),
         (csmip_v1(evenly="{count} Accelerogram points at 200 pts/sec in units of cm/s. Format: (8f9.6)"), "a velocity"),
     ],

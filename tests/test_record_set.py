@@ -187,13 +187,17 @@ def test_a_record_out_of_reach_is_left_out_and_said():
     assert chosen.silent == 1
     said = view(Results(chosen, CODE, [None] * 5)).parts
     assert any("r1: it needs a factor of" in part for part in said if isinstance(part, str))
-    assert any("1 of 5 records does not say of which earthquake" in part for part in said if isinstance(part, str))
+    assert any(
+        "1 of 5 records gives no earthquake; it counts as a separate earthquake." in part
+        for part in said
+        if isinstance(part, str)
+    )
 
 
 @pytest.mark.parametrize(
     ("count", "more", "message", "hint"),
     [
-        (6, {}, "there are 5 records", "give more records"),
+        (6, {}, "5 records are available", "give more records"),
         (4, {"one_per": "station"}, "one per station leaves 4", "`one_per` none"),
         (3, {"factors": (50.0, 60.0)}, "of which 0 can be scaled", "`factors`"),
     ],
@@ -249,7 +253,7 @@ def test_the_sentence_says_what_the_numbers_say(seed, rough, fits):
     assert ("above 1.3" in said) == bool((ratio > 1.3).any())
     outside = [f"{period:.3g}" for period, each in zip(found.periods, ratio, strict=True) if not 0.9 <= each <= 1.3]
     if outside:
-        spans = said.partition("it is ")[2]
+        spans = said.partition("that is ")[2]
         assert outside[0] in spans
         assert outside[-1] in spans
     assert "best of all 56 sets" in " ".join(part for part in shown.parts if isinstance(part, str))
@@ -318,7 +322,9 @@ def test_candidates_have_the_spectra_of_their_motions():
     assert coarse(found) == []
     short = Wanted(2, (0.03, 2.0))
     assert len(coarse(candidates(motions, CODE, short))) == 3
-    with pytest.raises(InputError, match="of 9 is asked for, and there are 3"):  # before any spectrum is computed
+    with pytest.raises(
+        InputError, match="a set of 9 was requested, but 3 records are available"
+    ):  # before any spectrum is computed
         candidates(motions, CODE, Wanted(9, BAND), lambda done: pytest.fail("too late"))
 
 
@@ -381,7 +387,7 @@ def test_a_wrong_target_is_pointed_at(tmp_path, text, line, message):
 
 def test_a_target_that_is_no_text_or_not_there(tmp_path):
     (tmp_path / "t.csv").write_bytes(b"\xff\xfe\x00\x81")
-    for name, message in (("t.csv", "no text in UTF-8"), ("none.csv", "no such file"), (".", "folder")):
+    for name, message in (("t.csv", "not UTF-8 text"), ("none.csv", "no such file"), (".", "folder")):
         with pytest.raises(InputError, match=message):
             read_target(tmp_path / name)
 

@@ -285,7 +285,7 @@ def test_the_unit_is_never_guessed(write, header):
 def test_an_unknown_unit_is_quoted(write, header, line, quoted):
     path = write(f"{header}0.0,1\n0.5,2\n")
     found = problem(path)
-    assert f"the header says '{quoted}', which is no unit" in found.message
+    assert f"the header says '{quoted}', which is not a known unit of acceleration" in found.message
     assert "`units`" in found.hint
     assert found.line == line
     assert read_record(path, units="g").unit == "g"
@@ -1231,7 +1231,7 @@ def test_what_is_wrong_with_standard_input_is_said_of_it(given_on_standard_input
     sys.stdin.close()
     assert "cannot be read" in problem_of_standard_input().message
     monkeypatch.setattr(sys, "stdin", None)
-    assert "there is none" in problem_of_standard_input().message
+    assert "there is no standard input" in problem_of_standard_input().message
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")

@@ -89,7 +89,7 @@ class TestContent:
         said = motion["answers"]["Will it overturn?"]
         sense = {"positive": "clockwise", "negative": "anticlockwise"}[alone["overturning_direction"]]
         assert f"Yes, it overturns, {sense} at {alone['overturning_time']:.2f} s" in said
-        assert "this way round only" in said
+        assert "Only this polarity of the motion was analysed" in said
         assert data["answer"].endswith("overturns under sine:1g:2s.") and motion["headline"] == "overturns"
         assert motion["margin"]["levels"]["90"]["first"] < 1 and motion["neighbours"]["overturned"] > 0.9
 
@@ -100,7 +100,7 @@ class TestContent:
         )  # 1 governs without the scale
         assert data["motions"][0]["polarity"] == -1
         page = read(out)
-        assert "reversed, which is the worse way round" in page.words
+        assert "reversed: the polarity that governs" in page.words
         ground, pulse = (np.array(each["y"]) for each in page.data[0]["charts"][1]["series"])
         record = read_record(ACCEL).acceleration / STANDARD_GRAVITY
         assert ground[np.abs(ground).argmax()] == pytest.approx(record[np.abs(record).argmax()], rel=1e-4)
@@ -109,11 +109,11 @@ class TestContent:
     @pytest.mark.parametrize(
         ("structure", "pulse", "said"),
         [
-            (BLOCK, "sine:0.1g:1s", "Any: by all three models it does not uplift"),
-            (FRAME, "sine:0.5g:0.5s", "Any: the three models agree closely"),
-            (ARCH, "sine:0.8g:0.8s", "The nonlinear one"),
-            (ARCH, "sine:0.9g:1.2s", "None of them alone: the models disagree"),
-            (BLOCK, "sine:1g:2s", "All three models say that it overturns"),
+            (BLOCK, "sine:0.1g:1s", "Any of them: by all three models it does not uplift"),
+            (FRAME, "sine:0.5g:0.5s", "Any of them: the three models agree closely"),
+            (ARCH, "sine:0.8g:0.8s", "The nonlinear model. It simulates the structure without linearisation"),
+            (ARCH, "sine:0.9g:1.2s", "No single one: the models disagree"),
+            (BLOCK, "sine:1g:2s", "By all three models, it overturns."),
         ],
     )
     def test_which_model_to_trust(self, structure, pulse, said):
@@ -121,7 +121,7 @@ class TestContent:
         (motion,) = run_json("report", *FEW, structure, "--pulse", pulse, "--polarity", "1")["motions"]
         assert motion["answers"]["Which model to trust?"].startswith(said)
         disagree = len({each["overturned"] for each in motion["responses"].values()}) > 1
-        assert disagree == said.startswith("None")
+        assert disagree == said.startswith("No single one")
 
     def test_models_that_disagree_on_uplift_do_not_agree(self):
         # Between the uplift of the arch, 0.37 g, and that of its linearised block, 0.25 g.
@@ -133,7 +133,7 @@ class TestContent:
             True,
         ]
         said = motion["answers"]["Which model to trust?"]
-        assert said.startswith("The nonlinear one.")
+        assert said.startswith("The nonlinear model.")
         assert "Disregard the equivalent block with κ₁: its uplift acceleration is 33 % too low; here it rocks" in said
 
     def test_the_headline_counts_the_motions_that_move_it(self):
@@ -149,16 +149,16 @@ class TestContent:
         found = run_json("report", *FEW, BLOCK, "--pulse", "sine:1g:2s", "--scale", "50")["motions"][0]
         said = found["answers"]["How close is that?"]
         assert (
-            "at least 10 % of the motions next to it overturn first at 0.2 (PGA 10 g), 50 % at 0.2 (10 g) and 90 %"
-            in said
+            "At least 10 % of the neighbouring motions first overturn the structure at a factor of 0.2 (PGA 10 g), "
+            "50 % at 0.2 (10 g) and 90 % at 0.2 (10 g)" in said
         )
-        assert f"Of 20 motions next to this one ({Around(20).words}) all overturn." in said
-        assert any("Large factors" in each for each in found["doubts"])
+        assert f"Of 20 neighbouring motions ({Around(20).words}) all overturn the structure." in said
+        assert any("scaled by large factors" in each for each in found["doubts"])
 
     def test_a_motion_beyond_the_critical_rotation_is_told_as_such(self):
         (motion,) = run_json("report", *FEW, ARCH, "--pulse", "sine:1.2g:1.2s", "--polarity", "1")["motions"]
         assert motion["responses"]["nonlinear"]["peak_ratio"] > 1
-        assert "only the next push of the ground brings it back" in motion["answers"]["How close is that?"]
+        assert "is brought back only by the subsequent ground motion" in motion["answers"]["How close is that?"]
 
     def test_a_close_result_and_models_that_disagree_are_doubted(self):
         levels = run_json("report", *FEW, BLOCK, "--pulse", "sine:0.5g:1s")["motions"][0]["margin"]["levels"]
@@ -187,7 +187,7 @@ class TestContent:
         out = tmp_path / "r.html"
         run("report", *FEW, stocky, "-o", out)
         words = read(out).words
-        assert "need a measured restitution" in words and "There is no map" in words
+        assert "they need a measured restitution" in words and "No map is given" in words
         assert "restitution" in run("report", *FEW, stocky, "--record", ACCEL, "-o", out, code=2).stderr
 
     def test_pulses_are_marked_where_they_are(self, tmp_path):
@@ -198,7 +198,7 @@ class TestContent:
         omega, a = 2 * np.pi / 0.8 / block["p"], 0.6 / block["lambda"]
         rows = re.sub(r"</t[hd]><td[^>]*>", " ", out.read_text(encoding="utf-8"))
         assert f"sine:0.6g:0.8s 0.8 0.6 {omega:.3g} {a:.3g} 100" in rows
-        assert words.count("Where the ground motions are on this map") == 2  # one for each shape
+        assert words.count("Position of the ground motions on this map") == 2  # one for each shape
 
     def test_every_parameter_is_defined(self):
         block = EquivalentBlock(**{name: float(k) for k, name in enumerate(EquivalentBlock.__dataclass_fields__)})
@@ -287,7 +287,10 @@ class TestCommand:
         [
             (["--dt", "0.01"], "give --record FILE"),
             (["--scale", "2"], "give --record FILE or --pulse PULSE"),
-            (["--pulse", "sine:1g:1s", "--scale", "2", "--target-pga", "1"], "exclude each other"),
+            (
+                ["--pulse", "sine:1g:1s", "--scale", "2", "--target-pga", "1"],
+                "--scale, --target-pga and --target-pgv cannot be combined",
+            ),
             (["--record", "none.csv"], "none.csv"),
             (["-o", "r.pdf"], "does not end in .html"),
             (["-o", "none/r.html"], "does not exist"),

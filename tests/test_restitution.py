@@ -337,11 +337,12 @@ def test_the_reason_for_no_restitution_is_the_sign_of_the_product():
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ("", "Restitution eta = 0.9118, from kinematics, not measured."),
-        ("restitution: 0.85\n", "Restitution eta = 0.85, as given."),
+        ("", "Coefficient of restitution eta = 0.9118, from rigid-body kinematics, not measured."),
+        ("restitution: 0.85\n", "Coefficient of restitution eta = 0.85, as given."),
         (
             "restitution: {positive_to_negative: 0.8, negative_to_positive: 0.9}\n",
-            "Restitution eta = 0.8 and 0.9 (ending + and -), as given.",
+            "Coefficient of restitution eta = 0.8 at impacts that end clockwise rotation and 0.9 at the others, as "
+            "given.",
         ),
     ],
 )

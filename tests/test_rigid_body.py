@@ -190,17 +190,17 @@ PARTS = BODY + "parts:\n  - polygon: [[0, 0], [2, 0], [2, 3], [0, 3]]\n"
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (BODY, "inertia_ratio: is missing: give R, alpha_deg and inertia_ratio, or a polygon, or parts, or mass,"),
+        (BODY, "inertia_ratio is missing: give R, alpha_deg and inertia_ratio, or a polygon, or parts, or mass,"),
         (BODY + "mass: 3\ncentroid: [0, 1]\n", "inertia: give all of mass, centroid, inertia, left_foot, right_foot"),
         (
             BODY + "mass: 3\ncentroid: [0, 1]\ninertia: 1\nleft_foot: [1, 0]\nright_foot: [0.5, 0]\n",
-            "b.yaml:6:13: right_foot: is not to the right of left_foot",
+            "b.yaml:6:13: right_foot is not to the right of left_foot",
         ),
         (
             BODY + "mass: 3\ncentroid: [2, 1]\ninertia: 1\nleft_foot: [0, 0]\nright_foot: [0.5, 0]\n",
             "b.yaml:3:11: centroid: it cannot stand: its centroid (x = 2 m) is not above its foot",
         ),
-        (PARTS + "R: 1\n", "goes not with R: describe the body by one or the other"),
+        (PARTS + "R: 1\n", "parts cannot be combined with R: describe the body in one of the two ways"),
         (PARTS + "  - polygon: [[0, 2], [2, 2], [1, 5]]\n", "b.yaml:4:14: parts[2].polygon: it overlaps part 1"),
         (PARTS + "  - polygon: [[0, 4], [2, 4], [1, 5]]\n", "parts[2].polygon: it is joined to no other part: the"),
         (
@@ -218,14 +218,14 @@ PARTS = BODY + "parts:\n  - polygon: [[0, 0], [2, 0], [2, 3], [0, 3]]\n"
         ),
         (
             PARTS + "    density: 1800\n  - polygon: [[0, 3], [2, 3], [1, 5]]\n",
-            "parts[2].density: is missing: give density to all parts, or to the body",
+            "parts[2].density is missing: give density to all parts, or to the body",
         ),
         (PARTS + "  - polygon: [[0, 3], [2, 3], [2, 3]]\n", "b.yaml:4:14: parts[2].polygon: two corners are the same"),
-        (PARTS + "corner_radius: 1.2\n", "b.yaml:4:16: corner_radius: is too large"),
-        (BODY + "R: 1\nalpha_deg: 10\ninertia_ratio: 1.3\ncorner_radius: 0.2\n", "corner_radius: is too large"),
+        (PARTS + "corner_radius: 1.2\n", "b.yaml:4:16: corner_radius is too large"),
+        (BODY + "R: 1\nalpha_deg: 10\ninertia_ratio: 1.3\ncorner_radius: 0.2\n", "corner_radius is too large"),
         (
             BODY + "polygon: [[0, 0], [2, 0], [2, 0.3], [1, 9], [0, 0.3]]\ncorner_radius: 0.4\n",
-            "corner_radius: is larger than the sides at the foot have room for, 0.3 m",
+            "corner_radius is larger than the sides at the foot have room for, 0.3 m",
         ),
     ],
 )  # fmt: skip

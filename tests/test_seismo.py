@@ -239,7 +239,7 @@ def test_a_channel_of_text_is_no_record(made):
 
 
 @pytest.mark.parametrize(
-    ("offset", "value", "fragment"), [(EVEN, 0, "unevenly spaced (LEVEN)"), (KIND, 2, "no time series (IFTYPE = 2)")]
+    ("offset", "value", "fragment"), [(EVEN, 0, "unevenly spaced (LEVEN)"), (KIND, 2, "not a time series (IFTYPE = 2)")]
 )
 def test_sac_that_is_no_even_time_series_is_refused(made, offset, value, fragment):
     assert fragment in problem(patch(made("SAC", ("HNE", VALUES)), offset, integer(value))).message

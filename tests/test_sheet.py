@@ -361,7 +361,7 @@ class Recomputed:
             self.known["a_g of the method"] = value
 
     OTHERS = ("x_[G", "y_[G", "x_[P", "P_[", "PQ_[", "r")
-    """Held against their numbers alone."""
+    """Symbols whose results are checked against their numbers only."""
 
     def scale(self, each):
         """What small differences are of: the terms of a sum."""
@@ -647,7 +647,7 @@ class TestAskingForIt:
 
     def test_a_head_without_a_sheet_is_refused(self, tmp_path):
         result = self.asked(tmp_path, "--author", "me")
-        assert "--author stands at the head of a sheet" in result.stderr
+        assert "--author belongs to the heading of a sheet" in result.stderr
 
     def test_it_does_not_write_over_its_input(self, tmp_path):
         (tmp_path / "in.html").write_text(FACADE, encoding="utf-8")
@@ -698,7 +698,9 @@ def test_records_are_on_the_sheet_and_a_report_has_it_all(tmp_path):
     (tmp_path / "s.yaml").write_text(FACADE, encoding="utf-8")
     files = (tmp_path / "s.yaml", "--pulse", "sine:0.09g:0.5s")
     data = run_json("verify", *files, "--site", tmp_path / "site.yaml", "--sheet", tmp_path / "o.html")
-    rows = next(each for each in of_html(tmp_path / "o.html") if isinstance(each, list) and "Largest" in each[0])
+    rows = next(
+        each for each in of_html(tmp_path / "o.html") if isinstance(each, list) and "Peak displacement" in each[0]
+    )
     (record,) = data["directions"]["positive"]["dynamic"]["records"]
     assert [number(each) for each in rows[2][1:]] == pytest.approx(
         [record["d_with_FC"], record["d_without_FC"]], rel=5e-6

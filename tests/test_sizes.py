@@ -135,7 +135,7 @@ def test_the_command_says_so(tmp_path, monkeypatch):
     asked = ["spectrum", "laden.yaml", "--pulse", "sine:0.5g:0.7s", "--sizes", "1:4:5"]
     result = CliRunner().invoke(main, [*asked, "--plot", "s.png", "--out", "s.csv"])
     assert result.exit_code == 0, result.output
-    assert "every size was built and followed by itself. Uplift is at 0." in " ".join(result.stdout.split())
+    assert "every size was built and simulated separately. Uplift is at 0." in " ".join(result.stdout.split())
     assert (tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()[0].count(",lambda,") == 1
     (found,) = json.loads(CliRunner().invoke(main, [*asked, "--json"]).stdout)["spectra"]
     assert found["alike"] is False and len(found["lambdas"]) == len(found["size"]) == 6

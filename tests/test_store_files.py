@@ -110,7 +110,7 @@ def test_a_store_without_checksums_is_read_with_a_word_and_taken_over(sound, pla
     old = place.read_bytes()
     looked = command("results", place, "--json")
     assert looked.exit_code == 0 and shown(looked.stdout) == sound.shown
-    assert "without checksums: damage to its runs would not show" in looked.stderr
+    assert "without checksums: damage to its runs cannot be detected" in looked.stderr
     run = command("fragility", sound.study, "--store", place, "--json")
     assert shown(run.stdout) == sound.shown and "240 of 240 runs are in the store already" in run.stderr
     assert place.with_name("study.before.db").read_bytes() == old
@@ -139,7 +139,11 @@ def test_a_damaged_run_is_named_and_run_again(sound, place):
     old = place.read_bytes()
     named = "1 run is damaged and left out: run 53 (uncertain, sample 0, sine:0.6g:0.8s, level 0.3, polarity -1)"
     looked = command("results", place, "--json")
-    assert looked.exit_code == 5 and named in looked.stderr and "takes over what is sound" in looked.stderr
+    assert (
+        looked.exit_code == 5
+        and named in looked.stderr
+        and "keep the undamaged runs and repeat the others" in looked.stderr
+    )
     assert shown(looked.stdout)["finished"] == 239
     run = command("fragility", sound.study, "--store", place, "--json")
     assert run.exit_code == 0 and named in run.stderr and "239 of 240 runs are in the store already" in run.stderr
@@ -172,7 +176,7 @@ def test_a_study_that_another_process_begins_meanwhile_is_left_to_it(sound, tmp_
     with Store.writing(tmp_path / "other.db") as late:
         with Store.writing(tmp_path / "other.db") as first:
             prepare(study, first)
-        with pytest.raises(InputError, match="has begun this study at the same moment"):
+        with pytest.raises(InputError, match="another process has just started this study"):
             prepare(study, late)
     with Store.reading(tmp_path / "other.db") as kept:
         assert kept.count() == (0, 0)

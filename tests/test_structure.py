@@ -64,12 +64,12 @@ WRONG = {
     ),
     "weight for a density": (
         "mechanism: asymmetric_frame\ncolumn_width: 1\nleft_height: 5\nright_height: 6\nspacing: 4\nbeam_depth: 1\n"
-        "density: 18 kN/m3\ndepth: 1\n", 7, 10, "density", "over 9.80665 m/s2 it is 1835.49 kg/m3",
+        "density: 18 kN/m3\ndepth: 1\n", 7, 10, "density", "divided by 9.80665 m/s2 it is 1835.49 kg/m3",
     ),
     "decimal comma and unit": ("mechanism: block\nwidth: 0,7 m\nheight: 4\n", 2, 8, "width", "write a decimal point"),
     "mapping for a number": ("mechanism: block\nwidth: {a: 1}\nheight: 4\n", 2, 8, "width", "got a mapping"),
     "whole but beyond all numbers": (
-        f"mechanism: block\nwidth: {'9' * 400}\nheight: 4\n", 2, 8, "width", "beyond the range of numbers",
+        f"mechanism: block\nwidth: {'9' * 400}\nheight: 4\n", 2, 8, "width", "outside the range of floating-point numbers",
     ),
     "merge key": (BLOCK + "<<: {name: x}\n", 4, 1, "<<", "write the fields out"),
     "list that is not closed": (BLOCK + "name: [1,\n  2\n", 4, 7, None, "not YAML"),
@@ -82,7 +82,7 @@ WRONG = {
         "mechanism: rigid_body\npolygon: [[0, 0], [1, 0.001], [0.8, 3], [0, 3]]\n", 2, 10, "polygon",
         "the next is 0.001 m higher",
     ),
-    "mechanism misspelt": ("mechansim: block\nwidth: 1\n", 1, 1, "mechanism", "is mechansim meant to be mechanism?"),
+    "mechanism misspelt": ("mechansim: block\nwidth: 1\n", 1, 1, "mechanism", "did you mean mechanism instead of mechansim?"),
     "truth for a number": ("mechanism: block\nwidth: true\nheight: 4\n", 2, 8, "width", "got true"),
     "nothing for a number": ("mechanism: block\nwidth:\nheight: 4\n", 2, 7, "width", "got nothing"),
     "list for a number": ("mechanism: block\nwidth: [1]\nheight: 4\n", 2, 8, "width", "got a list"),
@@ -128,7 +128,7 @@ WRONG = {
         "mechanism: arch\nradius: 10\nthickness: 20\ninclusion_angle_deg: 180\n", 3, 12, "thickness", "no intrados",
     ),
     "arch too thick": (
-        "mechanism: arch\nradius: 10\nthickness: 5\ninclusion_angle_deg: 10\n", 3, 12, "thickness", "too thick to rock",
+        "mechanism: arch\nradius: 10\nthickness: 5\ninclusion_angle_deg: 10\n", 3, 12, "thickness", "too thick for a four-hinge mechanism",
     ),
     "columns overlap": (
         "mechanism: asymmetric_frame\ncolumn_width: 1\nleft_height: 5\nright_height: 6\nspacing: 1\nbeam_depth: 1\n"
@@ -140,7 +140,7 @@ WRONG = {
     ),
     "no description of a body": ("mechanism: rigid_body\nR: 1\nalpha_deg: 10\n", 1, 1, "inertia_ratio", "is missing"),
     "two descriptions": (
-        "mechanism: rigid_body\nR: 1\npolygon: [[0, 0], [1, 0], [1, 3]]\n", 3, 10, "polygon", "one or the other",
+        "mechanism: rigid_body\nR: 1\npolygon: [[0, 0], [1, 0], [1, 3]]\n", 3, 10, "polygon", "describe the body in one of the two ways",
     ),
     "inverted polygon": ("mechanism: rigid_body\npolygon: [[0, 3], [1, 3], [0.5, 0]]\n", 2, 10, "polygon", "one corner"),
     "falling polygon": (

@@ -165,7 +165,11 @@ method: ida
         (("name: uncertain", "name: valley bridge"), "structures", "two of them are called valley bridge"),
         (("pulse: sine:0.6g:0.8s", f"file: {EXAMPLES / 'accel.csv'}"), "records", "two of them"),
         (("count: 8", "count: 1"), "levels.count", "at least 2"),
-        (("least: 0.5, most: 4", "least: 4, most: 4.000000000000002"), "levels.most", "repeat"),
+        (
+            ("least: 0.5, most: 4", "least: 4, most: 4.000000000000002"),
+            "levels.most",
+            "too close to least for 8 distinct levels",
+        ),
         (("most: 4", "most: 1e300"), "levels.most", "at most 1e+06"),
         (
             ("csv\n", f"csv\n  - {{file: '{EXAMPLES}/*.yaml', vertical: '{EXAMPLES}/*.csv'}}\n"),
@@ -297,7 +301,7 @@ def test_measures_that_repeat(tmp_path, old, new, said):
     [
         ("values: [1, 2, 1]", "1 is given twice"),
         ("values: [2, 1, 1.0000000000000002]", "1 and 1.0000000000000002 differ by rounding alone"),
-        ("least: 1, most: 1.000000000001, count: 2", "repeat"),
+        ("least: 1, most: 1.000000000001, count: 2", "too close to least for 2 distinct levels"),
     ],
 )
 def test_levels_that_only_rounding_tells_apart(tmp_path, levels, said):

@@ -101,7 +101,7 @@ class TestIntensities:
         du = [each for each in measured[1]["curves"] if each["measure"] == "Du"]
         assert {(each["left_out"], each["runs"]) for each in du} == {(none, len(rows) - none)} and none
         said = command("results", measured[0] / "study.db").stdout
-        assert f"{none} runs have no Du above zero, and no part in this." in said
+        assert f"{none} runs have no Du above zero and are left out of this fit." in said
         assert all(each["left_out"] == 0 for each in measured[1]["curves"] if each["measure"] != "Du")
 
     def test_no_run_at_all(self, tmp_path):
@@ -152,7 +152,7 @@ class TestStudyFile:
                 assert shown.exit_code == 5 and "its Sa(1.0) is not above zero" in said
         assert command("results", tmp_path / "study.db").exit_code == 5
         mended = command("fragility", write(tmp_path))
-        assert mended.exit_code == 0 and "could not be used when the study was begun" in mended.stderr
+        assert mended.exit_code == 0 and "could not be used when the study was started" in mended.stderr
 
     def test_a_structure_without_a_block_has_no_v_imp(self, tmp_path):
         wall = EXAMPLES / "walls" / "column_with_tendon.yaml"
@@ -227,7 +227,7 @@ class TestStore:
             connection.executescript(statement)
         for arguments in (("results", place), ("fragility", write(tmp_path), "--store", place)):
             shown = command(*arguments)
-            assert shown.exit_code == 2 and "does not agree with its checksum" in shown.stderr
+            assert shown.exit_code == 2 and "the description of the study does not match its checksum" in shown.stderr
 
     def test_a_damaged_run_costs_no_value(self, measured, tmp_path):
         place = tmp_path / "study.db"
@@ -248,6 +248,6 @@ class TestStore:
         with Store.writing(place) as kept:
             kept.note({"definition": {**kept.fact("definition"), "measures": ["Gone(1.0)"]}})
         shown = command("results", place)
-        assert shown.exit_code == 2 and "asks for what is refused today" in shown.stderr
+        assert shown.exit_code == 2 and "the definition of its study is not valid in this version" in shown.stderr
         again = command("fragility", write(tmp_path, more="measures: [Sa(1.0)]\n"), "--store", place)
         assert again.exit_code == 0 and "24 of 24 runs are in the store already" in again.stderr

@@ -241,7 +241,7 @@ def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path)
     process.send_signal(signal.SIGINT)
     out, said = process.communicate()
     assert process.returncode == 130 and not out
-    assert said.endswith("interrupted: what was finished is kept, and the same command goes on from there\n")
+    assert said.endswith("interrupted: finished runs are kept; run the same command again to continue\n")
     assert 0 < finished(place) < long_study[1].plan.total
 
 
@@ -335,7 +335,7 @@ class TestChanges:
         ],
     )
     def test_a_changed_reading_is_named(self, tmp_path, old, new, said):
-        """What a store has of an entry is read back, and held against what is asked for now."""
+        """What a store has of an entry is read back, and checked against the present entry."""
         t = 0.01 * np.arange(401)
         for name in "ab":
             u = 0.05 * np.sin(np.pi * t / 4) ** 2 * np.sin((8 if name == "a" else 9) * t)
@@ -548,7 +548,7 @@ class TestOtherFiles:
     def test_a_study_is_not_its_own_store(self, tmp_path):
         write(tmp_path, count=5).rename(tmp_path / "study.db")
         result = CliRunner().invoke(main, ["fragility", str(tmp_path / "study.db")])
-        assert result.exit_code == 2 and "would overwrite what is read" in result.stderr
+        assert result.exit_code == 2 and "would overwrite an input file" in result.stderr
 
 
 def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, monkeypatch):
@@ -694,7 +694,7 @@ def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_pa
 def test_structures_of_like_names_have_a_picture_each(tmp_path):
     text = STUDY.replace("name: uncertain", "name: Valley/bridge")
     result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text, 5)), "--plot", "drawn"])
-    assert "wrote 7 pictures" in result.stderr  # two of them of quantiles
+    assert "wrote 7 plots" in result.stderr  # two of them of quantiles
     assert len({each.name.lower() for each in (tmp_path / "drawn").iterdir()}) == 7
 
 
@@ -777,7 +777,7 @@ def test_the_example_runs_with_pictures_and_tables(tmp_path):
     where = ["--store", "near.db", "--plot", "drawn"]
     result = CliRunner().invoke(main, ["fragility", str(study), *where])
     assert result.exit_code == 0, result.stderr
-    assert "a year" in result.stdout and "c2" in result.stdout
+    assert "[1/year]" in result.stdout and "annual rate" in result.stdout and "c2" in result.stdout
     assert len(list((tmp_path / "drawn").glob("*.png"))) == 13
     for name in ("runs.csv", "runs.parquet"):
         assert CliRunner().invoke(main, ["results", "near.db", "--out", name]).exit_code == 0

@@ -61,7 +61,7 @@ class TestSets:
         ]  # fmt: skip
         assert data["curves"][0]["distinct_records"] == 5  # three of them are in two sets
         said = run("results", folder / "study.db").stdout
-        assert "Each level has a set of records of its own: 2 at a level, scaled to it." in said
+        assert "Each level has its own set of records: 2 per level, scaled to the level." in said
 
     def test_the_runs_are_those_of_a_study_of_all(self, folder):
         run("fragility", study(folder, SETS), "--jobs", 1)
@@ -93,7 +93,7 @@ class TestSets:
         assert table["scale"].tolist() == [1, 1, 1]
         assert table["PGA_g"] == pytest.approx([0.4 * 0.55, 0.7 * 0.4, 1.1 * 0.55])
         assert data["curves"][0]["measure"] == "Sa(1.0)"
-        assert "used as they are" in run("results", folder / "study.db").stdout
+        assert "1 per level, not scaled to the level." in run("results", folder / "study.db").stdout
 
     def test_a_set_goes_on_where_it_stopped_and_changes_are_named(self, folder):
         path = study(folder, SETS)
@@ -104,7 +104,7 @@ class TestSets:
     @pytest.mark.parametrize(
         ("records", "more", "words"),
         [
-            ("  - {file: a.csv, level: 0.3}\n", {}, "study.yaml:3:26: records[1].level: 0.3 is none of the levels"),
+            ("  - {file: a.csv, level: 0.3}\n", {}, "study.yaml:3:26: records[1].level: 0.3 is not one of the levels"),
             ("  - {file: a.csv, level: 0.2}\n", {"method": "ida"}, "are of `method: stripes`"),
             ("  - a.csv\n", {"levels": "{measure: PGA, values: [0.2, 0.4], scaled: false}"}, "each needs the `level`"),
             ("  - {file: a.csv, level: 0.2}\n", {"levels": "{measure: scale, values: [0.2], scaled: false}"},
@@ -195,7 +195,7 @@ class TestWeights:
         assert medians[0] != pytest.approx(medians[1], rel=1e-3)
         path.write_text(path.read_text().replace("a.csv, weight: 2", "a.csv, weight: 5"))
         run("fragility", path, "--jobs", 1)
-        assert "count by their weights, 2 to 5" in run("results", folder / "study.db").stdout
+        assert "Records have weights from 2 to 5." in run("results", folder / "study.db").stdout
 
 
 def test_channels_and_directions_of_one_file_are_records_of_their_own(folder):

@@ -1,4 +1,4 @@
-"""Sliding as a limit state of a study: found run by run as `respond` finds it, and kept only where it is asked for."""
+"""Sliding as a limit state of a study: found run by run as `respond` finds it, and kept only on request."""
 
 from __future__ import annotations
 
@@ -281,8 +281,8 @@ class TestWhatIsRefused:
                 for name, text in STRUCTURES.items()}  # fmt: skip
         result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, **bare)), "--check"])
         assert result.exit_code == 2
-        lines = [line for line in result.stderr.splitlines() if "friction: is missing" in line]
-        assert [line.split("friction: ")[0].strip().rstrip(":").split("/")[-1] for line in lines] == [
+        lines = [line for line in result.stderr.splitlines() if "friction is missing" in line]
+        assert [line.split("friction ")[0].strip().rstrip(":").split("/")[-1] for line in lines] == [
             "wall.yaml", "frame.yaml",
         ]  # fmt: skip
 
@@ -290,4 +290,4 @@ class TestWhatIsRefused:
         with pytest.raises(InputError) as caught:
             load_study(write(tmp_path, STUDY + "model: linear2\n"))
         (problem,) = caught.value.problems
-        assert problem.field == "limit_states" and "sliding needs `model: nonlinear`" in problem.message
+        assert problem.field == "limit_states" and "sliding requires `model: nonlinear`" in problem.message

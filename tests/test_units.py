@@ -49,7 +49,7 @@ WRONG = [
     ("5 kg", "m", "5 kg is a mass, not a length"), ("5 m", "kg/m3", "is a length, not a density"),
     ("5 mmm", "m", "did you mean mm?"), ("5 MM", "m", "did you mean mm?"), ("5 smoot", "m", "known: m, mm"),
     ("18 kN/m3", "kg/m3", "1835.49 kg/m3"), ("0,8 m", "m", "decimal point"), ("5", "m", "without a unit"),
-    ("5 m", "", "a number without a unit"), ("m", "m", "is not a number"), ("", "m", "is not a number"),
+    ("5 m", "", "give a number without one"), ("m", "m", "is not a number"), ("", "m", "is not a number"),
     ("5 \x1b[31m", "m", r"\x1b[31m"), ("5 m", "kg m2", "is a length, not in kg m2"),
 ]  # fmt: skip
 
@@ -117,9 +117,10 @@ def test_nothing_is_said_of_structures_of_the_usual_size(name):
 @pytest.mark.parametrize(
     ("structure", "words"),
     [
-        (Wall(thickness=800.0, height=12000.0), "thickness is 800 m, height is 12000 m: were 800 mm and 12000 mm"),
-        (Block(width=0.7, height=2800.0), "height is 2800 m: was 2800 mm meant?"),
-        (Block(width=0.0007, height=0.0028), "width is 0.0007 m, height is 0.0028 m: were 0.7 m and 2.8 m meant?"),
+        (Wall(thickness=800.0, height=12000.0),
+         "thickness is 800 m, height is 12000 m: did you mean 800 mm and 12000 mm?"),
+        (Block(width=0.7, height=2800.0), "height is 2800 m: did you mean 2800 mm?"),
+        (Block(width=0.0007, height=0.0028), "width is 0.0007 m, height is 0.0028 m: did you mean 0.7 m and 2.8 m?"),
         (RigidBody(polygon=[[0.0, 0.0], [800.0, 0.0], [800.0, 50.0], [0.0, 50.0]]), "polygon spans 800 m"),
         (RigidBody(R=150.0, alpha_deg=10.0, inertia_ratio=1.3), "R is 150 m"),
     ],
@@ -150,7 +151,7 @@ def test_every_command_warns_of_millimetres(command, tmp_path):
         "report": ["-o", "r.html"],
     }  # fmt: skip
     found = run(command, "w.yaml", *more.get(command, []))
-    assert "warning: w: width is 800 m, height is 12000 m: were 800 mm and 12000 mm meant?" in found.stderr
+    assert "warning: w: width is 800 m, height is 12000 m: did you mean 800 mm and 12000 mm?" in found.stderr
     if command == "report":
         assert "width is 800 m" in (tmp_path / "r.html").read_text(encoding="utf-8")
 
@@ -160,7 +161,7 @@ def test_the_notes_of_respond_say_it_too(tmp_path):
 
     (tmp_path / "w.yaml").write_text("mechanism: block\nwidth: 800\nheight: 12000\n")
     found = json.loads(run("respond", "w.yaml", "--release", "0.5", "--json").stdout)
-    assert found["notes"] == ["w: width is 800 m, height is 12000 m: were 800 mm and 12000 mm meant?"]
+    assert found["notes"] == ["w: width is 800 m, height is 12000 m: did you mean 800 mm and 12000 mm?"]
 
 
 def test_a_slenderness_is_an_angle(tmp_path):
@@ -170,4 +171,4 @@ def test_a_slenderness_is_an_angle(tmp_path):
     spectra = json.loads(run("spectrum", "--slenderness", "0.2,18 deg", *asked, "--json").stdout)["spectra"]
     assert [each["slenderness"] for each in spectra] == [0.2, pytest.approx(pi / 10, rel=1e-15)]
     assert "is a mass, not an angle" in run("spectrum", "--slenderness", "5kg", *asked, code=2).stderr
-    assert "no angle in rad between 0 and pi/2" in run("spectrum", "--slenderness", "95deg", *asked, code=2).stderr
+    assert "not an angle in rad between 0 and pi/2" in run("spectrum", "--slenderness", "95deg", *asked, code=2).stderr

@@ -52,17 +52,17 @@ LOW = {"uplift_error": -0.33}
         ),
         (
             {"nonlinear": peak(0.4), "linear1": peak(0.41)},
-            "rocks to 0.4 of its critical rotation. linear1 agrees",
+            "rocks to 0.4 of its critical rotation phi_cr. linear1 agrees",
             "Disr",
         ),
         (
             {"nonlinear": peak(0.4), "linear1": peak(0.45)},
-            "linear1 serves a first estimate: its peak is 12 % higher",
+            "linear1 is good for a first estimate: its peak is 12 % higher",
             "Disr",
         ),
         (
             {"nonlinear": peak(0.4), "linear1": peak(0.6)},
-            "Disregard linear1 here: its peak is 50 % higher, and over time its rotation is 50 %",
+            "Disregard linear1 here: its peak is 50 % higher, and its rotation history differs by 50 %",
             "close",
         ),
         (
@@ -70,36 +70,40 @@ LOW = {"uplift_error": -0.33}
             "Disregard linear1: its uplift acceleration is 33 % too low; here",
             "agrees",
         ),
-        ({"linear2": peak(0.9)}, "rocks to 0.9 of its critical rotation. That is close", "linear2"),
+        ({"linear2": peak(0.9)}, "rocks to 0.9 of its critical rotation phi_cr. This is close", "linear2"),
         ({"linear1": peak(0.2, **LOW)}, "Disregard linear1: its uplift acceleration is 33 % too low.", "here"),
         (
             {"linear1": peak(0.2), "linear2": fell(UP)},
-            "By linear2 it overturns clockwise. Trust none of them alone",
+            "By linear2 it overturns clockwise. Do not trust any of them alone",
             "close",
         ),
-        ({"nonlinear": peak(1.75)}, "passes its critical rotation, to 1.75 of it, and is brought back", "rocks to"),
+        (
+            {"nonlinear": peak(1.75)},
+            "exceeds its critical rotation, reaching 1.75 times it, and is brought back",
+            "rocks to",
+        ),
         ({"nonlinear": fell(UP)}, "The structure overturns clockwise.", "linear"),
         (
             {"nonlinear": fell(UP), "linear1": fell(DOWN)},
-            "serves a first estimate: it overturns the other way",
+            "is good for a first estimate: it overturns the other way",
             "agrees",
         ),
-        ({"nonlinear": fell(UP), "linear1": fell(UP, 2.4)}, "linear1 agrees: it overturns too, 0.4 s later", "Trust"),
+        ({"nonlinear": fell(UP), "linear1": fell(UP, 2.4)}, "linear1 agrees: it overturns too, 0.4 s later", "trust"),
         (
             {"nonlinear": fell(UP), "linear1": fell(UP, 4.0)},
-            "linear1 serves a first estimate: it overturns too, 2 s later",
+            "linear1 is good for a first estimate: it overturns too, 2 s later",
             " agrees",
         ),
         (
             {"nonlinear": peak(0.9), "linear2": fell(UP)},
-            "linear2 disagrees: it overturns clockwise. Trust none of them",
+            "linear2 disagrees: it overturns clockwise. Do not trust any of them",
             "close",
         ),
         # What overturns by kappa1 alone, its uplift a third too low, is not near to overturning for that.
         (
             {"nonlinear": peak(0.01), "linear1": fell(UP, **LOW), "linear2": peak(0.01)},
             "Disregard linear1: its uplift acceleration is 33 % too low; here it overturns clockwise. linear2 agrees",
-            "Trust",
+            "trust",
         ),
         ({"nonlinear": replace(peak(0.4), still_rocking=True)}, "nonlinear: still rocking", "overturns"),
     ],
@@ -158,7 +162,7 @@ def test_a_motion_that_comes_and_goes_between_two_samples_is_judged_by_its_peak(
     found = agreements({"nonlinear": unseen, "linear2": replace(unseen, peak_ratio=1.1e-9)})["linear2"]
     assert (found.grade, found.difference, found.peak_delay) == (Grade.ESTIMATE, None, None)
     said = verdict({"nonlinear": unseen, "linear2": replace(unseen, peak_ratio=1.1e-9)})
-    assert "linear2 serves a first estimate: its peak is 10 % higher." in said
+    assert "linear2 is good for a first estimate: its peak is 10 % higher." in said
     json.dumps(vars(found), allow_nan=False)
 
 
@@ -224,7 +228,7 @@ def check(text, motion, folder):
     elif best["uplift_time"] is None:
         assert said.startswith("The structure does not uplift.")
     elif best["peak_ratio"] <= 1:
-        assert said.startswith(f"The structure rocks to {best['peak_ratio']:.4g} of its critical rotation.")
+        assert said.startswith(f"The structure rocks to {best['peak_ratio']:.4g} of its critical rotation phi_cr.")
     differ = set()
     for name in ("linear1", "linear2"):
         found, one = data["agreement"][name], runs[name]
@@ -262,7 +266,7 @@ def check(text, motion, folder):
             size = re.search(r"its peak is (?:([\d.]+) % (higher|lower)|the same)", sentence)
             assert float(size[1] or 0) == pytest.approx(100 * abs(off), rel=0.06, abs=6e-3)
             assert size[2] is None or size[2] == ("higher" if off > 0 else "lower")
-            over_time = re.search(r"over time its rotation is ([\d.]+) % off", sentence)
+            over_time = re.search(r"its rotation history differs by ([\d.]+) % \(rms\)", sentence)
             assert float(over_time[1]) == pytest.approx(100 * apart, rel=0.06)
             assert ("earlier" in sentence or "later" in sentence) == (abs(when[1] - when[0]) * p > 1)
         if unfit:
@@ -275,10 +279,10 @@ def check(text, motion, folder):
             assert "uplift acceleration" not in sentence
             differ.add(fates[0] == "falls")
         assert found["grade"] == ORDER[worst]
-        opening = {0: f"{name} agrees", 1: f"{name} serves a first estimate", 2: f"Disregard {name}"}[worst]
+        opening = {0: f"{name} agrees", 1: f"{name} is good for a first estimate", 2: f"Disregard {name}"}[worst]
         assert sentence.startswith(f"{name} disagrees" if fates[0] != fates[1] and not unfit else opening)
     differ.add(best["overturned"])
-    assert ("Trust none of them alone" in said) == (len(differ) > 1)
+    assert ("Do not trust any of them alone" in said) == (len(differ) > 1)
     assert not re.search(r"\de\+", said)
 
 
@@ -294,7 +298,7 @@ def test_the_frame_whose_linear_motions_die_out_is_not_said_to_agree(tmp_path):
         ).stdout
     )
     answer = said["motions"][0]["answers"]["Which model to trust?"]
-    assert answer.startswith("The nonlinear one.") and "agree closely" not in answer
+    assert answer.startswith("The nonlinear model.") and "agree closely" not in answer
 
 
 # --- one vocabulary
@@ -330,8 +334,9 @@ def test_every_command_calls_an_outcome_the_same(pulse, word, tmp_path):
     }
     for command, text in texts.items():
         assert word in " ".join(text.split()), command
+        before = re.split("Coefficient of restitution|No closed form|Closed form", " ".join(text.split()))[0]
         for other in {"does not uplift", "rocks", "overturns"} - {word, "rocks"}:
-            assert other not in re.split("Restitution|No closed form|Closed form", " ".join(text.split()))[0], command
+            assert other not in before, command
     table = next(line for line in texts["respond"].splitlines() if line.strip().startswith("outcome"))
     assert re.split(r"\s{2,}", table.strip())[1:] == [word] * 3
 

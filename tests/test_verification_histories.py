@@ -101,14 +101,17 @@ class TestVerdicts:
 
     def test_words_follow_the_numbers(self):
         said = " ".join(of_histories(seen((0.15, 0.05), (0.15, 0.05)), 1.35))
-        assert "With FC: no record takes it past d0* = 0.3 m; the mean of the peaks, 0.15 m, is beyond d_SLV" in said
-        assert "within d_SLC = 0.18 m." in said and "FC changes the verdict at SLV." in said
-        assert "These are 2 records: the code wants 7 or more" in said
+        assert (
+            "With FC: no record takes the structure past d0* = 0.3 m; the mean peak displacement, 0.15 m, is beyond "
+            "d_SLV = 0.12 m"
+        ) in said
+        assert "within d_SLC = 0.18 m." in said and "The confidence factor FC changes the verdict at SLV." in said
+        assert "Only 2 records were used: the code requires at least 7" in said
         said = " ".join(of_histories(seen(*[(0.1, 0.05)] * 7), 1.35))
-        assert "changes the verdict" not in said and "wants" not in said
+        assert "changes the verdict" not in said and "requires at least" not in said
         said = " ".join(of_histories(seen((None, 0.05)), 1.35))
-        assert "it does not hold, r0 takes it past d0*" in said and "SLV and SLC" in said
-        assert "This is one record" in said
+        assert "not satisfied. r0 takes the structure past d0*" in said and "SLV and SLC" in said
+        assert "Only one record was used" in said
         assert "Without FC" not in " ".join(of_histories(seen((0.1, 0.1)), 1.0))
 
 
@@ -133,7 +136,7 @@ class TestTheCommand:
 
     def test_histories_have_a_table_and_a_verdict(self):
         text = run("verify", "b.yaml", "--site", "site.yaml", "--pulse", "sine:2g:1.5s", "--polarity", "both").stdout
-        assert "overturns" in text and "With FC: it does not hold" in text
+        assert "overturns" in text and "With FC: not satisfied." in text
 
     def test_a_polarity_needs_a_motion(self):
         assert "--polarity reverses" in run("verify", "--site", "site.yaml", "--polarity", "-1", code=2).stderr

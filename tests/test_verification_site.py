@@ -41,23 +41,23 @@ WRONG = [
     (GOOD + "floor: {z: 4, H: 3, T1: 0.4, xi1: 0.1, n: 3}\n", 6, "floor.z", "is above the roof"),
     (GOOD + "floor: {z: 2, H: 3, T1: 0.4, xi1: 5, n: 3}\n", 6, "floor.xi1", "must be at most 0.5, got 5"),
     (GOOD + "soil: F\n", 6, "soil", "must be A, B, C, D or E"),
-    (GOOD + "spectrum: [[0, 1], [1, 1]]\n", 6, "spectrum", "goes not with ag"),
-    (GOOD + "VN: 50\n", 6, "VN", "goes with a hazard"),
+    (GOOD + "spectrum: [[0, 1], [1, 1]]\n", 6, "spectrum", "cannot be combined with ag"),
+    (GOOD + "VN: 50\n", 6, "VN", "requires `hazard`, the table of return periods"),
     (GOOD + "SLC: {ag: 0.2}\n", 6, "SLC.F0", "is missing"),
     (GOOD + "ground: 3\n", 6, "ground", "is not a field of the site"),
     (GOOD + "code: EC9\n", 6, "code", "there is no code 'EC9'"),
-    (SPECTRUM.replace("[0.4, 0.6]", "[0, 0.6]"), 4, "spectrum[2]", "is no function: it has two ordinates at 0 s"),
-    (SPECTRUM.replace("[9, 0.01]", "[0.3, 0.6]"), 5, "spectrum[3]", "goes back from 0.4 to 0.3 s"),
-    (SPECTRUM.replace("[0, 0.24]", "[0.1, 0.24]"), 3, "spectrum[1]", "the first ordinate is at T = 0"),
-    (SPECTRUM.replace("[9, 0.01]", "[9, 0]"), 5, "spectrum[3]", "has no acceleration at 9 s"),
+    (SPECTRUM.replace("[0.4, 0.6]", "[0, 0.6]"), 4, "spectrum[2]", "has two ordinates at 0 s"),
+    (SPECTRUM.replace("[9, 0.01]", "[0.3, 0.6]"), 5, "spectrum[3]", "steps back from 0.4 s to 0.3 s"),
+    (SPECTRUM.replace("[0, 0.24]", "[0.1, 0.24]"), 3, "spectrum[1]", "the first ordinate must be at T = 0"),
+    (SPECTRUM.replace("[9, 0.01]", "[9, 0]"), 5, "spectrum[3]", "has no positive acceleration at 9 s"),
     (TABLE.replace("[475", "[20"), 5, "hazard[2]", "return periods must increase, got 20 after 30 years"),
     (TABLE.replace("soil: B\n", ""), 1, "soil", "is missing: a hazard needs"),
-    (TABLE + "ag: 0.2\n", 6, "ag", "goes not with hazard"),
+    (TABLE + "ag: 0.2\n", 6, "ag", "cannot be combined with hazard"),
     (
         GOOD + "element: {kind: cantilever, L: 1, t: 0.3, w: 18000, E: 1.2e+9}\nT0: 0.1\n",
         6,
         "element",
-        "goes not with T0",
+        "cannot be combined with T0",
     ),
     (GOOD + "element: {kind: fixed, L: 1, t: 0.3, w: 18000, E: 1.2e+9}\n", 6, "element.kind", "cantilever or spanning"),
     (GOOD + "element: {kind: spanning, L: 1, t: 0.3, w: 18000}\n", 6, "element.E", "is missing"),
@@ -83,10 +83,10 @@ def test_one_mistake_does_not_hide_another(site):
 def test_a_spectrum_that_ends_early_is_placed_in_the_file(site, tmp_path):
     (tmp_path / "b.yaml").write_text("mechanism: block\nwidth: 0.6\nheight: 8\n", encoding="utf-8")
     result = run("verify", "b.yaml", "--site", site(SPECTRUM.replace("[9,", "[2,")), code=2)
-    assert "site.yaml:3:1: spectrum: ends at 2 s, before the period of 3.201 s" in result.stderr
+    assert "site.yaml:3:1: spectrum ends at 2 s, but the ordinate at 3.201 s is needed" in result.stderr
     late = GOOD + "SLC:\n  spectrum: [[0, 0.3], [4, 0.1]]\n"
     result = run("verify", "b.yaml", "--site", site(late), code=2)
-    assert "site.yaml:7:13: SLC.spectrum: ends at 4 s, before the period of 4.459 s" in result.stderr
+    assert "site.yaml:7:13: SLC.spectrum ends at 4 s, but the ordinate at 4.459 s is needed" in result.stderr
 
 
 class TestTheStarter:
@@ -141,7 +141,7 @@ def test_a_code_is_added_by_a_file(tmp_path, monkeypatch, site):
         data = run_json("verify", "--site", site("code: TEST1\nstrength: 0.3\n"))
         assert data["code"] == "TEST1" and data["directions"]["positive"]["zeta"]["nonlinear"] > 0
         wrong = run("verify", "--site", site("code: TEST1\nag: 0.3\n"), code=2)
-        assert "site.yaml:2:1: ag: is not a field of the site" in wrong.stderr
+        assert "site.yaml:2:1: ag is not a field of the site" in wrong.stderr
     finally:
         codes.cache_clear()
 

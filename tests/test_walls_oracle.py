@@ -291,7 +291,7 @@ def test_reactions_are_those_of_newton_and_euler(s):
 
 
 def test_loads_ties_and_forces_are_borne_by_the_joints():
-    # Whatever hangs on a wall, its foot and top bear it: the sum over the whole, and a tie pulls down.
+    # The foot and top of a wall carry all of its loads and ties: the sum over the whole, and a tie pulls down.
     tied = Wall(0.3, 3.0, 1000.0).with_tie((GROUND, 5.0 + 0j), ("lower", 0.15 + 1.4j), k=2e4, n0=500.0)
     tied = tied.with_force("upper", 2j, 100.0 - 30.0j).with_load("lower", 1j, 50.0)
     phi = 0.05

@@ -1,4 +1,4 @@
-"""Structures with what hangs on them, each twice: as the tool takes it, and as the second program does."""
+"""Structures with their loads and ties, each twice: as the tool takes it, and as the second program does."""
 
 from __future__ import annotations
 

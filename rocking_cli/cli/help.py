@@ -30,6 +30,11 @@ class HelpFormatter(click.HelpFormatter):
         called = f"{' ' * self.current_indent}{before}{prog} {args}".rstrip()
         self.write(f"{wrapped(called, self.width, hang=len(before))}\n")
 
+    def write_heading(self, heading: str) -> None:
+        """Write the heading of a section."""
+        line = f"{' ' * self.current_indent}{heading}:"
+        self.write(f"{wrapped(line, self.width + MARGIN)}\n")
+
     def write_text(self, text: str) -> None:
         r"""Write paragraphs; those after a `\b` keep their lines."""
         indent = " " * self.current_indent
@@ -46,12 +51,26 @@ class HelpFormatter(click.HelpFormatter):
         rows = list(rows)
         longest = max((len(word) for _, meaning in rows for word in meaning.split()), default=0)
         if self.width - col_max - 2 * col_spacing >= max(READABLE, longest):
-            super().write_dl(rows, col_max, col_spacing)
+            self._write_beside(rows, col_max, col_spacing)
             return
         for term, meaning in rows:
             below = " " * (self.current_indent + 2 * self.indent_increment)
             self.write(f"{wrapped(' ' * self.current_indent + term, self.width + MARGIN)}\n")
             self.write(f"{wrapped(below + meaning, self.width, hang=0)}\n" if meaning else "")
+
+    def _write_beside(self, rows: list[tuple[str, str]], col_max: int, col_spacing: int) -> None:
+        """Write meanings beside their terms, as click does, but break no word at its hyphen."""
+        first = min(max((len(term) for term, _ in rows), default=0), col_max) + col_spacing
+        for term, meaning in rows:
+            head = " " * self.current_indent + term
+            if not meaning:
+                self.write(f"{head}\n")
+                continue
+            lines = wrapped(meaning, self.width - first - 2, hang=0).splitlines()
+            beside = len(term) <= first - col_spacing
+            left = " " * (self.current_indent + first)
+            self.write(head.ljust(len(left)) if beside else f"{head}\n{left}")
+            self.write(f"\n{left}".join(lines) + "\n")
 
 
 class RecordOption(click.Option):

@@ -147,7 +147,8 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # gene
         try:
             number = self._number(text)
         except UnitError as error:
-            remedy = f"{error.hint}," if error.hint else "give a value"
+            hint = error.hint or ""
+            remedy = f"{hint} Give a value" if hint.endswith("?") else f"{hint}," if hint else "give a value"
             self.fail(f"{error.message}: {remedy} such as {example}.", param, ctx)
         kind = self.kind
         if not (0 < number < inf or (kind.zero and number == 0)):

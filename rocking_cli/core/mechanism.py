@@ -275,7 +275,7 @@ class Mechanism(Described, ABC):
         if self.one_sided is None and self.rebound is not None:
             raise Refused((), "rebound", "requires one_sided: otherwise the structure rocks through to the other side")
         if self.one_sided is not None and self.restitution is not None:
-            raise Refused((), "restitution", "where one_sided holds it gives rebound instead: the rate thrown back")
+            raise Refused((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
         if self.one_sided is not None and self.rebound is None and self.rebound_from_impacts() is None:
             reason = "is missing: only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
             raise Refused((), "rebound", reason)

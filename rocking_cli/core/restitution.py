@@ -77,5 +77,7 @@ def restitution_in_words(etas: Sequence[float], *, given: bool) -> str:
         Whether the user gave it.
     """
     one, other = etas
-    values = f"{one:.4g}" if isclose(one, other, rel_tol=1e-9) else f"{one:.4g} and {other:.4g} (ending + and -)"
-    return f"Restitution eta = {values}, {'as given' if given else 'from kinematics, not measured'}."
+    values, source = f"{one:.4g}", "as given" if given else "from rigid-body kinematics, not measured"
+    if not isclose(one, other, rel_tol=1e-9):
+        values += f" at impacts that end clockwise rotation and {other:.4g} at the others"
+    return f"Coefficient of restitution eta = {values}, {source}."

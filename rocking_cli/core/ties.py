@@ -121,9 +121,7 @@ class Tie(Described):
         if (self.stiffness is None) == (None in bar) or (self.stiffness is not None and bar != [None, None]):
             raise geometry_error("stiffness", "give stiffness, or area and modulus: one of them")
         if self.stiffness is not None and self.length is not None:
-            raise geometry_error(
-                "length", "`length` cannot be combined with `stiffness`: use it with `area` and `modulus`"
-            )
+            raise geometry_error("length", "cannot be combined with `stiffness`: use it with `area` and `modulus`")
         if self.stiffness is None and self.length is None and self.span == 0:
             raise geometry_error("length", "its ends are together at rest: give the length over which it stretches")
         if (self.only == "tension" and self.prestress < 0) or (self.only == "compression" and self.prestress > 0):

@@ -164,7 +164,7 @@ def _ends(run: History) -> str:
         )
     if any(run.ends_at_limit):
         return f"{names.ROCKS} to {run.furthest:.4g} rad, {run.peak_ratio:.4g} of its {run.reference}"
-    return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation"
+    return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation phi_cr"
 
 
 def bearing(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:

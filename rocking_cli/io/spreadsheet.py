@@ -133,7 +133,7 @@ def _check_headings(headings: Sequence[str], file: str, line: int) -> None:
     problems = []
     for k, heading in enumerate(headings):
         if heading and heading in seen:
-            message = f"stands over two columns, number {seen[heading] + 1} and {k + 1}"
+            message = f"is the heading of two columns, number {seen[heading] + 1} and {k + 1}"
             problems.append(Problem(message, file, line, field=cut(one_line(heading)), hint="take one of them away"))
         seen.setdefault(heading, k)
     if problems:

@@ -52,7 +52,7 @@ class Reading:
     def __post_init__(self) -> None:
         alone = (
             ("azimuth", self.azimuth, "an azimuth is between"),
-            ("with_channel", self.other_channel, "is of one of"),
+            ("with_channel", self.other_channel, "applies to one of"),
         )
         for name, given, what in alone if self.other is None else ():
             if given:

@@ -267,8 +267,8 @@ def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
             *(_number(run.peak_ratio) for run in runs),
             "1",
         ],
-        ["peak rotation clockwise", *(angle(run.peak_positive) for run in runs), "°"],
-        ["peak rotation anticlockwise", *(angle(run.peak_negative) for run in runs), "°"],
+        ["peak rotation, clockwise", *(angle(run.peak_positive) for run in runs), "°"],
+        ["peak rotation, anticlockwise", *(angle(run.peak_negative) for run in runs), "°"],
         ["first uplift", *(_number(run.uplift_time) for run in runs), "s"],
         [
             "overturning time: passes the critical rotation for good" if not free else "overturning time",
@@ -276,7 +276,7 @@ def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
             "s",
         ],
         ["number of impacts", *(str(run.impact_count) for run in runs), "1"],
-        ["largest impact velocity", *(_number(each.impact_velocity) for each in moved), "m/s"],
+        ["peak impact velocity", *(_number(each.impact_velocity) for each in moved), "m/s"],
         [
             "peak horizontal displacement of the top",
             *(_number(1000 * each.points[0].horizontal) for each in moved),

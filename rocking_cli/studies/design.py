@@ -273,7 +273,7 @@ def _at(varied: Varied, value: float, aim: Aim, shaking: Shaking | None) -> tupl
         structure = Prepared(varied.at(value))
         found = aim.metric.value(structure, shaking)
     except InputError as error:
-        return nan, "; ".join(": ".join(part for part in (each.field, each.message) if part) for each in error.problems)
+        return nan, "; ".join(str(Problem(each.message, field=each.field)) for each in error.problems)
     except (MechanismError, SolverError) as error:
         return nan, str(error)
     if isnan(found):

@@ -148,8 +148,8 @@ def in_words(found: Margin, pga: float) -> str:
     if not reached:
         pgas = f"PGA from {low * pga:.3g} g to {high * pga:.3g} g"
         return (
-            f"At no scale factor from {low:.2g} to {high:.2g} ({pgas}) do {percent(LEVELS[0])} of the neighbouring "
-            "motions overturn the structure."
+            f"At no scale factor from {low:.2g} to {high:.2g} ({pgas}) do {percent(LEVELS[0])} or more of the "
+            "neighbouring motions overturn the structure."
         )
     (level, first), *others = reached
     parts = [
@@ -159,12 +159,12 @@ def in_words(found: Margin, pga: float) -> str:
     parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
     said = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
     if found.factors.size > 2:
-        said += f"; factors are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
+        said += f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
     for level, first in reached:
         above = found.factors > first
         least = float(found.overturned[above].min(initial=1.0))
         if least < level:
             factor = float(found.factors[above][found.overturned[above].argmin()])
             again = f"only {percent(least)} do" if least else "none does"
-            return f"{said}. Stronger is not always worse: at {at(factor)} {again}."
+            return f"{said}. A stronger motion is not always worse: at a factor of {at(factor)} {again}."
     return f"{said}."

@@ -126,15 +126,15 @@ class Neighbours:
     def __str__(self) -> str:
         near = f"{self.around.count} neighbouring motions ({self.around.words})"
         if not self.lifted:
-            return f"None of {near} lifts it."
+            return f"None of {near} uplifts the structure."
         said = f"Of {near} {_share(self.overturned)}"
         if self.peak_ratio[-1] == 0:
-            return f"{said}; at most one in six uplifts."
+            return f"{said}; at most one in six uplifts it."
         peaks = list(zip(("16 %", "half", "84 %"), self.peak_ratio, strict=True))
-        still = [f"{who} do not uplift" for who, peak in peaks if peak == 0][-1:]
+        still = [f"{who} do not uplift it" for who, peak in peaks if peak == 0][-1:]
         within = [f"{who} within {peak:.2g}" for who, peak in peaks if 0 < peak < np.inf]
         if within:
-            within[0] = f"{within[0].replace(' within', ' stay within')} {self.over}"
+            within[0] = f"{within[0].replace(' within', ' keep its peak rotation within')} {self.over}"
         reached = ", ".join(still + within)
         return f"{said}; {reached}." if reached else f"{said}."
 
@@ -256,5 +256,5 @@ def least_uplift(model: Model, motion: GroundMotion) -> float | None:
 
 def _share(share: float) -> str:
     if share in (0, 1):
-        return "all overturn" if share else "none overturns"
-    return f"{percent(share)} overturn"
+        return "all overturn the structure" if share else "none overturns the structure"
+    return f"{percent(share)} overturn the structure"

@@ -18,7 +18,7 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.processes import in_processes
-from rocking_cli.errors import InputError, RockingError, SolverError
+from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.studies.verification.check import verify
 from rocking_cli.studies.verification.site_file import SiteFile
@@ -139,8 +139,7 @@ class Bad:
         """Why, in one line, without the place in the file."""
         if not isinstance(self.error, InputError):
             return str(self.error)
-        said = (": ".join(part for part in (each.field, each.message) if part) for each in self.error.problems)
-        return "; ".join(said)
+        return "; ".join(str(Problem(each.message, field=each.field)) for each in self.error.problems)
 
 
 Order = Callable[[Surveyed], tuple[float, ...]]

@@ -190,7 +190,7 @@ def _verdict(content: Assessment, result: MotionResult) -> Verdict:
             Answer("Will it uplift?", _uplift(content, result)),
             Answer("Will it overturn?", _overturning(result)),
             Answer("How close is that?", _closeness(content, result)),
-            Answer("Which model can you trust?", _trusted(content, result)),
+            Answer("Which model to trust?", _trusted(content, result)),
             *_joints(content, result),
         ),
         tuple(_doubts(result)),

@@ -101,16 +101,16 @@ def _friction(found: Contact) -> str:
     needed, at = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
     where = _where(found.joint) if found.joint else "the structure"
     if found.friction is None:
-        lasts = f"more than {100 * NEAR_PEAK:.0f} % of that for {number(found.duration, 2)} s"
-        return f"Contact: {where} requires a coefficient of friction of {needed} {at}, and {lasts}."
+        lasts = f"it requires more than {100 * NEAR_PEAK:.0f} % of this value for {number(found.duration, 2)} s"
+        return f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}; around this time {lasts}."
     there = number(found.friction, 3)
     if isnan(found.slides):
-        return f"Contact: {where} requires a coefficient of friction of {needed} {at}; {there} is available."
+        return f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}; {there} is available."
     there_first = f" at {_where(found.slides_joint)}" if found.slides_joint else ""
     return (
         f"Sliding would start{there_first} at {number(found.slides, 4)} s: {BEYOND}. It would last at most "
         f"{number(found.duration, 2)} s at a time. {where[0].upper()}{where[1:]} requires a coefficient of friction "
-        f"of {needed} {at}; {there} is available."
+        f"of up to {needed}, {at}; {there} is available."
     )
 
 

@@ -148,8 +148,8 @@ def sentence(side: Side) -> str:
     )
     return (
         f"the structure has no equivalent single block: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} "
-        f"g; its restoring moment then {grows} by {abs(statics.stiffening):.4g} of its initial value per rad; {ends}. "
-        "Nonlinear time histories are available; linear models, closed forms and maps in terms of p are not."
+        f"g; its restoring moment then {grows} by {abs(statics.stiffening):.4g} times its initial value per rad; "
+        f"{ends}. Nonlinear time histories are available; linear models, closed forms and maps in terms of p are not."
     )
 
 

@@ -145,7 +145,7 @@ def sets_in_words(plan: Plan) -> list[str]:
         counts = [int((usable & ((sets.level == k) | (sets.level < 0))).sum()) for k in range(len(plan.levels))]
         few, many = min(counts), max(counts)
         each = f"{few}" if few == many else f"{few} to {many}"
-        used = "scaled to the level" if sets.scaled else "not scaled"
+        used = "scaled to the level" if sets.scaled else "not scaled to the level"
         said.append(f"Each level has its own set of records: {each} per level, {used}.")
     if sets.weighted:
         low, high = float(sets.weight.min()), float(sets.weight.max())

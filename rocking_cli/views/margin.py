@@ -39,15 +39,17 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
     either = {
         "1": "the motion as given",
         "-1": "the motion reversed",
-        "both": "the motion as given and reversed, taking the worse of the two",
+        "both": "the motion as given and reversed (the worse of the two counts)",
     }[polarity]
     *lower, top = (f"{100 * level:g}" for level in LEVELS)
     levels = f"{', '.join(lower)} and {top}"
     parts: list[Table | str] = [
         heading(mechanism),
         f"Scale factors on {either}. At each factor, {around.count} neighbouring motions are simulated, "
-        f"{around.words}. The table gives the first factor at which at least {levels} % of them overturn ('from') and "
-        "the last factor at which fewer do ('below').",
+        f"{around.words}. 'Uplift at' is the smallest factor that uplifts the structure, and 'overturn at 1' the share "
+        f"of these motions that overturn it at a factor of 1. 'From' is the smallest factor at which at least {levels} "
+        "% of them overturn it, and 'below ... to' the largest factor at which fewer do; a plus marks the largest "
+        "factor tried.",
         Table("", heads, cells, numbers=range(1, len(heads))),
     ]
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []

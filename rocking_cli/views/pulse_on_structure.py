@@ -113,10 +113,10 @@ def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
     rows = [
         ["pulse", *("exact" if each else "sampled" for each in exact), ""],
         ["outcome", *(_ends(each) for each in found), ""],
-        ["peak / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
+        ["peak rotation / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
         ["  over that of nonlinear", *(number(_over_nonlinear(each, answers), 5) for each in answers.values()), ""],
-        ["peak, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
-        ["peak, anticlockwise", *(in_degrees(each.peak_negative) for each in found), "deg"],
+        ["peak rotation, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
+        ["peak rotation, anticlockwise", *(in_degrees(each.peak_negative) for each in found), "deg"],
         ["first excursion", *(number(_data(each, answers)["first_excursion"], 5) for each in answers.values()), ""],
         ["first rebound", *(number(_data(each, answers)["first_rebound"], 5) for each in answers.values()), ""],
         ["uplift", *(number(each.uplift_time, 5) for each in found), "s"],

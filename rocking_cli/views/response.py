@@ -169,8 +169,10 @@ def models_used(models: Iterable[ModelName]) -> Iterator[str]:
     if linear:
         itself = "nonlinear is the structure itself, " if "nonlinear" in names else ""
         scaled = " and ".join(name.replace("linear", "kappa") for name in linear)
-        what = f"{' and '.join(linear)} {'are' if len(linear) > 1 else 'is'} its equivalent block with {scaled}"
-        yield f"Models: {itself}{what}."
+        what = (
+            f"{' and '.join(linear)} {'are' if len(linear) > 1 else 'is'} its linearised equivalent block with {scaled}"
+        )
+        yield f"Models: {itself}{what} (see `rocking equiv`)."
 
 
 def ending(outcome: OneOutcome) -> str:
@@ -274,7 +276,8 @@ def view(
     if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in _apart(shown, found.runs)]
-    said = [*parts, *models_used(first), restitution_used(structure), *notes, *caution]
+    joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
+    said = [*parts, *joints, *models_used(first), restitution_used(structure), *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
@@ -319,9 +322,9 @@ def _table(title: str, histories: Histories, shown: Shown, polarity: int) -> Tab
     over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"
     rows = [
         ["outcome", *(run.words for run in runs), ""],
-        [f"peak / {over}", *(number(run.peak_ratio, 5) for run in runs), ""],
-        ["peak, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
-        ["peak, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
+        [f"peak rotation / {over}", *(number(run.peak_ratio, 5) for run in runs), ""],
+        ["peak rotation, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
+        ["peak rotation, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
         ["first uplift", *(number(run.uplift_time, 5) for run in runs), "s"],
         ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
         ["impacts", *(str(run.impact_count) for run in runs), ""],
@@ -336,9 +339,15 @@ def _table(title: str, histories: Histories, shown: Shown, polarity: int) -> Tab
 
 
 def _movement_rows(moved: Sequence[Movements]) -> list[list[str]]:
-    rows = [["impact velocity", *(number(each.impact_velocity, 4) for each in moved), "m/s"]]
+    rows = [["peak impact velocity", *(number(each.impact_velocity, 4) for each in moved), "m/s"]]
     for k, point in enumerate(moved[0].points):
-        rows.append([f"{point.name}, sideways", *(number(1000 * each.points[k].horizontal, 4) for each in moved), "mm"])
+        rows.append(
+            [
+                f"{point.name}, horizontal displacement",
+                *(number(1000 * each.points[k].horizontal, 4) for each in moved),
+                "mm",
+            ]
+        )
     for k, tie in enumerate(moved[0].ties):
         rows.append([f"{tie.name}, force", *(number(each.ties[k].force / 1000, 4) for each in moved), "kN"])
         rows.append([f"{tie.name}, elongation", *(number(1000 * each.ties[k].elongation, 4) for each in moved), "mm"])
@@ -364,4 +373,6 @@ def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> st
     if not whole.peak_ratio:
         return f"By the {model} model, it {whole.words} under the record."
     share = 100 * alone.peak_ratio / whole.peak_ratio
-    return f"By the {model} model, the {called} alone causes {share:.3g} % of the peak rotation under the record."
+    return (
+        f"By the {model} model, the peak rotation under the {called} alone is {share:.3g} % of that under the record."
+    )

@@ -7,6 +7,7 @@ from typing import Any
 from rocking_cli.core import Mechanism
 from rocking_cli.core.restitution import restitution_in_words
 from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.dynamics.verdict import SENSE
 
 
 def restitution_source(mechanism: Mechanism) -> str:
@@ -29,8 +30,9 @@ def restitution_used(structure: Prepared) -> str:
     source = restitution_source(structure.mechanism)
     if not structure.mechanism.rocks_both_ways:
         how = "as given" if source == "given" else "computed from a sequence of impacts after Housner, not measured"
+        sense = SENSE[structure.mechanism.directions[0]]
         return (
-            f"It rocks in the {structure.mechanism.one_sided} direction only: the rebound from the side walls is "
-            f"{structure.etas[0]:.4g} of the rate before the impact, {how}."
+            f"The structure rocks {sense} only, away from its side walls. After an impact on them, its angular "
+            f"velocity is {structure.etas[0]:.4g} of that before (the rebound, {how})."
         )
     return restitution_in_words(structure.etas, given=source == "given")

@@ -112,7 +112,8 @@ def _capacity(each: Verified, where: str) -> Table:
                 [f"demand at {name}", number(at.demand), number(line.demand), "m", clause[f"S_De(T_{name})"]],
                 [f"capacity/demand, {name}", number(at.ratio, 4), number(line.ratio, 4), "passes if >= 1", ""],
             ]
-    return Table(f"{where}: capacity", ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
+    title = f"{where}: capacity, on the exact curve and on the straight line from a0* to d0*"
+    return Table(title, ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
 
 
 def _methods(each: Verified) -> Table:
@@ -134,7 +135,14 @@ def _methods(each: Verified) -> Table:
                 governs,
             ]
         )
-    heads = ["", "a_g [g]\nexact", "straight\nline", "demand\n[g]", "zeta_E", *(["TR\n[years]"] if known else [])]
+    heads = [
+        "",
+        "a_g [g]\nexact\ncurve",
+        "a_g [g]\nstraight\nline",
+        "a_g [g]\ndemand",
+        "zeta_E",
+        *(["TR\n[years]"] if known else []),
+    ]
     return Table("Capacity by method", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
 
 

@@ -48,13 +48,13 @@ def differences(found: Verified, first: str) -> Iterator[str]:
         yield f"The linear method gives the same capacity, {linear:.4g} g."
     elif ratio < 1:
         yield (
-            f"The linear method gives only {linear:.4g} g, {100 * ratio:.3g} % of that capacity: it allows "
-            f"{linear / begins:.3g} times the acceleration at which rocking starts, and ignores that a rocking "
-            f"structure may reach a displacement of {at.d:.3g} m, at a period of {at.T:.3g} s."
+            f"The linear method gives only {linear:.4g} g, {100 * ratio:.3g} % of that capacity: it accepts "
+            f"{linear / begins:.3g} times the acceleration at which rocking starts, and ignores that the structure may "
+            f"then rock, with a period of {at.T:.3g} s, up to its displacement capacity of {at.d:.3g} m."
         )
     else:
         yield (
-            f"The linear method gives {linear:.4g} g, {ratio:.3g} times that capacity: it allows "
+            f"The linear method gives {linear:.4g} g, {ratio:.3g} times that capacity: it accepts "
             f"{linear / begins:.3g} times the acceleration at which rocking starts, and ignores that the structure "
             f"would then exceed its displacement capacity of {at.d:.3g} m. It is unconservative here."
         )
@@ -141,9 +141,12 @@ def which_direction(found: Verification) -> str:
 
 def standing(workings: Sequence[Working]) -> str:
     """State how far the formulas were checked against the code."""
-    ours = list(dict.fromkeys(each.symbol.partition(",")[0] for each in workings if each.standing == "ours"))
-    return (
-        "The clauses give the places of the formulas in the code. None of the formulas has been checked against the "
-        "printed code yet: have them checked before you rely on a verdict. Our own choices, where the code is silent "
-        f"or we depart from its wording: {', '.join(ours)}."
+    ours = {each.symbol.partition(",")[0]: each.meaning for each in workings if each.standing == "ours"}
+    said = (
+        "The clauses name the place of each formula in the code. None of the formulas has been checked against the "
+        "printed code yet: have them checked before you rely on a verdict."
     )
+    if not ours:
+        return said
+    named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())
+    return f"{said} Our own choices ('ours'), where the code is silent or we depart from its wording: {named}."

@@ -283,7 +283,7 @@ def _choice(curves: dict[Kind, Curve]) -> tuple[Kind, str]:
     if not _rejected(lognormal):
         return "lognormal", f"lognormal is the default; {_tested(lognormal)}"
     if logistic is None or _slope(logistic) <= 0 or _likelihood(logistic) < _likelihood(lognormal) + LIKELIER:
-        return "lognormal", f"lognormal is the default, and logistic no likelier; {_tested(lognormal)}"
+        return "lognormal", f"lognormal is the default, and logistic is no likelier; {_tested(lognormal)}"
     assert lognormal.goodness is not None
     why = f"the lognormal is rejected (p = {lognormal.goodness.p_value:.2g}) and logistic is likelier"
     return "logistic", f"{why}; {_tested(logistic)}"

@@ -172,7 +172,7 @@ def _why_not_together(
 ) -> str:
     """Why a curve that could be written by itself does not go with the others; empty if it does."""
     key = found.structure, found.measure
-    same = "all of a file have the same limit states"
+    same = "all functions of a file must have the same limit states"
     if key not in held:
         missing = [str(limit) for limit in limits if limit not in fit[key]]
         return f"{_name(found)}: {same}, and no lognormal curve exists for {', '.join(sorted(missing))}"

@@ -55,9 +55,9 @@ READ = 100_000  # runs read at a time
 STANDS, FAILED = 0, 2  # outcomes; 1 and -1 for overturning in the positive and the negative direction
 OUTCOMES = (STANDS, FAILED, 1, -1)
 SEAL = "seal"  # the name in the table `study` of the checksum of all but the runs
-ASKED = ("unit", "value_error")  # what is wrong with a measure that is not known, or no level can be of
+UNKNOWN = ("unit", "value_error")  # problems of a definition with a measure or level that is unknown here
 NAMED = 5  # damaged runs named one by one
-SLIDE = "slide_time"  # the column of runs that only studies have which ask for sliding
+SLIDE = "slide_time"  # the column of runs that only studies of sliding have
 
 TABLES = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -500,7 +500,7 @@ class Store:
         try:
             Definition.model_validate(self.fact("definition"))
         except ValidationError as error:
-            if not self.checked or any(each["type"] not in ASKED for each in error.errors(include_url=False)):
+            if not self.checked or any(each["type"] not in UNKNOWN for each in error.errors(include_url=False)):
                 raise
 
     def _check_pages(self) -> None:

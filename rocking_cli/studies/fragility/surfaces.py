@@ -172,7 +172,7 @@ def _gain(both: Fit, alone: Fit, column: int, clustered: bool) -> float:
 
 def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> str:
     said = [
-        f"the {name} measure {'adds to' if p < ADDS else 'adds nothing that can be told to'} the {other} (p = {p:.2g})"
+        f"the {name} measure {'adds to' if p < ADDS else 'adds nothing detectable to'} the {other} (p = {p:.2g})"
         for name, other, p in (("second", "first", p_values[1]), ("first", "second", p_values[0]))
     ]
     if max(p_values) >= ADDS:

@@ -65,8 +65,8 @@ class _Case:
         """Return the methods, by key."""
         q, a0 = self.ground.site.q, self.curve.a0
         found = {
-            DAMAGE: self.method("damage: onset of rocking", "C8.7.1.6-9", "SLV", self.forces, a0),
-            LINEAR: self.method("linear: q a0*", "C8.7.1.6-9", "SLV", self.forces, q * a0),
+            DAMAGE: self.method("onset of rocking at SLV", "C8.7.1.6-9", "SLV", self.forces, a0),
+            LINEAR: self.method("linear (q a0*) at SLV", "C8.7.1.6-9", "SLV", self.forces, q * a0),
         }
         for key, rule in zip((NONLINEAR, AT_COLLAPSE), RULES, strict=True):
             at = states[rule.state]
@@ -74,9 +74,9 @@ class _Case:
             def asked(spectrum: Spectrum, T: float = at.T, damping: float = rule.damping) -> float:
                 return spectrum.displacement(T, damping)
 
-            title = f"nonlinear: displacement at {rule.state}"
+            title = f"nonlinear at {rule.state}"
             found[key] = self.method(title, "C8.7.1.2.1.6", rule.state, asked, at.d)
-        found["SLD"] = self.method("damage, at SLD", "C8.7.1.6-9", "SLD", self.forces, a0)
+        found["SLD"] = self.method("onset of rocking at SLD", "C8.7.1.6-9", "SLD", self.forces, a0)
         return found
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 ENGLISH = {
     "and": "{one} and {other}",
     "long": (
-        "The period of {T:.3g} s exceeds {most:g} s, above which the code requires a site-specific study or records."
+        "The longest period, {T:.3g} s, exceeds {most:g} s, above which the code requires a site-specific study or "
+        "records."
     ),
     "missing": "The site file does not give {states}: no verification is made for what is missing.",
     "confidence": (
@@ -13,8 +14,8 @@ ENGLISH = {
         "account."
     ),
     "seats": (
-        "The code also limits d_SLC by the loss of support of parts such as beams: give loads their `seat`; here at "
-        "least one load has none."
+        "The code also limits d_SLC by the loss of support of parts such as beams. This is not checked for loads "
+        "without a `seat` (length of support), and at least one load has none: give it."
     ),
     "seat": "The load {name} loses its seat of {length:.3g} m at d = {d:.4g} m, which limits d_SLC.",
     "no_soil": (
@@ -59,9 +60,9 @@ ENGLISH = {
         "alpha0 = {alpha0:.6g} differs from lambda = {lambda_:.6g}: the mechanism has its own formula for lambda."
     ),
     "letter": (
-        "Weights carried without horizontal inertia enter only the term P y'; this is our choice. By the letter of "
-        "the code every P belongs to P + Q: alpha0 would be {by_letter:.4g} (here {alpha0:.4g}) and a0* "
-        "{a_letter:.4g} m/s2 (here {a0:.4g})."
+        "Weights carried without horizontal inertia, such as that of a sliding floor, enter the work of the weights "
+        "(P y') but not the inertia (P + Q); this is our choice. By the letter of the code they enter both: alpha0 "
+        "would be {by_letter:.4g} instead of {alpha0:.4g}, and a0* {a_letter:.4g} m/s2 instead of {a0:.4g} m/s2."
     ),
     "control_same": "With this control point, d0* is the same as with the centroid of P + Q, {d0:.4g} m.",
     "control": (

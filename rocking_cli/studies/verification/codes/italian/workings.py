@@ -66,7 +66,7 @@ def _of_hazard(ground: Ground, state: str) -> Iterator[Working]:
     ag, F0, TC_star = hazard.parameters(TR)
     S_S, S_T, C_C = soil_factor(site.soil or "A", F0, ag), TOPOGRAPHY[site.topography], corner_factor(
         site.soil or "A", TC_star)  # fmt: skip
-    table = "interpolated on logarithms"
+    table = "log-log interpolation"
     yield Working(f"a_g,{state}", "ground acceleration on rock", table, f"at TR = {_n(TR)}", ag, "g", "3.2")
     yield Working(f"F0,{state}", "amplification", table, f"at TR = {_n(TR)}", F0, "", "3.2")
     yield Working(f"TC*,{state}", "period on rock", table, f"at TR = {_n(TR)}", TC_star, "s", "3.2")
@@ -131,31 +131,35 @@ def _of_chain(chain: Chain) -> Iterator[Working]:
     letter: Standing = "code" if chain.is_by_the_letter else "ours"
     size, unit = (1e3, "kN") if chain.mechanism.has_mass else (1.0, "N per kg")
     for k, block in enumerate(chain.blocks, 1):
-        which, at = f"of {' and '.join(block.bodies)}", f"at [{_n(block.at.real)}, {_n(block.at.imag)}] m"
-        yield Working(f"P{k}", f"weight carried {which}", "", "", block.P / size, unit, CHAIN)
-        yield Working(f"P{k} + Q{k}", f"weight moved sideways {which}", "", at, block.PQ / size, unit, CHAIN, letter)
-        yield Working(f"x{k}'", f"virtual displacement sideways {which}", "", "", block.dx, "m", CHAIN)
-        yield Working(f"y{k}'", f"virtual displacement upwards {which}", "", "", block.dy, "m", CHAIN)
+        whole, at = " and ".join(block.bodies), f"at [{_n(block.at.real)}, {_n(block.at.imag)}] m"
+        yield Working(f"P{k}", f"weight carried by {whole}", "", "", block.P / size, unit, CHAIN)
+        yield Working(
+            f"P{k} + Q{k}", f"weight moved sideways with {whole}", "", at, block.PQ / size, unit, CHAIN, letter
+        )
+        yield Working(f"x{k}'", f"virtual displacement sideways of {whole}", "", "", block.dx, "m", CHAIN)
+        yield Working(f"y{k}'", f"virtual displacement upwards of {whole}", "", "", block.dy, "m", CHAIN)
     for name, work in chain.works.items():
         yield Working(f"L({name})", f"work of {name} per unit rotation, at rest", "", "", work, "N m", CHAIN)
     forces, ties = chain.held_by(ties=False), chain.held_by(ties=True)
     put = f"({_n(chain.lifted)} + {_n(forces)} + {_n(ties)})/{_n(chain.first)}"
     formula = "(sum P y' - sum F.r' + internal work)/sum (P+Q) x'"
-    yield Working("alpha0", "multiplier that starts it", formula, put, chain.alpha0, "", "C8.7.1.1")
+    yield Working("alpha0", "activation multiplier", formula, put, chain.alpha0, "", "C8.7.1.1")
     put = f"{_n(chain.first)}^2/({_n(chain.inertial)} x {_n(chain.second)})"
     formula = "[sum (P+Q) x']^2/{sum (P+Q) sum (P+Q) x'^2}"
-    yield Working("e*", "share of the mass that takes part", formula, put, chain.e_star, "", "C8.7.1.5")
+    yield Working("e*", "participating mass ratio", formula, put, chain.e_star, "", "C8.7.1.5")
     if chain.mechanism.has_mass:
         mass, put = chain.e_star * chain.inertial / chain.mechanism.gravity, (
             f"{_n(chain.e_star)} x {_n(chain.inertial)}/{_n(chain.mechanism.gravity)}"
         )  # fmt: skip
-        yield Working("M*", "mass that takes part", "e* sum (P+Q)/g", put, mass, "kg", "not in this edition", "ours")
+        yield Working("M*", "participating mass", "e* sum (P+Q)/g", put, mass, "kg", "not in the code", "ours")
 
 
 def _of_curve(curve: ExactCurve) -> Iterator[Working]:
     chain, g = curve.chain, curve.chain.mechanism.gravity
     put = f"{_n(chain.alpha0)} x {_n(g)}/({_n(chain.e_star)} x {_n(curve.confidence)})"
-    yield Working("a0*", "acceleration that starts it", "alpha0 g/(e* FC)", put, curve.a0, "m/s2", "C8.7.1.3")
+    yield Working(
+        "a0*", "acceleration that activates the mechanism", "alpha0 g/(e* FC)", put, curve.a0, "m/s2", "C8.7.1.3"
+    )
     moved = chain.displacement_of_control(curve.end, curve.control)
     factor = chain.second / (chain.sideways(curve.control) * chain.first)
     put = f"{_n(moved)} x {_n(chain.second)}/({_n(chain.sideways(curve.control))} x {_n(chain.first)})"
