@@ -14,10 +14,10 @@ from typing import ClassVar
 from rocking_cli.text import one_line, printable, quoted_line
 
 PREDICATES = frozenset({
-    "applies", "are", "begins", "belongs", "can", "cannot", "comes", "contains", "cuts", "depends", "does", "ends", "exceeds",
-    "fits", "follows", "gives", "goes", "had", "has", "have", "is", "joins", "lacks", "leaves", "lies", "makes", "may", "must",
-    "names", "needs", "occurs", "reads", "refers", "repeats", "requires", "runs", "should", "stands", "starts", "steps",
-    "takes", "turns", "uses", "was", "were", "would",
+    "applies", "are", "begins", "belongs", "can", "cannot", "comes", "contains", "cuts", "depends", "does", "ends",
+    "exceeds", "fits", "follows", "gives", "goes", "had", "has", "have", "is", "joins", "lacks", "leaves", "lies",
+    "makes", "may", "must", "names", "needs", "occurs", "reads", "refers", "repeats", "requires", "runs", "should",
+    "stands", "starts", "steps", "takes", "turns", "uses", "was", "were", "would",
 })  # fmt: skip
 """First words of messages that are the predicate of the field before them: "FC is missing"."""
 
