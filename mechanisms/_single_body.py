@@ -8,6 +8,7 @@ from math import atan2, isclose
 
 from rocking_cli.core import (
     Angle,
+    Contact,
     Direction,
     Joint,
     Length,
@@ -59,6 +60,10 @@ class SingleBody(Mechanism):
     def joints(self, direction: Direction) -> Sequence[Joint]:
         # Where it rolls, it bears on ever other points: its sums are those over the whole.
         return () if self.rolls(direction) else (self._foot_joint(direction),)
+
+    def contacts(self, direction: Direction) -> Sequence[Contact]:
+        foot = Contact((None, self.bodies()[0].name), (self.centre(direction),), friction=self.friction)
+        return [replace(foot, roll=self.rolls(direction))]
 
     def _foot_joint(self, direction: Direction) -> Joint:
         name = self.bodies()[0].name

@@ -15,12 +15,14 @@ from mechanisms._arch_collapse import ArchCannotStand, Ring, collapse_hinges, le
 from rocking_cli.core import (
     Angle,
     Body,
+    Contact,
     Direction,
     Joint,
     Length,
     Line,
     Mechanism,
     Outline,
+    Piece,
     Reals,
     RigidMotion,
     Sketch,
@@ -36,6 +38,8 @@ from rocking_cli.core.coefficients import coefficients
 from rocking_cli.errors import MechanismError
 
 FINE = radians(1.0)  # of an arc that is drawn straight
+CUTS = 40  # at which a ring without voussoirs may open, beside its hinges
+NEAR = 0.25  # of the angle between two cuts: one as near to a hinge is left out
 DRAWN = 200  # voussoirs of a picture, at most
 
 
@@ -140,6 +144,56 @@ class Arch(Mechanism):
                 )
             )
         return joints
+
+    @cached_property
+    def _joint_angles(self) -> Sequence[float]:
+        """Angles of the joints from the left springing [rad]: those of its voussoirs, or cuts where it may open."""
+        even = np.linspace(0.0, self._beta, (self.voussoirs or CUTS) + 1)
+        hinges = np.array(self._cuts)
+        apart = np.abs(even[:, None] - hinges).min(axis=1) > NEAR * self._beta / (len(even) - 1)
+        return sorted([*even[apart], *hinges])
+
+    @property
+    def _part(self) -> str:
+        """What a piece is called."""
+        return "voussoir" if self.voussoirs else "piece"
+
+    def pieces(self, direction: Direction) -> Sequence[Piece]:
+        """Its voussoirs, or the pieces between its cuts; those beyond the hinges rest."""
+        half, left = self.thickness / 2, pi / 2 + self._beta / 2
+        bodies, found = self.weighed(), []
+        density = bodies[0].mass / (self._cuts[1] - self._cuts[0])  # per angle
+        inner, outer = self.radius - half, self.radius + half
+        per_area = 2 * density / (outer**2 - inner**2)
+        for k, (start, end) in enumerate(pairwise(self._joint_angles)):
+            at = int(np.searchsorted(self._cuts, (start + end) / 2))
+            of = bodies[at - 1].name if 0 < at < len(self._cuts) else None
+            piece = annular_sector(f"{self._part} {k + 1}", per_area, inner, outer, left - start, left - end)
+            found.append(Piece(piece, of))
+        return found
+
+    def piece_at(self, body: str, at: complex, direction: Direction) -> str:
+        number = next(k for k, each in enumerate(self.bodies()) if each.name == body)
+        start, end = self._cuts[number : number + 2]
+        angle = float(np.clip(self._beta / 2 - np.angle(-1j * at), start + 1e-12, end - 1e-12))
+        return f"{self._part} {int(np.searchsorted(self._joint_angles, angle))}"
+
+    def contacts(self, direction: Direction) -> Sequence[Contact]:
+        half, angles = self.thickness / 2, self._joint_angles
+        names: list[str | None] = [None, *(f"{self._part} {k}" for k in range(1, len(angles))), None]
+        hinges = zip(self.hinges(direction), self.hinge_angles, strict=True)
+        hinged = {
+            int(np.abs(np.array(angles) - (a if direction > 0 else self._beta - a)).argmin()): z for z, a in hinges
+        }
+        found = []
+        for k, angle in enumerate(angles):
+            out = complex(np.exp(1j * (pi / 2 + self._beta / 2 - angle)))
+            ends = (hinged[k],) if k in hinged else ((self.radius - half) * out, (self.radius + half) * out)
+            # Seen from the springing of its half of the ring: what bears comes first.
+            on_the_left = angle <= self._beta / 2
+            pair = (names[k], names[k + 1]) if on_the_left else (names[k + 1], names[k])
+            found.append(Contact(pair, ends, out * (-1j if on_the_left else 1j), pair[0], self.friction))
+        return found
 
     def limit(self, direction: Direction) -> float:
         return four_bar_limit(direction, *self.hinges(direction))

@@ -19,6 +19,7 @@ from mechanisms._polygons import fault_of
 from rocking_cli.core import (
     CollapseHinge,
     CollapseMechanism,
+    Contact,
     Direction,
     Extra,
     Guide,
@@ -36,7 +37,6 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
-from rocking_cli.core.kinematics import Points
 from rocking_cli.errors import MechanismError
 
 ABOVE = 1e-6  # of how far they are apart: hinges that are above one another
@@ -113,9 +113,9 @@ class Assembly(Membered):
     )
     verified: ClassVar[str] = "arches, portals and stacks by hand; static and kinematic multiplier; brute force"
     caution: ClassVar[str] = (
-        "The assembly rocks on the joints that open first, and the result is valid only while no other joint opens: "
-        "`rocking collapse` gives the rotation up to which this is so. If friction is given, a joint that slides is "
-        "assumed to open as well (associated flow), which overestimates lambda."
+        "The assembly rocks on the joints that open first. `rocking collapse` gives the rotation up to which no other "
+        "joint opens if it is pushed slowly; time histories state until when they are known. If friction is given, a "
+        "joint that slides is assumed to open as well (associated flow), which overestimates lambda."
     )
 
     starter: ClassVar[tuple[str, ...]] = ("density", "depth")
@@ -419,6 +419,29 @@ class Assembly(Membered):
             joints.append(Joint(guide.name, guide.at, (guide.body,), slide=guide.along / abs(guide.along)))
         return joints
 
+    def contacts(self, direction: Direction) -> Sequence[Contact] | None:
+        if direction not in self.directions:
+            return None
+        found = []
+        for contact, state in zip(self._contacts, self._groups(direction).states, strict=True):
+            ends = {analysis.Opening.CLOSED: (0, 1), analysis.Opening.START: (0,), analysis.Opening.END: (1,)}.get(
+                state, ()
+            )
+            if not ends:
+                continue
+            # Of a hinge the face that the corner bears on; both bodies of a closed joint have turned alike.
+            a, b, face = (
+                name if name in self.blocks else None
+                for name in (contact.a, contact.b, contact.face_at(ends[0]) if len(ends) == 1 else contact.a)
+            )
+            points = tuple(contact.ends[end] for end in ends)
+            name = f"{contact.a} and {contact.b}"
+            found.append(Contact((a, b), points, contact.normal, face, contact.friction, name=name))
+        for guide in self._guides:
+            along = guide.along / abs(guide.along)
+            found.append(Contact((None, guide.body), (guide.at,), 1j * along, held="slide", name=guide.name))
+        return found
+
     # What is said of it
 
     def collapse(self, direction: Direction) -> CollapseMechanism:
@@ -448,14 +471,6 @@ class Assembly(Membered):
             held_by=valid[2] if valid else None,
             thrust=[(self._joint(each.contact), each.point, each.force) for each in thrust.passages],
         )
-
-    def margins(
-        self, direction: Direction, phi: Reals, turning: Reals, rate: Reals, ground: Points
-    ) -> tuple[Reals, Sequence[str]]:
-        found = self._admissible(direction, phi, Going(turning, rate, ground))
-        margins = np.array([np.nan if each is None else each.margin for each in found])
-        contacts = [None if each is None else each.contact for each in found]
-        return margins, ["" if k is None else self._joint(k) for k in contacts]
 
     def _admissible(self, direction: Direction, phi: Reals, going: Going) -> list[analysis.Admissible | None]:
         """Whether the joints carry the forces of each state; None of one that the solver has no answer for."""

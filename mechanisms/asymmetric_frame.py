@@ -12,6 +12,7 @@ from pydantic import model_validator
 from rocking_cli.core import (
     Angle,
     Body,
+    Contact,
     Direction,
     Joint,
     Length,
@@ -24,6 +25,7 @@ from rocking_cli.core import (
     four_bar_limit,
     geometry_error,
     length,
+    of_joints,
     quantity,
     rectangle,
 )
@@ -112,6 +114,9 @@ class AsymmetricFrame(Mechanism):
             Joint("C" + direction.prime, c, (right, beam), face=beam),
             Joint("D" + direction.prime, d, (right,)),
         )
+
+    def contacts(self, direction: Direction) -> Sequence[Contact]:
+        return of_joints(self.joints(direction), self.friction)
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         return four_bar(phi, direction, *self.hinges(direction))

@@ -17,6 +17,7 @@ from mechanisms._membered import Membered
 from mechanisms._members import Member, Shape
 from mechanisms._sides import GROUND, Held, Side, mirrored
 from rocking_cli.core import (
+    Contact,
     Direction,
     Extra,
     Guide,
@@ -24,8 +25,11 @@ from rocking_cli.core import (
     Joint,
     LinkageMotion,
     NoMotion,
+    Piece,
+    Pin,
     Sketch,
     geometry_error,
+    of_joints,
 )
 from rocking_cli.core.fields import Name
 from rocking_cli.core.ties import Place, Tie
@@ -297,29 +301,49 @@ class Linkage(Membered):
     # Contacts and picture
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
-        found = []
-        if direction in self._held and not self._linkages[direction].determinate:
+        if direction not in self._held or not self._linkages[direction].determinate:
             return ()  # how a joint too many shares the forces is not known
-        for each in self._held[direction].joints if direction in self._held else ():
-            names, face = each.bodies, face_at(self._members, each.bodies, each.at)
-            letter = self._letter(each.name, direction)
-            if isinstance(each, Guide):
-                if len(names) > 1:
-                    return ()  # its line turns: the forces there are not looked at
-                found.append(Joint(letter, each.at, names, slide=each.along / abs(each.along)))
+        held = self._held[direction].joints
+        if any(isinstance(each, Guide) and len(each.bodies) > 1 for each in held):
+            return ()  # its line turns: the forces there are not looked at
+        return [self._joint(each, direction) for each in held]
+
+    def _joint(self, each: Pin | Guide, direction: Direction) -> Joint:
+        """A hinge with its face, or a guide of the ground."""
+        names, letter = each.bodies, self._letter(each.name, direction)
+        if isinstance(each, Guide):
+            return Joint(letter, each.at, names, slide=each.along / abs(each.along))
+        face = face_at(self._members, names, each.at)
+        normal = face.normal if face is not None else 1j
+        if len(names) == 1:
+            return Joint(letter, each.at, names, normal=normal)
+        if still := self._linkages[direction].resting.intersection(names):  # what it bears on is the ground here
+            moves = next(name for name in names if name not in still)
+            return Joint(letter, each.at, (moves,), normal=normal if moves == names[1] else -normal)
+        flat = names[face.inside] if face is not None and face.inside is not None else None
+        if normal.imag < 0:  # the second bears the first
+            names, normal = names[::-1], -normal
+        return Joint(letter, each.at, names, normal=normal, face=flat or names[0])
+
+    def pieces(self, direction: Direction) -> Sequence[Piece]:
+        """Its bodies, but those that rest."""
+        return [each for each in super().pieces(direction) if each.of not in self._linkages[direction].resting]
+
+    def contacts(self, direction: Direction) -> Sequence[Contact] | None:
+        if direction not in self._held:
+            return None
+        found, rests = [], self._linkages[direction].resting
+        for each in self._held[direction].joints:
+            if not isinstance(each, Guide) or len(each.bodies) == 1:
+                found += of_joints([self._joint(each, direction)], self.friction)
                 continue
-            normal = face.normal if face is not None else 1j
-            if len(names) == 1:
-                found.append(Joint(letter, each.at, names, normal=normal))
-                continue
-            if still := self._linkages[direction].resting.intersection(names):  # what it bears on is the ground here
-                moves = next(name for name in names if name not in still)
-                found.append(Joint(letter, each.at, (moves,), normal=normal if moves == names[1] else -normal))
-                continue
-            flat = names[face.inside] if face is not None and face.inside is not None else None
-            if normal.imag < 0:  # the second bears the first
-                names, normal = names[::-1], -normal
-            found.append(Joint(letter, each.at, names, normal=normal, face=flat or names[0]))
+            # A point of the first body on a line that turns with the second.
+            point, line = (None if name in rests else name for name in each.bodies)
+            along = each.along / abs(each.along)
+            found.append(Contact((line, point), (each.at,), 1j * along, face=line, held="slide"))
+        # What is fixed, and a crack of the other direction alone, stays closed.
+        found += [Contact(pair, (self._members[pair[0]].body.centroid,), held="fixed")
+                  for pair in self._held[direction].fixed if not rests.intersection(pair)]  # fmt: skip
         return found
 
     def _letter(self, name: str, direction: Direction) -> str:

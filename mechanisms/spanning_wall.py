@@ -13,6 +13,7 @@ from mechanisms._slider_crank import slider_crank, slider_crank_limit
 from rocking_cli.core import (
     Attached,
     Body,
+    Contact,
     Direction,
     Extra,
     Joint,
@@ -26,6 +27,7 @@ from rocking_cli.core import (
     box,
     geometry_error,
     length,
+    of_joints,
     quantity,
 )
 
@@ -181,6 +183,16 @@ class SpanningWall(Mechanism):
             Joint("B" + direction.prime, b, (names[at - 1], names[at]), face=names[at - 1]),
             Joint("C" + direction.prime, c, (names[-1],), slide=1j),
         )
+
+    def contacts(self, direction: Direction) -> Sequence[Contact]:
+        names, hinge = [body.name for body in self.bodies()], self.hinges(direction)[1].imag
+        # The crack of the other direction stays closed.
+        whole = [
+            Contact((low, up), (1j * y,), held="fixed")
+            for y, low, up in zip(self._cuts[1:], names, names[1:], strict=False)
+            if y != hinge
+        ]
+        return [*of_joints(self.joints(direction), self.friction), *whole]
 
     def sketch(self) -> Sketch:
         t, top = self.thickness, 1j * self.height

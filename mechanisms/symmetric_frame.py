@@ -11,6 +11,7 @@ import numpy as np
 from rocking_cli.core import (
     Angle,
     Body,
+    Contact,
     Direction,
     Joint,
     Length,
@@ -20,6 +21,7 @@ from rocking_cli.core import (
     Sketch,
     box,
     length,
+    of_joints,
     quantity,
     rectangle,
     rotation,
@@ -84,6 +86,9 @@ class SymmetricFrame(Mechanism):
             Joint("A" + direction.prime, b, (columns,)),
             Joint("B" + direction.prime, -b + 1j * self.column_height, (columns, beam), face=beam, level=True),
         )
+
+    def contacts(self, direction: Direction) -> Sequence[Contact]:
+        return of_joints(self.joints(direction), self.friction)
 
     def critical_rotation(self, direction: Direction) -> float:
         return atan2(self.column_width, self.column_height)  # Eq. 37

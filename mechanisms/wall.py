@@ -10,6 +10,7 @@ from mechanisms._slider_crank import slider_crank, slider_crank_limit
 from rocking_cli.core import (
     Angle,
     Body,
+    Contact,
     Direction,
     Joint,
     Length,
@@ -19,6 +20,7 @@ from rocking_cli.core import (
     Sketch,
     box,
     length,
+    of_joints,
     rectangle,
 )
 
@@ -69,6 +71,9 @@ class Wall(Mechanism):
             Joint("B" + direction.prime, b, (lower, upper), face=lower),
             Joint("C" + direction.prime, c, (upper,), slide=1j),
         )
+
+    def contacts(self, direction: Direction) -> Sequence[Contact]:
+        return of_joints(self.joints(direction), self.friction)
 
     def critical_rotation(self, direction: Direction) -> float:
         return atan2(2 * self.thickness, self.height)  # alpha: both pivots and the mid hinge are in line

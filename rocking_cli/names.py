@@ -1,7 +1,8 @@
 """Words shared by all commands, in a module that imports nothing.
 
-A motion has one of four outcomes: the structure does not uplift; it rocks, that is, it uplifts and comes to rest; it
-overturns; or it is still rocking long after the end of the ground motion, without going to overturn.
+A motion has one of five outcomes: the structure does not uplift; it rocks, that is, it uplifts and comes to rest; it
+overturns; it is still rocking long after the end of the ground motion, without going to overturn; or the outcome is
+unknown, because a joint opens or slides that the model keeps closed.
 """
 
 from __future__ import annotations
@@ -10,21 +11,26 @@ NO_UPLIFT = "does not uplift"
 ROCKS = "rocks"
 OVERTURNS = "overturns"
 STILL_ROCKING = "still rocking"
+UNKNOWN = "unknown"
 
 
-def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False) -> str:
+def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unknown: bool = False) -> str:
     """Return the outcome of a motion, in the words above.
 
     Parameters
     ----------
     uplifts, overturned, still_rocking : bool
         Whether the structure uplifts (also by a release), whether it overturns, and whether it is still rocking.
+    unknown : bool
+        Whether the model ceases to hold before the motion ends.
 
     Examples
     --------
     >>> outcome(uplifts=True, overturned=False)
     'rocks'
     """
+    if unknown:
+        return UNKNOWN
     if overturned:
         return OVERTURNS
     if still_rocking:

@@ -10,6 +10,9 @@ from rocking_cli.core.bodies import polygon as polygon
 from rocking_cli.core.coefficients import Coefficients as Coefficients
 from rocking_cli.core.collapse import CollapseHinge as CollapseHinge
 from rocking_cli.core.collapse import CollapseMechanism as CollapseMechanism
+from rocking_cli.core.contacts import Contact as Contact
+from rocking_cli.core.contacts import Piece as Piece
+from rocking_cli.core.contacts import of_joints as of_joints
 from rocking_cli.core.equivalence import Equivalence as Equivalence
 from rocking_cli.core.equivalence import EquivalentBlock as EquivalentBlock
 from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock

@@ -20,23 +20,26 @@ from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_er
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.collapse import CollapseMechanism
+from rocking_cli.core.contacts import Contact, Piece, of_joints
 from rocking_cli.core.crushing import Crushing, pressing
 from rocking_cli.core.extras import Extra
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.joints import Joint
-from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion
+from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.loads import Load
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Outline, Sketch
 from rocking_cli.core.strength import Strength
 from rocking_cli.core.ties import Tie
+from rocking_cli.core.uncertainty import Uncertainty
 from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
-    "bodies", "motion", "limit", "sketch", "joints", "alike", "volume", "total_mass", "carries", "extras", "bearing",
+    "bodies", "motion", "limit", "sketch", "joints", "pieces", "piece_at", "contacts", "alike", "volume", "total_mass",
+    "carries", "extras", "bearing",
     "coefficients", "kinetic_inertia", "potential_energy", "uplift", "rebound_from_impacts", "critical_rotation",
     "restitution_from_kinematics", "eta",
 )  # fmt: skip
@@ -145,6 +148,18 @@ class Mechanism(Described, ABC):
         gt=0,
         le=10,
     )
+    uncertainty: Uncertainty | None = Field(
+        None,
+        examples=[{"slenderness": 0.05, "restitution": 0.02}],
+        description="how well it is known; `rocking mechanisms uncertainty` lists its fields",
+    )
+    opening: float = quantity(
+        "largest opening or slip of a joint up to which a time history holds, over the displacement at phi_cr",
+        example=0.005,
+        default=0.005,
+        ge=0,
+        le=1000,
+    )
     strength: Strength | None = Field(
         None,
         examples=[{"stress": 3e6, "width": 0.05}],
@@ -170,6 +185,11 @@ class Mechanism(Described, ABC):
 
     # As pydantic marks its own: files and copies are validated without it, and place their errors themselves.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @property
+    def restitution_is_kinematic(self) -> bool:
+        """Whether no restitution is given, so that it follows from the shape."""
+        return (self.restitution if self.rocks_both_ways else self.rebound) is None
 
     @property
     def directions(self) -> Sequence[Direction]:
@@ -386,34 +406,29 @@ class Mechanism(Described, ABC):
         """Where bodies bear on the ground and on one another, for the check of a history; by default unknown."""
         return ()
 
+    def pieces(self, direction: Direction) -> Sequence[Piece]:
+        """The rigid blocks between its joints, those that stay closed among them; by default its bodies."""
+        return [Piece(body, body.name) for body in self.weighed()]
+
+    def piece_at(self, body: str, at: complex, direction: Direction) -> str:
+        """The piece on which a point of a body is; by default the body."""
+        return body
+
+    def contacts(self, direction: Direction) -> Sequence[Contact] | None:
+        """The joints between its pieces, and with the ground, as they bear in a direction; None if they are not known.
+
+        Time histories are checked against them. By default they are the `joints` of a single body: of several bodies it
+        is not known which joints stay closed, so that their histories are not checked.
+        """
+        joints = self.joints(direction)
+        return of_joints(joints, self.friction) if joints and len(self.bodies()) == 1 else None
+
     def alike(self) -> Mapping[str, int]:
         """Of bodies that stand for several which move alike: how many, by their names; by default none does."""
         return {}
 
     def collapse(self, direction: Direction) -> CollapseMechanism | None:
         """The weakest mechanism of a direction, of a structure that searched for it; by default none did."""
-        return None
-
-    def margins(
-        self, direction: Direction, phi: Reals, turning: Reals, rate: Reals, ground: Points
-    ) -> tuple[Reals, Sequence[str]] | None:
-        """How far the joints that its mechanism keeps closed are from opening in states of motion.
-
-        Parameters
-        ----------
-        direction : Direction
-            Which way it rocks.
-        phi, turning, rate : ndarray, shape (n,)
-            Rotations inside the direction [rad], and their second [rad/s2] and first [rad/s] derivatives.
-        ground : ndarray of complex, shape (n,)
-            Ground acceleration u_g'' + i v_g'' [m/s2].
-
-        Returns
-        -------
-        (ndarray, sequence of str) or None
-            The least normal force over the weight, shape (n,), below zero where another mechanism would have begun, NaN
-            where it is not known; and the joint that has it. None, as by default: there is nothing to be known.
-        """
         return None
 
     def piece(self, body: str, at: complex) -> str:

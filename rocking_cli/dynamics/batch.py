@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,6 +40,8 @@ class Runs:
         Ratio of the rotation rates after and before an impact, in both directions; NaN for the structure's own.
     size : ndarray, shape (n,)
         Factor on every length of the structure.
+    slender : ndarray, shape (n,)
+        Factor on its slenderness, by which the horizontal acceleration is divided; rotations in rad are multiplied.
 
     Raises
     ------
@@ -53,6 +55,7 @@ class Runs:
     polarity: Integers
     eta: Reals
     size: Reals
+    slender: Reals
 
     def __post_init__(self) -> None:
         with np.errstate(invalid="ignore"):
@@ -63,6 +66,7 @@ class Runs:
                 "polarity": (np.abs(self.polarity) == 1, "1 or -1"),
                 "eta": (np.isnan(self.eta) | ((self.eta > 0) & np.isfinite(self.eta)), "positive"),
                 "size": (np.isfinite(self.size) & (self.size > 0), "positive"),
+                "slender": (np.isfinite(self.slender) & (self.slender > 0), "positive"),
             }
         for name, (right, must) in rules.items():
             if not right.all():
@@ -82,6 +86,7 @@ class Runs:
         polarity: ArrayLike = 1,
         eta: ArrayLike = np.nan,
         size: ArrayLike = 1.0,
+        slender: ArrayLike = 1.0,
     ) -> Runs:
         """Runs from arrays of one length, or numbers that hold for all.
 
@@ -94,13 +99,22 @@ class Runs:
         both = etas.ndim == 2 and etas.shape[1] == 2
         try:
             columns = np.broadcast_arrays(
-                *np.atleast_1d(model, record, scale, polarity, size), *(etas.T if both else np.atleast_1d(etas)[None])
+                *np.atleast_1d(model, record, scale, polarity, size, slender),
+                *(etas.T if both else np.atleast_1d(etas)[None]),
             )
         except ValueError:
-            raise InputError("the runs' models, records, scales, polarities, etas and sizes differ in length") from None
-        m, r, a, s, k, *e = (column.astype(np.float64) for column in columns)
+            raise InputError(
+                "the runs' models, records, scales, polarities, etas, sizes and slendernesses differ in length"
+            ) from None
+        m, r, a, s, k, w, *e = (column.astype(np.float64) for column in columns)
         return cls(
-            _whole("model", m), _whole("record", r), a, _whole("polarity", s), np.stack(e, axis=-1) if both else e[0], k
+            _whole("model", m),
+            _whole("record", r),
+            a,
+            _whole("polarity", s),
+            np.stack(e, axis=-1) if both else e[0],
+            k,
+            w,
         )
 
     @classmethod
@@ -162,7 +176,8 @@ def respond_many(
     Returns
     -------
     Outcome
-        In the order of `runs`, whatever the number of threads. Samples are not kept: memory grows by some 100 bytes
+        In the order of `runs`, whatever the number of threads. A motion of unknown outcome is left where it becomes so,
+        and its `opening` is the largest until then. Samples are not kept: memory grows by some 100 bytes
         a history.
 
     Raises
@@ -191,9 +206,10 @@ def respond_many(
     rows = np.zeros((len(runs), kernels.RUN_COLUMNS))
     rows[:, kernels.STRUCTURE] = runs.model
     rows[:, kernels.RECORD] = runs.record
-    rows[:, kernels.FACTOR] = runs.scale * runs.polarity
+    rows[:, kernels.FACTOR] = runs.scale * runs.polarity / runs.slender
     rows[:, kernels.V_FACTOR] = abs(runs.scale)
     rows[:, kernels.SIZE] = runs.size
+    rows[:, kernels.SLENDER] = runs.slender
     if release is not None:
         tilts = np.broadcast_to(np.asarray(release, dtype=np.float64), len(runs))
         different, which = np.unique(tilts, return_inverse=True)
@@ -206,10 +222,16 @@ def respond_many(
         most = DECISIVE - 1 if only_peaks else MOST_IMPACTS  # it is left after more than these
 
         def follow(first: int, stop: int) -> None:
-            run_deck(deck, rows, marks, first=first, stop=stop, rtol=rtol, most_impacts=most)
+            run_deck(deck, rows, marks, first=first, stop=stop, rtol=rtol, most_impacts=most, brief=True)
 
         in_parts(follow, len(runs), UNIT, threads, progress)
-    return read_marks(marks, np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model])
+    reach = np.array([model.reach for model in models])
+    phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
+    found = read_marks(marks, phi_cr, reach[runs.model])
+    if (runs.slender == 1).all():
+        return found
+    peaks = {name: getattr(found, name) * runs.slender for name in ("peak_positive", "peak_negative")}
+    return replace(found, **peaks)
 
 
 def _etas(models: Sequence[Model], runs: Runs) -> Reals:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.dynamics.compiled import HISTORIES, has_run
+from rocking_cli.dynamics.joints import laid_out
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcome
 from rocking_cli.excitation.base import GroundMotion
@@ -36,6 +37,7 @@ def run_deck(
     stop: int | None = None,
     rtol: float,
     most_impacts: int = MOST_IMPACTS,
+    brief: bool = False,
     every: int = 1,
     phi: Reals = NOTHING,
     rate: Reals = NOTHING,
@@ -45,11 +47,11 @@ def run_deck(
     from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 
     samples = kernels.Samples(every, phi, rate, impacts)
-    kernels.run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, samples, marks)
+    kernels.run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks)
     has_run(HISTORIES)
 
 
-def read_marks(marks: Reals, phi_cr: Reals) -> Outcomes:
+def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     """What the kernel says of finished runs.
 
     Parameters
@@ -58,25 +60,40 @@ def read_marks(marks: Reals, phi_cr: Reals) -> Outcomes:
         As the kernel filled them.
     phi_cr : ndarray, shape (n, 2)
         Critical rotations of the positive and the negative direction [rad].
+    reach : ndarray, shape (n,)
+        The displacement that openings of joints are over [m]; NaN if the joints are not known.
     """
     from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 
     status = marks[:, kernels.STATUS]
-    overturned = status == kernels.OVERTURNED
+    passed, crossed = marks[:, kernels.PASSED], marks[:, kernels.CROSSED]
+    # What has passed the critical rotation for good has overturned, whatever opens later on.
+    overturned = (status == kernels.OVERTURNED) & ~(passed < np.where(np.isnan(crossed), np.inf, crossed))
+    failed = status == kernels.STALLED
+    unknown = np.isfinite(passed) & ~overturned & ~failed
     fell_to = np.where(overturned, 1 - 2 * marks[:, kernels.SIDE], 0).astype(np.int64)
-    peaks = marks[:, kernels.PEAK : kernels.PEAK + 2]
+    until = np.where(unknown[:, None], kernels.PASSED_PEAK, kernels.PEAK) + np.arange(2)
+    peaks = np.take_along_axis(marks, until, axis=1)
+    warned = np.where(marks[:, kernels.WARNED] <= np.where(unknown, passed, np.inf), marks[:, kernels.WARNED], np.nan)
+    bound = (marks[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] / phi_cr).max(axis=1)
+    uplift = marks[:, kernels.FIRST_UPLIFT]
     return Outcome(
         overturned=overturned,
-        still_rocking=status == kernels.STILL_ROCKING,
-        failed=status == kernels.STALLED,
+        still_rocking=(status == kernels.STILL_ROCKING) & ~unknown,
+        failed=failed,
         fell_to=fell_to,
         peak_positive=np.where(fell_to == 1, np.nan, peaks[:, 0]),
         peak_negative=np.where(fell_to == -1, np.nan, peaks[:, 1]),
         peak_ratio=np.where(overturned, np.nan, (peaks / phi_cr).max(axis=1)),
         overturning_time=np.where(overturned, marks[:, kernels.CROSSED], np.nan),
-        uplift_time=marks[:, kernels.FIRST_UPLIFT].copy(),
-        impact_count=marks[:, kernels.IMPACTS].astype(np.int64),
-        end_time=marks[:, kernels.ENDED].copy(),
+        uplift_time=np.where(unknown & (uplift > passed), np.nan, uplift),
+        impact_count=np.where(unknown, marks[:, kernels.PASSED_IMPACTS], marks[:, kernels.IMPACTS]).astype(np.int64),
+        end_time=np.where(unknown, np.nan, marks[:, kernels.ENDED]),
+        unknown=unknown,
+        known_to=np.where(unknown, passed, np.nan),
+        warned=warned,
+        lower_bound=np.where(np.isnan(warned), np.where(unknown, (peaks / phi_cr).max(axis=1), np.nan), bound),
+        opening=marks[:, kernels.LARGEST] / reach,
     )
 
 
@@ -118,6 +135,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         aheads.joined(),
         v_aheads.joined(),
         v_aboves.joined(),
+        kernels.Joints(*laid_out([model.joints for model in models])),
     )
 
 

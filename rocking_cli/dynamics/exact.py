@@ -7,7 +7,7 @@ from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.dynamics import pulse_motion
-from rocking_cli.dynamics.outcome import Outcome
+from rocking_cli.dynamics.outcome import UNCHECKED, Outcome
 from rocking_cli.dynamics.pulse_motion import COLUMNS, Side
 from rocking_cli.errors import InputError, SolverError
 
@@ -153,6 +153,7 @@ def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int =
         uplift_time=motion.uplift,
         impact_count=motion.impacts,
         end_time=nan,
+        **UNCHECKED,
         first_excursion=kept[0][3] if kept else nan,
         first_rebound=kept[1][3] if len(kept) > 1 else nan,
         impacts=tuple((time, int(sign), rate) for time, sign, rate, _ in kept),

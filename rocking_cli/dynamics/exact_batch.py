@@ -13,7 +13,7 @@ from rocking_cli.core import Direction, Equivalence
 from rocking_cli.dynamics import pulse_motion
 from rocking_cli.dynamics.compiled import PULSES, compile_source, has_run
 from rocking_cli.dynamics.exact import polarity_of, segments_of, sides_of
-from rocking_cli.dynamics.outcome import Outcome, Outcomes
+from rocking_cli.dynamics.outcome import UNCHECKED, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import Pulse
@@ -96,6 +96,7 @@ def exact_many(
         uplift_time=uplift_time.copy(),
         impact_count=impacts.astype(np.int64),
         end_time=np.full(n, np.nan),
+        **{name: np.full(n, value) for name, value in UNCHECKED.items()},
     )
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
+from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build_models
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
 from rocking_cli.dynamics.vertical import contact_lost
@@ -34,7 +35,7 @@ class History(Outcome[bool, int, float]):
     time : ndarray, shape (n,)
         Times of the samples [s]: those of the ground motion, or every so many-th of them, see its `every`.
     phi, rate : ndarray, shape (n,)
-        Signed rotation [rad] and its rate [rad/s]; NaN after overturning.
+        Signed rotation [rad] and its rate [rad/s]; NaN after overturning, and where nothing is known any longer.
     ratio : ndarray, shape (n,)
         Signed rotation over the critical rotation of its direction.
     impacts : ndarray, shape (k, 3)
@@ -48,6 +49,8 @@ class History(Outcome[bool, int, float]):
     ends_at_limit : tuple of bool
         Whether the positive and the negative direction have no critical rotation: ratios are then over the kinematic
         limit, and overturning is reaching it.
+    check : JointCheck, optional
+        What its joints do; None if they are not known, so that nothing was checked.
     """
 
     model: ModelName
@@ -60,6 +63,7 @@ class History(Outcome[bool, int, float]):
     uplift_error: float = 0.0
     p: float = float("nan")
     ends_at_limit: tuple[bool, bool] = (False, False)
+    check: JointCheck | None = None
 
     @property
     def reference(self) -> str:
@@ -176,18 +180,23 @@ def follow(
         raise InputError(f"dt = {dt:g} s makes {many} samples with a tail of {tail:g} s: is {what} in seconds?")
     phi, rate, impacts = np.empty(samples), np.empty(samples), np.empty((most_kept, 3))
     runs, marks = np.zeros((1, kernels.RUN_COLUMNS)), np.empty((1, kernels.MARKS))
-    runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE]] = 1.0
+    runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE, kernels.SLENDER]] = 1.0
     runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = eta
     runs[0, kernels.START] = model.q(release)
     run_deck(lay_out([model], [motion]), runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
-    found = read_marks(marks, np.array([model.phi_cr]))
-    end = float(found.end_time[0])
+    found = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
+    end = float(marks[0, kernels.ENDED])
     if found.failed[0]:
         raise SolverError(
             f"the {model.name} time history could not be simulated past t = {end:.6g} s: the steps became too small"
         )
+    if found.unknown[0]:  # nothing from there on is a result
+        until = float(found.known_to[0])
+        beyond = np.arange(samples) * dt > until
+        phi[beyond] = rate[beyond] = np.nan
+        end = min(end, until)
     # The samples end with the record or with the motion, whichever is later; after overturning they are NaN.
-    kept = min(samples, max(npts, int(end / dt) + (1 if found.still_rocking[0] else 3)))
+    kept = min(samples, max(npts, int(end / dt) + (1 if marks[0, kernels.STATUS] == kernels.STILL_ROCKING else 3)))
     return History(
         **{name: getattr(found, name)[0].item() for name in OUTCOME},
         model=model.name,
@@ -200,6 +209,7 @@ def follow(
         uplift_error=model.uplift_error,
         p=model.p,
         ends_at_limit=model.ends_at_limit,
+        check=check_of(model.joints, marks[0]),
     )
 
 

@@ -15,7 +15,7 @@ All of it stands in one file because the compiled code is kept by file: a functi
 
 from __future__ import annotations
 
-from math import cosh, isfinite, nan, sinh, sqrt
+from math import ceil, cosh, isfinite, nan, sinh, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -29,13 +29,33 @@ COLUMNS = 12
 # strongest that is still to come; intervals.
 U_FIRST, U_SIZE, V_FIRST, V_SIZE, AHEAD_FIRST, AHEAD_SIZE, DT, V_DT = range(8)
 # Columns of `runs`, one row a history; an eta that is NaN is the structure's own.
-STRUCTURE, RECORD, FACTOR, V_FACTOR, SIZE, ETA_POSITIVE, ETA_NEGATIVE, START = range(8)
-RUN_COLUMNS = 8
-# What `marks` gathers on the way, a row a history.
+STRUCTURE, RECORD, FACTOR, V_FACTOR, SIZE, ETA_POSITIVE, ETA_NEGATIVE, START, SLENDER = range(9)
+RUN_COLUMNS = 9
+# What `marks` gathers on the way, a row a history. Of the joints: when their opening passes its limit, why and where,
+# with peaks and impacts until then; the first moment at which one does not bear, where, with the peaks until then; the
+# largest opening [m], where and when, the longest time for which a joint is open, and when and where first a joint that
+# stays closed would open.
 PEAK, CROSSED, FIRST_UPLIFT, IMPACTS, ENDED, SIDE, STATUS = 0, 2, 3, 4, 5, 6, 7
-MARKS = 8
-# How a motion ends.
-AT_REST, OVERTURNED, STILL_ROCKING, STALLED = range(4)
+PASSED, REASON, WHERE, PASSED_PEAK, PASSED_IMPACTS, WARNED, WARNED_WHERE, WARNED_PEAK = 8, 9, 10, 11, 13, 14, 15, 16
+LARGEST, LARGEST_WHERE, LARGEST_AT, LONGEST, PARTED, PARTED_WHERE = 18, 19, 20, 21, 22, 23
+MARKS = 24
+# Why a history is not known any longer.
+OPENS, SLIDES, CRUSHES, WEIGHTLESS = range(4)
+# Columns of `contacts`: rows of the two normal forces and of the shear force, and whether the joint bears at other ends
+# in the other direction; of `bearing`: coefficient of friction, strength [N].
+NORMAL, OTHER, SHEAR, CHANGES = range(4)
+FRICTION, STRENGTH = range(2)
+# What is kept of each joint, a row a joint: openings of its ends and their rates, lengths of slip in either sense and
+# their rates, and the four accelerations at the end of a step, at its start and half way; and of all of them together.
+GAP, GAP_RATE, SLIP, SLIP_RATE, GAP_ACC, SLIP_ACC, START_ACC, HALF_ACC = 0, 2, 4, 6, 8, 10, 12, 16
+KEPT = 20
+MOVING, FRESH, SO_FAR, SINCE, SEEN = 0, 1, 2, 4, 5
+NOTES = 6
+# Factors of a force: of 1, u_g'', q.^2 and v_g''; powers 0 to 3 of each, and of the compliance.
+FACTORS, POWERS = 4, 4
+OF_ROW = POWERS * (FACTORS + 1)
+# How a motion ends; it is left where its joints have opened so far that nothing is known any longer.
+AT_REST, OVERTURNED, STILL_ROCKING, STALLED, LEFT = range(5)
 # How a flight over part of a sample interval ends.
 REACHED, IMPACT, LIMIT, STUCK = range(4)
 # What is looked for inside a step: q at a level, w = 0, or q.. = 0.
@@ -50,8 +70,44 @@ IDLE = 10_000  # of these intervals without impact: swinging in a hollow beyond 
 LOOPS = 10_000  # events in one sample interval, or a piece of it, before giving up
 STRIDE = 100.0  # of 1/p: the longest step of the closed form, whose cosh would overflow at 700
 SLOW = 0.5  # of 1/p: the interval to go on with after the record
+LOOK = 1.25e-3  # s: the longest step in which openings of joints are advanced, eight in 0.01 s
 BEHIND = 1e-11  # of a cell: how far behind a corner of the force a motion goes on
-COINCIDE = 1e-9  # of an interval: samples of two components closer than this are at one moment
+COINCIDE = 1e-9  # of an interval: what is closer than this is at one moment
+
+
+class Joints(NamedTuple):
+    """The joints of structures, which histories are checked against; see `rocking_cli.dynamics.joints`."""
+
+    # int (m, 8): first joint, numbers of joints, rows and cells; places of the first of `rows`, `struck` and `within`,
+    # and the number of cells of the last
+    sizes: np.ndarray
+    contacts: np.ndarray  # int (joints, 2, 4): see the columns above, for either direction; -1 where there is none
+    bearing: np.ndarray  # (joints, 2): see the columns above
+    rows: np.ndarray  # of all structures, each (cells, 2, rows, OF_ROW): forces [N] and compliance [1/kg] over q
+    struck: np.ndarray  # each (2, rows, 2): impulses over the rate before, a constant and the factor of eta
+    within: np.ndarray  # each (cells, 2, 5): where all joints bear for certain, see `quiet`
+    # (m, 4): gravity [m/s2], limit of the opening [m], longest step in the structure's own size [s], whether all forces
+    # scale with g
+    numbers: np.ndarray
+
+
+class Watch(NamedTuple):
+    """The joints of one structure, and the numbers of one history."""
+
+    size: int
+    contacts: np.ndarray
+    bearing: np.ndarray
+    rows: np.ndarray
+    struck: np.ndarray
+    within: np.ndarray
+    gravity: float
+    limit: float
+    step: float
+    scales: bool  # whether all forces scale with g, as those of no tie do
+    slender: float  # factor on its slenderness, by which u_g'' is divided, but not for its joints
+    kept: np.ndarray  # (joints, KEPT)
+    notes: np.ndarray  # (NOTES,)
+    active: np.ndarray  # int (4 joints,): rows that move in a step
 
 
 class Deck(NamedTuple):
@@ -75,6 +131,7 @@ class Deck(NamedTuple):
     ahead: np.ndarray  # at each sample of the horizontal component, the largest |u| from there on [m/s2]
     v_ahead: np.ndarray  # and the largest -v
     v_above: np.ndarray  # and the largest v
+    joints: Joints
 
 
 class Samples(NamedTuple):
@@ -110,6 +167,15 @@ class Motion(NamedTuple):
     ahead: np.ndarray
     v_ahead: np.ndarray
     v_above: np.ndarray
+
+
+class Demand(NamedTuple):
+    """What is missing at the joints at a moment; joints by their numbers, -1: none."""
+
+    missing: float  # the largest force that is missing at any joint [N]
+    where: int
+    crushes: int
+    parted: int  # the joint that stays closed at which most is missing
 
 
 class Law(NamedTuple):
@@ -432,6 +498,267 @@ def up_to_corner(forces, corners, law, ground, tau, state, size, ended):
 
 
 @compile_inline
+def quiet(watch, law, ground, tau, q, w):
+    """Whether no joint moves, and all bear for certain: u_g'' between two straight lines over q.^2, up to some q.^2.
+
+    Forces are affine in g, u_g'' and q.^2: with g times a factor they bear under u_g'' and q.^2 times that. That of a
+    tie does not grow with g, and nothing is certain under vertical motion.
+    """
+    weight = ground.g + ground.grade * tau
+    if watch.notes[MOVING] != 0 or weight <= 0 or not (watch.scales or weight == law.gravity):
+        return False
+    per_weight = watch.gravity / weight
+    cells = watch.within.shape[0]
+    k = min(max(int(q * cells / law.q_end), 0), cells - 1)
+    y, push = w * w * per_weight, (1.0 - 2.0 * law.d) * (ground.push + ground.ramp * tau) * watch.slender * per_weight
+    line = watch.within[k, law.d]
+    return y <= line[4] and line[0] + line[1] * y <= push and push <= line[2] + line[3] * y
+
+
+@compile_kernel
+def weigh(watch, d, per_end, q, w, u, weight, lift):
+    """Fill in how fast each joint would open and slip where the motion is, and return what is missing there."""
+    rows, kept = watch.rows, watch.kept
+    place = q * per_end * rows.shape[0]
+    k = min(max(int(place), 0), rows.shape[0] - 1)
+    x = place - k
+    one, push, rate, up = weight, u, w * w, lift
+    missing, where, crushes, tension, parted = 0.0, -1, -1, 0.0, -1
+    for j in range(watch.size):
+        kept[j, GAP_ACC : GAP_ACC + 4] = -1.0
+        total, shear = 0.0, watch.contacts[j, d, SHEAR]
+        if shear < 0:
+            continue
+        for end in range(2):
+            r = watch.contacts[j, d, NORMAL + end]
+            if r < 0:
+                continue
+            at = rows[k, d, r]
+            n = one * cubic(at, 0, x) + push * cubic(at, 4, x) + rate * cubic(at, 8, x) + up * cubic(at, 12, x)
+            total += n
+            kept[j, GAP_ACC + end] = -n * cubic(at, 16, x)
+            if -n > missing:
+                missing, where = -n, j
+            if -n > tension and watch.contacts[j, d, OTHER] >= 0:
+                tension, parted = -n, j
+            if n > watch.bearing[j, STRENGTH]:
+                crushes = j
+        friction = watch.bearing[j, FRICTION]
+        if isfinite(friction):
+            at = rows[k, d, shear]
+            t = one * cubic(at, 0, x) + push * cubic(at, 4, x) + rate * cubic(at, 8, x) + up * cubic(at, 12, x)
+            c = cubic(at, 16, x)
+            for sense in range(2):
+                left = friction * max(total, 0.0) - (1.0 - 2.0 * sense) * t
+                kept[j, SLIP_ACC + sense] = -left * c
+                if -left > missing:
+                    missing, where = -left, j
+    return Demand(missing, where, crushes, parted)
+
+
+@compile_inline
+def cubic(at, first, x):
+    """A cubic of a row at a place of its cell."""
+    return at[first] + x * (at[first + 1] + x * (at[first + 2] + x * at[first + 3]))
+
+
+@compile_inline
+def advance_opening(kept, j, end, a0, a1, h):
+    """Advance one opening or slip by h under an acceleration straight between its two ends; True if it moves."""
+    slips = end >= 2
+    at, rate = (SLIP + end - 2, SLIP_RATE + end - 2) if slips else (GAP + end, GAP_RATE + end)
+    x, v = kept[j, at], kept[j, rate]
+    if v > 0 or (not slips and x > 0):
+        v1 = v + h * (a0 + a1) / 2
+        x1 = x + h * v + h * h * (2 * a0 + a1) / 6
+        if slips and v1 <= 0:  # it stops on the way, and stays where it is
+            x1, v1 = x + h * v * v / (v - v1) / 2, 0.0
+        elif not slips and x1 <= 0:
+            x1, v1 = 0.0, 0.0
+        kept[j, at], kept[j, rate] = x1, v1
+    elif a1 > 0:  # it begins on the way
+        left = h if a0 >= 0 else h * a1 / (a1 - a0)
+        begun = max(a0, 0.0)
+        kept[j, at] = x + left * left * (2 * begun + a1) / 6
+        kept[j, rate] = left * (begun + a1) / 2
+    return kept[j, rate] > 0 or (not slips and kept[j, at] > 0)
+
+
+@compile_inline
+def through(kept, j, end, x):
+    """The acceleration of a row inside a step, by the parabola through its start, middle and end."""
+    a0, am, a1 = kept[j, START_ACC + end], kept[j, HALF_ACC + end], kept[j, GAP_ACC + end]
+    return a0 + x * (4 * am - 3 * a0 - a1 + x * (2 * a0 - 4 * am + 2 * a1))
+
+
+@compile_kernel
+def note(watch, d, q_cr, t, q, demand, moving, marks):
+    """Note what a moment shows of the joints."""
+    notes, kept = watch.notes, watch.kept
+    missing, where, crushes, parted = demand
+    if parted >= 0 and not isfinite(marks[PARTED]):
+        marks[PARTED], marks[PARTED_WHERE] = t, parted
+    if missing > 0 and not isfinite(marks[WARNED]):
+        marks[WARNED], marks[WARNED_WHERE] = t, where
+        for side in range(2):
+            marks[WARNED_PEAK + side] = notes[SO_FAR + side]
+        marks[WARNED_PEAK + d] = max(notes[SO_FAR + d], q)
+    largest, at, slides = 0.0, -1, False
+    for j in range(watch.size):
+        gap, slip = max(kept[j, GAP], kept[j, GAP + 1]), kept[j, SLIP] + kept[j, SLIP + 1]
+        if max(gap, slip) > largest:
+            largest, at, slides = max(gap, slip), j, slip > gap
+    if largest > marks[LARGEST] and q <= q_cr:  # beyond, it may be overturning
+        marks[LARGEST], marks[LARGEST_WHERE], marks[LARGEST_AT] = largest, at, t
+    if not isfinite(marks[PASSED]) and (largest > watch.limit or crushes >= 0):
+        passed(
+            watch,
+            d,
+            t,
+            q,
+            CRUSHES if crushes >= 0 else SLIDES if slides else OPENS,
+            at if crushes < 0 else crushes,
+            marks,
+        )
+    if moving and not isfinite(notes[SINCE]):
+        notes[SINCE] = t
+    elif not moving and isfinite(notes[SINCE]):
+        marks[LONGEST] = max(marks[LONGEST], t - notes[SINCE])
+        notes[SINCE] = nan
+
+
+@compile_kernel
+def passed(watch, d, t, q, reason, where, marks):
+    """Note that nothing is known any longer."""
+    marks[PASSED], marks[REASON], marks[WHERE], marks[PASSED_IMPACTS] = t, reason, where, marks[IMPACTS]
+    for side in range(2):
+        marks[PASSED_PEAK + side] = watch.notes[SO_FAR + side]
+    marks[PASSED_PEAK + d] = max(watch.notes[SO_FAR + d], q)
+
+
+@compile_kernel
+def look(watch, law, ground, t, tau, state, size, ended, peak, marks):
+    """Hold the joints against what a step asks of them: how far any opens or slips, released alone.
+
+    `peak` is the largest q of its direction before the step.
+    """
+    notes, kept, d, q_cr = watch.notes, watch.kept, law.d, law.q_cr
+    notes[FRESH] = 0.0
+    notes[SO_FAR + d], notes[SO_FAR + 1 - d] = peak, marks[PEAK + 1 - d]
+    s, per_end, unit = 1.0 - 2.0 * d, 1 / law.q_end, law.gravity / watch.gravity
+    u0, ramp = s * ground.push * watch.slender, s * ground.ramp * watch.slender
+    lift = ground.g - law.gravity
+    if not abs(notes[SEEN] - t - tau) <= COINCIDE * size:  # else the step before has ended here
+        now = weigh(watch, d, per_end, state.q, state.w, u0 + ramp * tau, unit, lift + ground.grade * tau)
+        note(watch, d, q_cr, t + tau, state.q, now, notes[MOVING] > 0, marks)
+    notes[SEEN] = t + tau + size
+    kept[:, START_ACC : START_ACC + 4] = kept[:, GAP_ACC : GAP_ACC + 4]
+    steps = max(1, ceil(size / watch.step - 1e-9))
+    half = Demand(0.0, -1, -1, -1)
+    if steps > 2:
+        q, w = between(state, ended, size, 0.5)
+        at = tau + size / 2
+        half = weigh(watch, d, per_end, q, w, u0 + ramp * at, unit, lift + ground.grade * at)
+        kept[:, HALF_ACC : HALF_ACC + 4] = kept[:, GAP_ACC : GAP_ACC + 4]
+    at = tau + size
+    last = weigh(watch, d, per_end, ended.q, ended.w, u0 + ramp * at, unit, lift + ground.grade * at)
+    if steps <= 2:
+        kept[:, HALF_ACC : HALF_ACC + 4] = (kept[:, START_ACC : START_ACC + 4] + kept[:, GAP_ACC : GAP_ACC + 4]) / 2
+    rows = 0  # that move, or begin to
+    for j in range(watch.size):
+        for end in range(4):
+            still = kept[j, START_ACC + end] <= 0 and kept[j, HALF_ACC + end] <= 0 and kept[j, GAP_ACC + end] <= 0
+            column = end if end < 2 else end + SLIP - 2
+            if not (still and kept[j, column + 2] <= 0 and (end >= 2 or kept[j, column] <= 0)):
+                watch.active[rows] = 4 * j + end
+                rows += 1
+    if rows == 0:
+        notes[MOVING] = 0.0
+        crushes = last.crushes if half.crushes < 0 else half.crushes
+        note(watch, d, q_cr, t + at, ended.q, Demand(0.0, -1, crushes, -1), False, marks)
+        return
+    for step in range(1, steps + 1):
+        x = step / steps
+        moving, most, where, parted = False, 0.0, -1, -1
+        for k in range(rows):
+            j, end = watch.active[k] // 4, watch.active[k] % 4
+            now = through(kept, j, end, x)
+            if advance_opening(kept, j, end, through(kept, j, end, x - 1 / steps), now, size / steps):
+                moving = True
+            if now > most:
+                most, where = now, j
+            if now > 0 and end < 2 and watch.contacts[j, d, OTHER] >= 0:
+                parted = j
+        q, _ = between(state, ended, size, x)
+        crushes = last.crushes if step == steps else half.crushes if 2 * step >= steps else -1
+        notes[MOVING] = 1.0 if moving else 0.0
+        note(watch, d, q_cr, t + tau + size * x, q, Demand(most, where, crushes, parted), moving, marks)
+        notes[SO_FAR + d] = max(notes[SO_FAR + d], q)
+
+
+@compile_inline
+def between(state, ended, size, x):
+    """q and w inside a step, by the polynomial of order 5 through both of its ends."""
+    q, w, f = state
+    q1, w1, f1 = ended
+    v, v1, a, a1 = w * size, w1 * size, f * size * size, f1 * size * size
+    rise = q1 - q - v - a / 2
+    steer = v1 - v - a
+    bend = a1 - a
+    c3 = 10 * rise - 4 * steer + bend / 2
+    c4 = -15 * rise + 7 * steer - bend
+    c5 = 6 * rise - 3 * steer + bend / 2
+    height = q + x * (v + x * (a / 2 + x * (c3 + x * (c4 + x * c5))))
+    speed = v + x * (a + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
+    return max(height, 0.0), speed / size
+
+
+@compile_kernel
+def strike(watch, d, t, rate, eta, marks):
+    """Let joints fly open, or slide, that an impact does not press together; d is the direction that begins."""
+    kept, rows = watch.kept, watch.rows
+    moving, missing, where = False, 0.0, -1
+    for j in range(watch.size):
+        if watch.contacts[j, d, CHANGES]:
+            kept[j, GAP : GAP + 4] = 0.0
+        shear = watch.contacts[j, d, SHEAR]
+        if shear < 0:
+            continue
+        total = 0.0
+        for end in range(2):
+            r = watch.contacts[j, d, NORMAL + end]
+            if r >= 0:
+                p = rate * (watch.struck[d, r, 0] + eta * watch.struck[d, r, 1])
+                total += p
+                if -p > missing:
+                    missing, where = -p, j
+                kept[j, GAP_RATE + end] += rows[0, d, r, 16] * max(0.0, -p)
+        friction = watch.bearing[j, FRICTION]
+        if isfinite(friction):
+            p = rate * (watch.struck[d, shear, 0] + eta * watch.struck[d, shear, 1])
+            for sense in range(2):
+                left = friction * max(total, 0.0) - (1.0 - 2.0 * sense) * p
+                if -left > missing:
+                    missing, where = -left, j
+                kept[j, SLIP_RATE + sense] += rows[0, d, shear, 16] * max(0.0, -left)
+        for end in range(2):
+            if kept[j, GAP + end] > 0 or kept[j, GAP_RATE + end] > 0 or kept[j, SLIP_RATE + end] > 0:
+                moving = True
+    watch.notes[MOVING] = 1.0 if moving else 0.0
+    watch.notes[SEEN] = nan
+    note(watch, d, 1.0, t, 0.0, Demand(missing, where, -1, -1), moving, marks)
+
+
+@compile_kernel
+def settle(watch, t, marks):
+    """Close all joints of a structure at rest; what slid stays where it is."""
+    watch.kept[:, GAP : GAP + 4] = 0.0
+    watch.kept[:, SLIP_RATE : SLIP_RATE + 2] = 0.0
+    note(watch, 0, 1.0, t, 0.0, Demand(0.0, -1, -1, -1), False, marks)
+    watch.notes[MOVING] = 0.0
+
+
+@compile_inline
 def misses(law, rtol, state, ended, e_q, e_w):
     """The error of a step over what is allowed: rtol of q and w, and of a hundredth of phi_cr where they are small."""
     if law.exact:
@@ -456,7 +783,7 @@ def falls(state, ended):
 
 
 @compile_inline
-def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, marks):
+def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watch, marks):
     """Advance a motion from tau towards end, to the first impact or the kinematic limit.
 
     Parameters
@@ -469,8 +796,12 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, marks):
         The motion at tau.
     h, rtol : float
         Step to try, and relative local error.
+    watched : bool
+        Whether to look at the joints.
+    watch : Watch
+        The joints.
     marks : ndarray
-        Takes the peak and the crossing of phi_cr.
+        Takes the peak and the crossing of phi_cr, and what becomes of the joints.
 
     Returns
     -------
@@ -502,6 +833,7 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, marks):
             continue
         if size == h and not law.exact:
             h = size * (5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2))
+        peak = marks[PEAK + d]
         if rises(law, state, ended):
             marks[PEAK + d] = max(marks[PEAK + d], ended.q)
         elif not falls(state, ended):
@@ -509,9 +841,13 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, marks):
             whole = whole and inside == size
             size = inside
             if hit:
+                if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
+                    look(watch, law, ground, t, tau, state, size, ended, peak, marks)
                 return IMPACT, end if whole else min(tau + size, end), ended, h
             if inside < part:
                 behind = nan
+        if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
+            look(watch, law, ground, t, tau, state, size, ended, peak, marks)
         state = State(behind, ended.w, ended.f) if isfinite(behind) else ended
         tau = end if whole else tau + size
         if state.q >= law.q_end:
@@ -596,7 +932,7 @@ def stays(numbers, u):
 
 
 @compile_kernel
-def draw(structure, law, ground, t, flight, rtol, dt, drawn, samples):
+def draw(structure, law, ground, t, flight, rtol, dt, drawn, watch, samples):
     """Fill in the output samples between tau and end by a separate integration.
 
     Sampling therefore never affects the motion. Returns how many samples are done.
@@ -606,7 +942,19 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, samples):
     s = 1.0 - 2.0 * law.d
     while drawn < samples.phi.size and drawn * dt <= t + end:
         _, tau, state, h = fly(
-            structure.forces, structure.corners, law, ground, t, tau, drawn * dt - t, state, h, rtol, nothing
+            structure.forces,
+            structure.corners,
+            law,
+            ground,
+            t,
+            tau,
+            drawn * dt - t,
+            state,
+            h,
+            rtol,
+            False,
+            watch,
+            nothing,
         )
         phi, speed = angle(structure, law.d, state.q)
         samples.phi[drawn], samples.rate[drawn] = s * phi, s * state.w * speed
@@ -615,7 +963,7 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, samples):
 
 
 @compile_kernel
-def follow(structure, motion, start, rtol, most_impacts, samples, marks):
+def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, marks):
     """Follow one motion to its end: at rest, overturned, or still rocking after `most_impacts` impacts.
 
     It begins at rest, with q = `start`. Returns how it ended.
@@ -627,6 +975,11 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
     marks[PEAK : PEAK + 2] = 0.0
     marks[IMPACTS] = 0.0
     marks[ENDED] = 0.0
+    marks[LARGEST] = marks[LONGEST] = 0.0
+    watched = watch.size > 0
+    watch.kept[:] = 0.0
+    watch.notes[:] = 0.0
+    watch.notes[SINCE] = watch.notes[SEEN] = nan
     phi_out[:] = nan
     rate_out[:] = nan
     gravity = numbers[0, GRAVITY]
@@ -639,7 +992,7 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
     s = 1.0 - 2.0 * d
     law = law_of(exact, numbers, d)
     q, w, f = abs(start), 0.0, 0.0
-    known = False  # whether f is q.. at (q, w) now
+    known = fresh = False  # whether f is q.. at (q, w) now; whether it was found anew
     resting = q == 0.0
     marks[PEAK + d] = q
     h = STRIDE / max(numbers[0, P], numbers[1, P]) if exact else dt
@@ -682,6 +1035,10 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
             uneventful = ended.q < law.q_end and (rises(law, state, ended) or falls(state, ended))
             uneventful = uneventful and not passes(corners, law, q, ended.q)
             if uneventful and misses(law, rtol, state, ended, e_q, e_w) <= 1:
+                if watched:
+                    ground = Ground(s * u0, s * ramp, gravity, 0.0)
+                    if watch.notes[FRESH] != 0 or not quiet(watch, law, ground, span, ended.q, ended.w):
+                        look(watch, law, ground, t, 0.0, state, span, ended, marks[PEAK + d], marks)
                 marks[PEAK + d] = max(marks[PEAK + d], ended.q)
                 q, w, f = ended
                 tau = span
@@ -698,6 +1055,13 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
                     g += v0 + grade * (t - j * v_dt)
                     if (j + 1) * v_dt - t < span - COINCIDE * v_dt:
                         end = (j + 1) * v_dt - t
+                    if not linear and g + grade * end <= 0 and not isfinite(marks[PASSED]):
+                        gone = -g / grade if g + grade * tau > 0 else tau
+                        if gone > tau:
+                            end = gone
+                        else:
+                            watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
+                            passed(watch, d, t + tau, q, WEIGHTLESS, -1, marks)
                 else:
                     known = False
             while tau < end:
@@ -722,13 +1086,18 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
                     f = balance(law, q, push) if exact else force(forces, law, q, push, g + grade * tau)
                     if q == 0 and w == 0:  # from rest it lifts, whatever rounding says of the balance
                         f = max(f, 0.0)
-                    known = True
+                    known = fresh = True
                 ground = Ground(s * u0, s * ramp, g, grade)
+                if fresh and watched and not quiet(watch, law, ground, tau, q, w):
+                    watch.notes[FRESH] = 1.0
+                fresh = False
                 began, state, step = tau, State(q, w, f), h
-                event, tau, (q, w, f), h = fly(forces, corners, law, ground, t, tau, end, state, h, rtol, marks)
+                event, tau, (q, w, f), h = fly(
+                    forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watch, marks
+                )
                 if not shaken and drawn * out_dt <= t + tau and drawn < phi_out.size:
                     flight = (began, tau, state, step)
-                    drawn = draw(structure, law, ground, t, flight, rtol, out_dt, drawn, samples)
+                    drawn = draw(structure, law, ground, t, flight, rtol, out_dt, drawn, watch, samples)
                 if event == STUCK:
                     marks[ENDED], marks[SIDE] = t + tau, d
                     return STALLED
@@ -742,6 +1111,9 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
                         impacts[n, 0], impacts[n, 1], impacts[n, 2] = t + tau, s, -w * numbers[d, RATE]
                     marks[IMPACTS] += 1
                     side = d if numbers[d, ONE_SIDED] else 1 - d  # a rebound keeps its direction
+                    if watched and side != d:
+                        watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
+                        strike(watch, side, t + tau, -w * numbers[d, RATE], numbers[d, ETA], marks)
                     w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[side, RATE]  # Eq. 6, on phi.
                     d = side
                     s = 1.0 - 2.0 * d
@@ -751,6 +1123,8 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
                     if w <= numbers[d, REST] * (FAINT if lifted >= 0 else 1.0) or (lifted < 0 and loops > CHATTER):
                         resting, w = True, 0.0
                         marks[ENDED] = t + tau
+                        if watched:
+                            settle(watch, t + tau, marks)
         t += span
         k += 1
         if shaken:
@@ -765,6 +1139,9 @@ def follow(structure, motion, start, rtol, most_impacts, samples, marks):
             if is_certain(structure, d, q, strongest, weight, most_weight):
                 marks[ENDED], marks[SIDE] = t, d
                 return OVERTURNED
+        if brief and q < law.q_cr and isfinite(marks[PASSED]):
+            marks[ENDED], marks[SIDE] = t, d
+            return LEFT
         if marks[IMPACTS] - before > most_impacts or idle > IDLE:
             marks[ENDED], marks[SIDE] = t, d
             return STILL_ROCKING
@@ -789,7 +1166,30 @@ def numbers_of(usual, what):
 
 
 @compile_kernel
-def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
+def watch_of(joints, m, size, slender):
+    """The joints of a structure, none of which has opened."""
+    first, count, rows, cells, rows_at, struck_at, within_at, within_cells = joints.sizes[m]
+    gravity, limit, quick, scales = joints.numbers[m]
+    return Watch(
+        count,
+        joints.contacts[first : first + count],
+        joints.bearing[first : first + count],
+        joints.rows[rows_at : rows_at + cells * 2 * rows * OF_ROW].reshape((cells, 2, rows, OF_ROW)),
+        joints.struck[struck_at : struck_at + 4 * rows].reshape((2, rows, 2)),
+        joints.within[within_at : within_at + within_cells * 10].reshape((within_cells, 2, 5)),
+        gravity,
+        limit,
+        min(LOOK, quick * sqrt(size)),
+        scales != 0,
+        slender,
+        np.empty((count, KEPT)),
+        np.empty(NOTES),
+        np.empty(4 * count, np.int64),
+    )
+
+
+@compile_kernel
+def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks):
     """Follow the histories first to stop of `runs`, one after the other.
 
     Parameters
@@ -806,6 +1206,8 @@ def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
         Relative local error of a step.
     most_impacts : int
         When to give up after the end of the record.
+    brief : bool
+        Whether to leave a motion when nothing is known of it any longer.
     samples : Samples
         Takes the samples and impacts of the last history.
     all_marks : ndarray, shape (n, MARKS)
@@ -840,6 +1242,9 @@ def run(first, stop, runs, deck, rtol, most_impacts, samples, all_marks):
             deck.v_above[v_later],
         )
         marks = all_marks[i]
-        marks[STATUS] = follow(structure, motion, what[START], rtol, most_impacts, samples, marks)
+        watch = watch_of(deck.joints, m, size, what[SLENDER])
+        marks[STATUS] = follow(structure, motion, what[START], rtol, most_impacts, brief, watch, samples, marks)
         for d in range(2):
-            marks[PEAK + d], _ = angle(structure, d, marks[PEAK + d])
+            for peak in (PEAK, PASSED_PEAK, WARNED_PEAK):
+                if isfinite(marks[peak + d]):
+                    marks[peak + d], _ = angle(structure, d, marks[peak + d])

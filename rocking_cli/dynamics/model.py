@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import sqrt
-from typing import Literal
+from math import nan, sqrt
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ from rocking_cli.core import (
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.restitution import why_none
 from rocking_cli.core.statics import Statics
+from rocking_cli.core.uncertainty import Uncertainty
+from rocking_cli.dynamics.joints import Joints, joints_of
 from rocking_cli.dynamics.tables import Table, tabulate
 from rocking_cli.errors import InputError, Problem
 
@@ -34,7 +36,16 @@ ALIKE = 1e-9  # of the largest: tables of two directions that differ by rounding
 # Columns of `numbers`: the kernel's own names, which numba would have to be loaded for.
 LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED = range(12)
 COLUMNS = 12
+KINEMATIC, MEASURED = 0.05, 0.03  # deviation of a restitution that follows from the shape, and of one that is given
+SLENDERNESS = 0.10  # deviation of ln slenderness
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
+
+
+class Scatter(NamedTuple):
+    """Standard deviations of the restitution of a structure, and of the logarithm of its slenderness."""
+
+    restitution: float
+    slenderness: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +77,10 @@ class Model:
         energy; 1 for a symmetric structure.
     corners : ndarray
         See `rocking_cli.dynamics.kernels.Deck`; of no rows where no tie goes slack or comes into play.
+    joints : Joints, optional
+        The joints that its histories are checked against; None if they are not known, or of a linear model.
+    scatter : Scatter
+        How well the structure is known.
     """
 
     name: ModelName
@@ -82,6 +97,8 @@ class Model:
     uplift_error: float = 0.0
     most_eta: tuple[float, float] = (1.0, 1.0)
     corners: Integers = field(default_factory=lambda: np.zeros((0, 2), np.int64))
+    joints: Joints | None = None
+    scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC, SLENDERNESS))
 
     @property
     def p(self) -> float:
@@ -102,6 +119,17 @@ class Model:
     def eta(self) -> tuple[float, float]:
         """Restitution of impacts that end motion in the positive and in the negative direction."""
         return float(self.numbers[0, ETA]), float(self.numbers[1, ETA])
+
+    @property
+    def weight_share(self) -> float:
+        """The share of lambda that is due to the weight and not to ties and forces, in the weaker direction."""
+        weaker = self.numbers[int(np.argmin(self.numbers[:, LAMBDA]))]
+        return float(1 - weaker[HELD] / weaker[LAMBDA])
+
+    @property
+    def reach(self) -> float:
+        """The displacement that openings of joints are over [m]; NaN if its joints are not known."""
+        return self.joints.reach if self.joints is not None else nan
 
     @property
     def is_linear(self) -> bool:
@@ -173,10 +201,21 @@ def build(
         model = linear_model(label, name, (equivalence.positive, equivalence.negative), mechanism.gravity)
         if mechanism.attached:
             model = _with_held(model, mechanism, (equivalence.positive, equivalence.negative))
+    model = replace(model, scatter=_scatter(mechanism))
     if not mechanism.rocks_both_ways:
         return _one_sided(model, mechanism.directions[0])
     most_eta = mechanism.greatest_restitution(Direction.POSITIVE), mechanism.greatest_restitution(Direction.NEGATIVE)
     return replace(model, most_eta=most_eta)
+
+
+def _scatter(mechanism: Mechanism) -> Scatter:
+    """How well a structure is known: by its file, else as tests of such bodies show."""
+    given = mechanism.uncertainty or Uncertainty()
+    usual = KINEMATIC if mechanism.restitution_is_kinematic else MEASURED
+    return Scatter(
+        usual if given.restitution is None else given.restitution,
+        SLENDERNESS if given.slenderness is None else given.slenderness,
+    )
 
 
 def _one_sided(model: Model, direction: Direction) -> Model:
@@ -211,6 +250,7 @@ def _nonlinear(label: str, mechanism: Mechanism, statics: tuple[Statics, Statics
     return Model(
         "nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables=tables, held=held,
         corners=corners if corners.any() else corners[:0], ends_at_limit=ends,
+        joints=joints_of(mechanism, statics, tables, max(row[P] for row in numbers)),
     )  # fmt: skip
 
 

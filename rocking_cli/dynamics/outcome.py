@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from math import nan
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from rocking_cli import names
@@ -43,6 +44,18 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         nothing could change any more.
     end_time : float
         When it came to rest for good, or was certain to overturn [s]; NaN if this was not requested.
+    unknown : bool
+        Whether a joint has opened or slid so far, before the motion ended, that what the model says of it from then on
+        is no result: peaks, uplift and impacts are those until then.
+    known_to : float
+        Until when the motion is known [s]; NaN if all of it is.
+    warned : float
+        The first moment at which a joint would not bear [s]; NaN if there is none.
+    lower_bound : float
+        Largest rotation over the critical rotation until `warned`: the structure itself rocks no less. NaN without one.
+    opening : float
+        Largest opening or slip of a joint, over the least displacement of a block at the critical rotation; NaN if the
+        joints are not known, so that nothing was checked.
     """
 
     overturned: Flags
@@ -56,11 +69,16 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     uplift_time: Numbers
     impact_count: Counts
     end_time: Numbers
+    unknown: Flags
+    known_to: Numbers
+    warned: Numbers
+    lower_bound: Numbers
+    opening: Numbers
 
     @property
     def at_rest(self) -> Flags:
         """Whether it came to rest in the end, or never lifted."""
-        left: Any = self.overturned | self.still_rocking | self.failed  # type: ignore[operator]
+        left: Any = self.overturned | self.still_rocking | self.failed | self.unknown  # type: ignore[operator]
         return left ^ True  # type: ignore[no-any-return]
 
     @property
@@ -84,9 +102,15 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     def words(self) -> str:
         """How one motion ended, in the words of `rocking_cli.names`."""
         return names.outcome(
-            uplifts=bool(self.lifted), overturned=bool(self.overturned), still_rocking=bool(self.still_rocking)
+            uplifts=bool(self.lifted),
+            overturned=bool(self.overturned),
+            still_rocking=bool(self.still_rocking),
+            unknown=bool(self.unknown),
         )
 
+
+UNCHECKED: dict[str, Any] = {"unknown": False, "known_to": nan, "warned": nan, "lower_bound": nan, "opening": nan}
+"""The fields of a model that has no joints to be checked, such as an equivalent block."""
 
 OneOutcome: TypeAlias = "Outcome[bool, int, float]"
 """Of one motion."""

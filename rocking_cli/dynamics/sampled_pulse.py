@@ -23,7 +23,7 @@ class SampledHistory:
     per_period : int
         Its samples to a period.
     converged : bool
-        Whether half as many give the same peak ratio to 1e-6 of it, or overturn likewise.
+        Whether half as many give the same peak ratio to 1e-6 of it, overturn likewise, or are of unknown outcome, too.
     """
 
     history: History
@@ -62,6 +62,8 @@ def sampled_history(model: Model, pulse: Pulse, polarity: int = 1) -> SampledHis
 
 
 def _alike(one: History, other: History) -> bool:
+    if one.unknown or other.unknown:
+        return one.unknown and other.unknown
     if one.overturned or other.overturned:
         return (one.fell_to, one.impact_count) == (other.fell_to, other.impact_count)
     return abs(one.peak_ratio - other.peak_ratio) <= WITHIN * other.peak_ratio

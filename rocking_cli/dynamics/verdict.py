@@ -12,6 +12,7 @@ from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade, grade, uplift_in_words
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.holding import NO_JOINTS, joints_in_words
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.names import percent
 
@@ -70,7 +71,7 @@ def agreements(histories: Mapping[ModelName, History]) -> dict[ModelName, Agreem
     histories : mapping of str to History
         Models of one structure under one motion, on the same samples.
     """
-    if "nonlinear" not in histories:
+    if "nonlinear" not in histories or histories["nonlinear"].unknown:
         return {}
     best = histories["nonlinear"]
     return {name: _compare(run, best) for name, run in histories.items() if name != "nonlinear"}
@@ -117,7 +118,7 @@ def _difference(run: History, best: History) -> float:
 
 def disagree(histories: Mapping[ModelName, History]) -> bool:
     """Whether models that are fit for the structure differ in whether it overturns."""
-    fit = [run for run in histories.values() if grade(run.uplift_error) is not Grade.DISREGARD]
+    fit = [run for run in histories.values() if grade(run.uplift_error) is not Grade.DISREGARD and not run.unknown]
     return len({run.overturned for run in fit}) > 1
 
 
@@ -138,10 +139,15 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
     run = histories[best]
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
     said = [f"{by or 'The'} structure {_ends(run)}."]
-    said += bearing(histories, {name: name for name in histories})
+    if run.unknown or (best == "nonlinear" and run.check is not None and run.check.count):
+        said.append(joints_in_words(run))
+    if run.unknown and len(histories) > 1:
+        said.append(NO_JOINTS)
+    else:
+        said += bearing(histories, {name: name for name in histories})
     if disagree(histories):
         said.append("Do not trust any of them alone: run weaker and stronger motions as well.")
-    elif not run.overturned and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
+    elif not run.overturned and not run.unknown and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
         said.append("This is close to overturning: run weaker and stronger motions before relying on it.")
     still = [name for name, each in histories.items() if each.still_rocking]
     if still:
@@ -153,6 +159,8 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
 
 def _ends(run: History) -> str:
     """What becomes of the structure, after "it" or its name."""
+    if run.unknown:
+        return f"has an {names.UNKNOWN} outcome"
     if run.overturned:
         return f"{names.OVERTURNS} {SENSE[Direction(run.fell_to)]}"
     if not run.peak_ratio:
@@ -247,6 +255,13 @@ def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None
     model: ModelName = "nonlinear" if "nonlinear" in runs[1] else next(iter(runs[1]))
     by_model = f"by the {model} model"
     one, other = runs[1][model], runs[-1][model]
+    falls = next((sign for sign, run in ((1, one), (-1, other)) if run.overturned), None)
+    if falls is not None and runs[-falls][model].unknown:
+        said = f"with the motion {WAYS[falls]} it overturns, {WAYS[-falls]} its outcome is {names.UNKNOWN}"
+        return falls, f"Polarity {falls} governs {by_model}: {said}."
+    if one.unknown or other.unknown:
+        doubtful = " and ".join(WAYS[sign] for sign, run in ((1, one), (-1, other)) if run.unknown)
+        return None, f"Which polarity governs is not known: the outcome under the motion {doubtful} is {names.UNKNOWN}."
     if one.overturned != other.overturned:
         worse = 1 if one.overturned else -1
         said = f"with the motion {WAYS[worse]} it overturns, {WAYS[-worse]} it does not"

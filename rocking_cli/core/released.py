@@ -1,0 +1,323 @@
+"""What each joint bears while a mechanism rocks, and how fast it would open or slide if it were released alone.
+
+With the motion given, the forces at the contacts follow from the equations of motion of every piece. Where a normal
+force is negative, or a shear force beyond friction, the contact would not bear. Released alone, all others holding, it
+opens with the acceleration -c N, c = 1/(A^-1)_ii with A = J M^-1 J^T and J the velocities at the contacts over those of
+the pieces. Forces are affine in u_g'', phi.^2 and v_g'', so that tables over the rotation hold all of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking_cli.core.attached import PointMass, Spot
+from rocking_cli.core.contacts import Contact
+from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion, rotation
+from rocking_cli.core.mechanism import Mechanism
+
+SINGULAR = 1e-9  # least pivot, about, of rates over the size of the whole: with less, forces are not determined
+MASSLESS = 1e-12  # of the largest mass: what a piece without any is taken to have
+ONE, PUSH, RATE, WEIGHT = range(4)  # what forces are affine in: 1, u_g'', phi.^2 and v_g''
+
+
+@dataclass(frozen=True, eq=False)
+class Released:
+    """The rows of all contacts of one direction over rotations.
+
+    Parameters
+    ----------
+    contacts : sequence of Contact
+        Those that bear, guides among them.
+    rows : sequence of (tuple of int, int or None)
+        Of each contact: the rows of its normal forces, one for each of its points, and that of its shear force; a guide
+        has none of either.
+    force : ndarray, shape (n, rows, 4)
+        Force of each row [N]: the factors of 1, u_g'', phi.^2 and v_g''.
+    compliance : ndarray, shape (n, rows)
+        Acceleration at a row over the force that is missing when it is released alone [1/kg].
+    """
+
+    contacts: Sequence[Contact]
+    rows: Sequence[tuple[tuple[int, ...], int | None]]
+    force: Reals
+    compliance: Reals
+
+
+class Undetermined(Exception):
+    """Statics alone does not say what the joints bear.
+
+    Parameters
+    ----------
+    redundant : bool
+        Whether there are too many joints, and not too few.
+    """
+
+    def __init__(self, redundant: bool) -> None:
+        super().__init__()
+        self.redundant = redundant
+
+
+def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released | None:
+    """Tabulate what the contacts of a direction bear.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any plugin, with loads and ties.
+    direction : Direction
+        Direction of rocking.
+    phi : ndarray, shape (n,)
+        Rotations inside the direction [rad], >= 0, below the kinematic limit.
+
+    Returns
+    -------
+    Released or None
+        None if the mechanism does not name its contacts.
+
+    Raises
+    ------
+    Undetermined
+        If the forces do not follow from the motion.
+    """
+    contacts = mechanism.contacts(direction)
+    if not contacts:  # it names no joints
+        return None
+    pieces = Pieces(mechanism, direction, np.asarray(phi, np.float64))
+    jacobian, rows = pieces.rates(contacts)
+    force, compliance = _solved(jacobian, pieces, pieces.demands())
+    return Released(contacts, rows, force, compliance)
+
+
+def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
+    """Tabulate the impulses at the contacts of the direction that begins with an impact.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any plugin, with loads and ties, that rocks both ways and names its contacts.
+    ended : Direction
+        The direction that the impact ends.
+
+    Returns
+    -------
+    ndarray, shape (rows, 2), or None
+        Impulse of each row of `released` in the other direction over the rate before the impact [N s per rad/s]: a
+        constant, and the factor of the restitution. None if the structure is thrown back by a wall.
+
+    Raises
+    ------
+    Undetermined
+        If the impulses do not follow from the motion.
+    """
+    if not mechanism.rocks_both_ways:
+        return None
+    contacts = mechanism.contacts(ended.opposite)
+    if not contacts:  # it names no joints
+        return None
+    rest = np.zeros(1)
+    old, new = (Pieces(mechanism, direction, rest) for direction in (ended, ended.opposite))
+    jacobian, _ = new.rates(contacts)
+    # The velocities are -t_s before and eta t_-s after, t the derivatives by phi.
+    jump = np.stack([old.momentum(old.dq), new.momentum(new.dq)], axis=-1)
+    return np.asarray(_solved(jacobian, new, jump)[0][0])
+
+
+def _solved(jacobian: Reals, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
+    """Forces that balance demands, shape (n, rows, k), and compliances, shape (n, rows).
+
+    The inverse of the rates, with the momentum of the rocking motion as one row more, holds in column i how all pieces
+    move if row i alone is released: xi. Then the force of that row is xi.b, b the demand, and (A^-1)_ii = xi.M xi.
+    """
+    rows, unknown = jacobian.shape[1:]
+    if rows != unknown - 1:  # one way to move is left
+        raise Undetermined(rows >= unknown)
+    # Each coordinate in a length of the whole, or the rotations of small pieces would count for nothing.
+    rocking = pieces.momentum(pieces.dq) / pieces.scale
+    rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
+    square = np.concatenate([jacobian / pieces.scale, rocking[:, None, :]], axis=1)
+    try:
+        inverse = np.linalg.inv(square)
+    except np.linalg.LinAlgError:
+        raise Undetermined(redundant=False) from None
+    if np.abs(inverse).max() > 1 / SINGULAR:
+        raise Undetermined(redundant=False)
+    released = inverse[:, :, :-1] / pieces.scale[:, None]
+    moving = pieces.momenta(released)
+    return released.swapaxes(1, 2) @ demand, 1 / np.einsum("nir,nir->nr", released, moving)
+
+
+class Pieces:
+    """The pieces of a mechanism at some rotations: coordinates x, y and rotation of each, one after the other.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any plugin, with loads and ties.
+    direction : Direction
+        Direction of rocking.
+    phi : ndarray, shape (n,)
+        Rotations [rad].
+    """
+
+    def __init__(self, mechanism: Mechanism, direction: Direction, phi: Reals) -> None:
+        self._mechanism, self._direction, self.phi = mechanism, direction, phi
+        motions = {
+            body.name: motion for body, motion in zip(mechanism.bodies(), mechanism.motion(phi, direction), strict=True)
+        }
+        self._parts = mechanism.pieces(direction)
+        self._still = rotation(phi, 0j, 0.0)
+        self._motions: Mapping[str, RigidMotion] = {
+            each.body.name: self._still if each.of is None else motions[each.of] for each in self._parts
+        }
+        self._column = {each.body.name: 3 * k for k, each in enumerate(self._parts)}
+        self._centres = {
+            each.body.name: self._motions[each.body.name].carry(each.body.centroid) for each in self._parts
+        }
+        self.dq, self.ddq = (self._coordinates(k) for k in (1, 2))
+        self._masses = [thing for thing in mechanism.attached if isinstance(thing, PointMass)]
+        self.mass = self._mass()
+
+    @property
+    def scale(self) -> Reals:
+        """Of each coordinate: 1 of a displacement, a length of the whole of a rotation, shape (1, 1, 3 pieces)."""
+        middles = np.array([each.body.centroid for each in self._parts])
+        size = max(float(np.abs(middles - middles.mean()).max()), *(
+            float(np.sqrt(each.body.inertia / each.body.mass)) if each.body.mass > 0 else 0.0 for each in self._parts
+        )) or 1.0  # fmt: skip
+        return np.tile([1.0, 1.0, size], len(self._parts))
+
+    def _coordinates(self, order: int) -> Reals:
+        found = np.zeros((self.phi.size, 3 * len(self._parts)))
+        for name, k in self._column.items():
+            at, motion = self._centres[name][order], self._motions[name]
+            found[:, k], found[:, k + 1] = at.real, at.imag
+            found[:, k + 2] = motion.dpsi if order == 1 else motion.ddpsi
+        return found
+
+    def _carried(self, name: str | None, at: complex) -> Points:
+        return (self._motions[name] if name is not None else self._still).carry(at)[0]
+
+    def _piece(self, spot: Spot) -> str:
+        return self._mechanism.piece_at(spot.body or "", spot.at, self._direction)
+
+    def _spread(self, spot: Spot, way: Points) -> Reals:
+        """Velocity of a point along a unit vector over the coordinates, shape (n, 3 pieces)."""
+        return self._velocity(self._piece(spot), self._carried(self._piece(spot), spot.at), way)
+
+    def _velocity(self, name: str, at: Points, way: Points) -> Reals:
+        found = np.zeros((self.phi.size, 3 * len(self._parts)))
+        k, arm = self._column[name], at - self._centres[name][0]
+        found[:, k], found[:, k + 1], found[:, k + 2] = way.real, way.imag, (arm.conjugate() * way).imag
+        return found
+
+    def _mass(self) -> Reals:
+        """The mass matrix of each piece, with the loads on it, shape (n, pieces, 3, 3)."""
+        whole = np.array([np.diag([each.body.mass, each.body.mass, each.body.inertia]) for each in self._parts])
+        matrix = np.tile(whole, (self.phi.size, 1, 1, 1))
+        for thing in self._masses:
+            k = self._column[self._piece(thing.spot)]
+            for share, way in ((thing.horizontal, 1 + 0j), (thing.vertical, 1j)):
+                rate = self._spread(thing.spot, np.full(self.phi.size, way))[:, k : k + 3]
+                matrix[:, k // 3] += thing.mass * share * rate[:, :, None] * rate[:, None, :]
+        # A beam without mass moves all the same: what it weighs is nothing beside the rest.
+        least = MASSLESS * np.abs(matrix).max()
+        light = np.diagonal(matrix, axis1=2, axis2=3) < least
+        return np.asarray(matrix + least * np.eye(3) * light[..., None, :])
+
+    def momenta(self, rates: Reals) -> Reals:
+        """Momenta of all pieces at each of several rates, both of shape (n, 3 pieces, k)."""
+        each = rates.reshape(len(rates), len(self._parts), 3, -1)
+        return np.asarray((self.mass @ each).reshape(rates.shape))
+
+    def momentum(self, rates: Reals) -> Reals:
+        """Momentum of all pieces, shape (n, 3 pieces)."""
+        return np.asarray(self.momenta(rates[..., None])[..., 0])
+
+    def demands(self) -> Reals:
+        """What the contacts must exert on the coordinates of each piece: the factors of 1, u_g'', phi.^2 and v_g''."""
+        mechanism, direction, n = self._mechanism, self._direction, self.phi.size
+        at, g = mechanism.coefficients(self.phi, direction), mechanism.gravity
+        # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]
+        turning = -np.stack([g * at.G + at.Q, int(direction) * at.B, at.J, at.G], axis=-1) / at.I[:, None]
+        found = np.zeros((n, 3 * len(self._parts), 4))
+        along = self.momentum(self.dq)
+        found += along[..., None] * turning[:, None, :]
+        found[..., RATE] += self.momentum(self.ddq)
+        for each in self._parts:
+            k = self._column[each.body.name]
+            found[:, k, PUSH] += each.body.mass
+            found[:, k + 1, ONE] += each.body.mass * g
+            found[:, k + 1, WEIGHT] += each.body.mass
+        for thing in self._masses:
+            across, up = (self._spread(thing.spot, np.full(n, way)) for way in (1 + 0j, 1j))
+            found[..., PUSH] += thing.mass * thing.horizontal * across
+            found[..., ONE] += thing.mass * thing.weight * g * up
+            found[..., WEIGHT] += thing.mass * thing.weight * up
+            # The point of a body has an acceleration of its own beside those of the coordinates: -psi.^2 times its arm.
+            name = self._piece(thing.spot)
+            arm = self._carried(name, thing.spot.at) - self._centres[name][0]
+            inwards = -(self._motions[name].dpsi ** 2) * arm
+            moved = thing.horizontal * inwards.real[:, None] * across + thing.vertical * inwards.imag[:, None] * up
+            found[..., RATE] += thing.mass * moved
+
+        def follow(spot: Spot) -> object:
+            return self._path(spot)
+
+        for other in mechanism.attached:
+            for push in other.forces(direction, follow):  # type: ignore[arg-type]
+                if push.spot.body is not None:
+                    size = np.abs(push.force)
+                    way = np.where(size > 0, push.force, 1.0) / np.where(size > 0, size, 1.0)
+                    found[..., ONE] -= size[:, None] * self._spread(push.spot, way.astype(np.complex128))
+        return found
+
+    def _path(self, spot: Spot) -> object:
+        from rocking_cli.core.attached import Path
+
+        return Path(*(self._motions[self._piece(spot)] if spot.body is not None else self._still).carry(spot.at))
+
+    def rates(self, contacts: Sequence[Contact]) -> tuple[Reals, list[tuple[tuple[int, ...], int | None]]]:
+        """The velocities at contacts over those of the pieces, shape (n, rows, 3 pieces), and the rows of each."""
+        found: list[Reals] = []
+        rows: list[tuple[tuple[int, ...], int | None]] = []
+        for contact in contacts:
+            turned = self._motions[contact.face].psi if contact.face is not None else np.zeros(self.phi.size)
+            normal = contact.normal * np.exp(1j * turned)
+            if contact.held is not None:
+                found += self._of_held(contact, normal)
+                rows.append(((), None))
+                continue
+            points = [self._bears_at(contact, at, normal) for at in contact.points]
+            first = len(found)
+            found += [self._between(contact, at, normal) for at in points]
+            middle = np.mean(points, axis=0)
+            found.append(self._between(contact, middle, -1j * normal))
+            rows.append((tuple(range(first, first + len(points))), len(found) - 1))
+        return np.stack(found, axis=1) if found else np.zeros((self.phi.size, 0, 3 * len(self._parts))), rows
+
+    def _of_held(self, contact: Contact, normal: Points) -> list[Reals]:
+        (at,) = (self._carried(contact.pieces[1], point) for point in contact.points[:1])
+        if contact.held == "slide":
+            return [self._between(contact, at, normal)]
+        turns = np.zeros((self.phi.size, 3 * len(self._parts)))
+        for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True):
+            if name is not None and (sign > 0 or contact.held == "fixed"):
+                turns[:, self._column[name] + 2] = sign
+        if contact.held == "level":
+            return [turns]
+        return [self._between(contact, at, normal), self._between(contact, at, -1j * normal), turns]
+
+    def _bears_at(self, contact: Contact, at: complex, normal: Points) -> Points:
+        where = self._carried(contact.pieces[1] if contact.pieces[1] is not None else contact.pieces[0], at)
+        return where - contact.roll * normal
+
+    def _between(self, contact: Contact, at: Points, way: Points) -> Reals:
+        """The velocity of the second piece over the first at a point, along a way."""
+        found = np.zeros((self.phi.size, 3 * len(self._parts)))
+        for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True):
+            if name is not None:
+                found += sign * self._velocity(name, at, way)
+        return found

@@ -1,0 +1,95 @@
+"""How far the joints of a structure let one history stand, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import inf, isfinite, isnan
+
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.names import percent
+
+NOT_CHECKED = "The joints of this mechanism are not checked: it does not say which of them stay closed."
+NO_JOINTS = "The equivalent blocks have no joints, and cannot tell the outcome, whatever they give."
+NEXT = (
+    "Next: `rocking margin` shows up to which scale factor the outcome is known. For stronger motions, describe the "
+    "structure as a linkage that hinges at the joint that opens, or assume that it overturns."
+)
+
+
+def unchecked(name: str = "") -> str:
+    """Return the caution that the joints of a structure are not checked; `name` is for one of several."""
+    of = f"{name}: " if name else ""
+    return f"Caution: {of}{NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
+
+
+def joints_in_words(history: History) -> str:
+    """Say whether the joints hold in a nonlinear history; empty if there is no joint that could open.
+
+    Parameters
+    ----------
+    history : History
+        Of the nonlinear model.
+
+    Returns
+    -------
+    str
+        A few sentences: all joints bear; or one opens by so little that the result stands; or until when it is known,
+        why, and what to do next.
+    """
+    check = history.check
+    if history.unknown:
+        return f"{_until(history)} {NEXT}"
+    if check is None:
+        return NOT_CHECKED
+    if not check.count:
+        return ""
+    if isnan(check.warned):
+        return "All joints bear throughout the motion."
+    if not check.largest:
+        where = f"the joint between {check.warned_joint}"
+        return f"All joints bear throughout, except {where} for an instant at {check.warned:.4g} s."
+    return (
+        f"The joint between {check.largest_joint} opens or slides by up to {_small(check.largest, 'm')} "
+        f"({percent(check.largest / check.reach)} of D_cr; the limit is {percent(check.limit)}), for at most "
+        f"{_small(check.longest, 's')} at a time: less than the limit, so the outcome and the peak remain valid."
+    )
+
+
+def known_until(histories: Mapping[ModelName, History]) -> float:
+    """Return until when histories of one structure are results [s]; infinite if the outcome is known.
+
+    After that those of the equivalent blocks are none either, as they have no joints.
+    """
+    return min((run.known_to for run in histories.values() if run.unknown), default=inf)
+
+
+def why_unknown(history: History) -> str | None:
+    """Say why a history is known no further than `known_to`; None if all of it is known."""
+    check = history.check
+    if not history.unknown:
+        return None
+    if check is None or check.reason in (None, "weightless"):
+        return "nothing holds the structure down, as v_g'' comes down to -g"
+    if check.reason == "crushes":
+        return f"the joint between {check.joint} crushes: its normal force exceeds its strength"
+    does = "has slid by" if check.reason == "slides" else "has opened by"
+    limit = f"{percent(check.limit)} of D_cr = {check.reach:.3g} m, the least displacement of a block at phi_cr"
+    return f"the joint between {check.joint} {does} {_small(check.limit * check.reach, 'm')} ({limit})"
+
+
+def _until(history: History) -> str:
+    """Until when it is known, and why no further; with the lower bound of the peak."""
+    said = f"The motion is known up to {history.known_to:.4g} s only: then {why_unknown(history)}."
+    over = "its kinematic limit" if any(history.ends_at_limit) else "its critical rotation"
+    if not history.peak_ratio:
+        return f"{said} Until then it does not uplift."
+    said += f" Until then the model rocks to {history.peak_ratio:.4g} of {over}"
+    if isfinite(history.warned) and history.lower_bound < history.peak_ratio:
+        first = f"{history.lower_bound:.4g}, the peak before the first joint opens or slides at {history.warned:.4g} s"
+        return f"{said}, with its joints kept closed. The real peak is certain only to be at least {first}."
+    return f"{said}, which is a lower bound of the real peak."
+
+
+def _small(value: float, unit: str) -> str:
+    return f"{value:.3g} {unit}" if value >= 0.5 else f"{1000 * value:.3g} m{unit}"

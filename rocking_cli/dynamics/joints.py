@@ -1,0 +1,404 @@
+"""The joints of a structure, laid out for the kernel that checks histories against them.
+
+The forces of `rocking_cli.core.released` become cubics over q, the coordinate of the kernel. Most moments of a history
+are far from any limit: for them two straight lines over q.^2 say between which ground accelerations all joints bear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.released import ONE, PUSH, RATE, Released, Undetermined, impulses, released
+from rocking_cli.core.statics import Statics
+from rocking_cli.core.strength import Strength
+from rocking_cli.dynamics.modes import modes
+from rocking_cli.dynamics.tables import Table
+
+Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
+TO_CRITICAL = 32  # cells of the forces from rest to phi_cr
+COARSE = 40  # cells where joints are redundant, whose modes take longer to find
+MOST_CELLS = 128
+FINER = 4  # cells of the certain bounds in one of the forces
+TENSION = 1e-9  # of the weight: a force that is missing by rounding alone
+QUICK = 3e-3  # of 1/p: the longest step in which openings of a small structure are advanced
+ANY = 1e6  # m/s2: more than any ground acceleration
+SAFE = 0.01  # of the width of the certain bounds, which the cubics may leave between two of their nodes
+
+
+@dataclass(frozen=True, eq=False)
+class Joints:
+    """The joints of a structure.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        What messages call each.
+    contacts : ndarray of int, shape (joints, 2, 4)
+        Rows of the two normal forces and of the shear force in either direction, -1 where there is none, and whether
+        the joint bears at other ends in the other direction.
+    bearing : ndarray, shape (joints, 2)
+        Coefficient of friction, NaN if none is given, and strength [N], infinite if none is given.
+    rows : ndarray, shape (cells, 2, rows, 20)
+        Cubics over q of the factors of 1, u_g'', q.^2 and v_g'' in each force [N], and of its compliance [1/kg].
+    struck : ndarray, shape (2, rows, 2)
+        Impulses in the direction that begins over the rate before [N s per rad/s]: a constant, and the factor of eta.
+    within : ndarray, shape (cells, 2, 5)
+        Where all joints bear for certain: u_g'' above the line of the first two over q.^2 and below that of the next
+        two, up to the q.^2 that is the last.
+    reach : float
+        D_cr: the largest displacement of a block's centroid from rest to phi_cr, of both directions the smaller [m].
+    limit : float
+        The largest opening with which a history is known, over `reach`.
+    scales : bool
+        Whether all forces scale with g.
+    step : float
+        Longest time between the moments at which openings are advanced [s], if the kernel has no shorter one.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    redundant : bool
+        Whether statics alone does not say what each joint bears: then rows are modes in which several let go.
+    """
+
+    labels: Sequence[str]
+    contacts: Integers
+    bearing: Reals
+    rows: Reals
+    struck: Reals
+    within: Reals
+    reach: float
+    limit: float
+    scales: bool
+    step: float
+    gravity: float
+    redundant: bool = False
+
+
+@dataclass(frozen=True)
+class JointCheck:
+    """What the joints of a structure do in one history, each released alone where it would not bear.
+
+    Parameters
+    ----------
+    limit : float
+        The opening from which nothing is known any longer, over `reach`.
+    reach : float
+        The least displacement of a block at the critical rotation, D_cr [m].
+    passed : float
+        When the opening passes the limit, a contact crushes or nothing holds the structure down [s]; NaN: never.
+    reason : {"opens", "slides", "crushes", "weightless"} or None
+        Which of these.
+    joint : str
+        Where; empty if nowhere.
+    warned : float
+        The first moment at which a joint would not bear [s]; NaN: never.
+    warned_joint : str
+        Which.
+    largest : float
+        Largest opening or slip of a joint [m], over the whole history.
+    largest_joint, largest_time : str and float
+        Which joint, and when [s]; empty and NaN if none opens.
+    longest : float
+        The longest time for which a joint is open, or slides [s].
+    parted : float or None
+        When first a joint that stays closed would open [s]; NaN: never. None if no joint stays closed.
+    parted_joint : str
+        Which.
+    count : int
+        How many joints are checked; 0 if none could open.
+    """
+
+    limit: float
+    reach: float
+    passed: float
+    reason: str | None
+    joint: str
+    warned: float
+    warned_joint: str
+    largest: float
+    largest_joint: str
+    largest_time: float
+    longest: float
+    parted: float | None
+    parted_joint: str
+    count: int
+
+
+REASONS = ("opens", "slides", "crushes", "weightless")  # in the order of the kernel
+
+
+def check_of(joints: Joints | None, marks: Reals) -> JointCheck | None:
+    """Return what the kernel says of the joints in one history; None if they are not known."""
+    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
+
+    if joints is None:
+        return None
+
+    def label(column: int) -> str:
+        at = marks[column]
+        return joints.labels[int(at)] if np.isfinite(at) and at >= 0 else ""
+
+    reason = marks[kernels.REASON]
+    opens, where = (
+        (kernels.WARNED, kernels.WARNED_WHERE) if joints.redundant else (kernels.PARTED, kernels.PARTED_WHERE)
+    )
+    stays_closed = joints.redundant or (joints.contacts[:, :, kernels.OTHER] >= 0).any()
+    return JointCheck(
+        limit=joints.limit,
+        reach=joints.reach,
+        passed=float(marks[kernels.PASSED]),
+        reason=REASONS[int(reason)] if np.isfinite(reason) else None,
+        joint=label(kernels.WHERE),
+        warned=float(marks[kernels.WARNED]),
+        warned_joint=label(kernels.WARNED_WHERE),
+        largest=float(marks[kernels.LARGEST]),
+        largest_joint=label(kernels.LARGEST_WHERE),
+        largest_time=float(marks[kernels.LARGEST_AT]),
+        longest=float(marks[kernels.LONGEST]),
+        parted=float(marks[opens]) if stays_closed else None,
+        parted_joint=label(where),
+        count=len(joints.labels),
+    )
+
+
+def joints_of(mechanism: Mechanism, statics: Sequence[Statics], tables: Sequence[Table], p: float) -> Joints | None:
+    """Lay out the joints of a structure for the kernel.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    statics : sequence of Statics
+        Of both of its sides.
+    tables : sequence of Table
+        Of both of its sides.
+    p : float
+        Frequency parameter [rad/s].
+
+    Returns
+    -------
+    Joints or None
+        None if its joints are not known, so that no history of it is checked.
+    """
+    if len(mechanism.bodies()) == 1 and mechanism.friction is None and mechanism.strength is None:
+        return _without(mechanism, statics)
+    cells = max(TO_CRITICAL * table.end / table.q(side.reference) for table, side in zip(tables, statics, strict=True))
+    cells = int(min(np.ceil(cells), MOST_CELLS))
+    sides = list(zip(mechanism.sides, tables, strict=True))
+    redundant = False
+    try:
+        answers = [_determined(mechanism, direction, _at(table, cells)) for direction, table in sides]
+    except Undetermined as error:
+        if not error.redundant:
+            return None
+        redundant, cells = True, min(cells, COARSE)
+        answers = [
+            modes(mechanism, direction, _at(table, cells), side.reference)
+            for (direction, table), side in zip(sides, statics, strict=True)
+        ]
+    found = [each for each, _ in answers if each is not None]
+    if len(found) < len(sides):
+        return None
+    labels = list(dict.fromkeys(each.label for one in found for each in one.contacts if each.held is None))
+    contacts, bearing = _contacts(mechanism, found, labels)
+    most = max(one.force.shape[1] for one in found)
+    weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())
+    rows = np.zeros((cells, 2, most, 20))
+    within = np.zeros((FINER * cells, 2, 5))
+    struck = np.zeros((2, most, 2))
+    for d, ((direction, table), one) in enumerate(zip(sides, found, strict=True)):
+        force = one.force.copy()
+        force[:, [k for normal, _ in one.rows for k in normal], ONE] += TENSION * weight
+        inertia = mechanism.coefficients(_at(table, cells), direction).I
+        force[:, :, RATE] /= inertia[:, None]  # phi.^2 = q.^2/I
+        whole = np.concatenate([force, one.compliance[..., None]], axis=2)
+        cubics = _lines(whole) if redundant else _cubics(whole)
+        count = force.shape[1]
+        rows[:, d, :count] = cubics.reshape(cells, count, 20)
+        within[:, d] = _within(cubics, contacts[:, d], bearing)
+        if (hit := answers[d][1]) is not None:
+            struck[d, :count] = hit
+    return Joints(
+        labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), mechanism.opening,
+        not any(table.held.size for table in tables), QUICK / p, mechanism.gravity,
+        redundant,
+    )  # fmt: skip
+
+
+def _determined(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple[Released | None, Reals | None]:
+    """The rows of a direction, and their impulses. Raises `Undetermined`."""
+    return released(mechanism, direction, phi), impulses(mechanism, direction.opposite)
+
+
+def _without(mechanism: Mechanism, statics: Sequence[Statics]) -> Joints | None:
+    """The joints of a single body that never slides nor crushes: nothing opens under it before it overturns."""
+    if not all(mechanism.contacts(direction) for direction in mechanism.directions):
+        return None
+    return Joints(
+        [], np.zeros((0, 2, 4), np.int64), np.zeros((0, 2)), np.zeros((0, 2, 0, 20)), np.zeros((2, 0, 2)),
+        np.zeros((0, 2, 5)), _reach(mechanism, statics), mechanism.opening, True, 1.0, mechanism.gravity,
+    )  # fmt: skip
+
+
+def _at(table: Table, cells: int) -> Reals:
+    """Rotations at even steps of q [rad]."""
+    place = np.linspace(0.0, len(table.angles), cells + 1)
+    k = np.minimum(place.astype(np.intp), len(table.angles) - 1)
+    x = place - k
+    a = table.angles[k]
+    return np.asarray(a[:, 0] + x * (a[:, 1] + x * (a[:, 2] + x * a[:, 3])))
+
+
+def _contacts(mechanism: Mechanism, found: Sequence[Released], labels: Sequence[str]) -> tuple[Integers, Reals]:
+    contacts = np.full((len(labels), 2, 4), -1, np.int64)
+    contacts[:, :, 3] = 0
+    bearing = np.tile([np.nan, np.inf], (len(labels), 1))
+    points: dict[str, list[tuple[complex, ...]]] = {label: [(), ()] for label in labels}
+    strength, depth, alike = mechanism.strength, mechanism.depth, mechanism.alike()
+    for d, one in enumerate(found):
+        for contact, (normal, shear) in zip(one.contacts, one.rows, strict=True):
+            if contact.held is not None:
+                continue
+            j = labels.index(contact.label)
+            contacts[j, d, : len(normal)] = normal
+            contacts[j, d, 2] = -1 if shear is None else shear
+            points[contact.label][d] = contact.points
+            bearing[j, 0] = np.nan if contact.friction is None else contact.friction
+            if isinstance(strength, Strength) and depth is not None:
+                bearing[j, 1] = strength.force(depth) * max(alike.get(name or "", 1) for name in contact.pieces)
+    for j, label in enumerate(labels):
+        contacts[j, :, 3] = points[label][0] != points[label][1]
+    return contacts, bearing
+
+
+def _cubics(values: Reals) -> Reals:
+    """Cubics through values at even nodes, shape (cells, rows, columns, 4): in each cell that through the four next."""
+    n = len(values)
+    found = np.empty((n - 1, *values.shape[1:], 4))
+    first = np.clip(np.arange(n - 1) - 1, 0, n - 4)
+    for start in (0, 1, 2):  # where in its four nodes a cell lies
+        mine = np.flatnonzero(np.arange(n - 1) - first == start)
+        nodes = np.arange(4.0) - start
+        inverse = np.linalg.inv(np.vander(nodes, 4, increasing=True))
+        found[mine] = np.einsum("pk,ckrv->crvp", inverse, np.stack([values[first[mine] + k] for k in range(4)], axis=1))
+    return found
+
+
+def _lines(values: Reals) -> Reals:
+    """Straight lines between values at even nodes, as `_cubics`: a mode may begin or end at a rotation."""
+    found = np.zeros((len(values) - 1, *values.shape[1:], 4))
+    found[..., 0], found[..., 1] = values[:-1], np.diff(values, axis=0)
+    return found
+
+
+def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
+    """Where all joints of a direction bear for certain, in cells FINER times as many."""
+    fine = np.arange(FINER) / FINER
+    powers = np.stack([np.append(fine, 1.0) ** k for k in range(4)], axis=-1)
+    at = np.einsum("crvp,xp->cxrv", cubics, powers)
+    nodes = np.concatenate([at[:, :-1].reshape(-1, *at.shape[2:]), at[-1:, -1]])
+    planes = []  # rows of a + b u + c q.^2 >= 0
+    for (one, other, shear, _), (friction, strength) in zip(contacts, bearing, strict=True):
+        normals = [nodes[:, k, :3] for k in (one, other) if k >= 0]
+        planes += normals
+        if np.isfinite(strength):
+            planes += [np.array([strength, 0.0, 0.0]) - normal for normal in normals]
+        if np.isfinite(friction) and shear >= 0:
+            total = friction * np.sum(normals, axis=0)
+            planes += [total - nodes[:, shear, :3], total + nodes[:, shear, :3]]
+    found = np.zeros((len(nodes) - 1, 5))
+    if not planes:  # nothing to check
+        found[:] = -np.inf, 0.0, np.inf, 0.0, np.inf
+        return found
+    plane = np.stack(planes, axis=1)
+    fast = _fastest(plane)
+    low, high = _range(plane, np.zeros(len(nodes)))
+    low_fast, high_fast = _range(plane, fast)
+    room = SAFE * np.minimum(high - low, 1e3)
+    low, high, low_fast, high_fast = low + room, high - room, low_fast + room, high_fast - room
+    most = np.minimum(fast[:-1], fast[1:])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rise, fall = (low_fast - low) / fast, (high_fast - high) / fast
+    rise, fall = (np.where(np.isfinite(each), each, 0.0) for each in (rise, fall))
+    found[:, 4] = most
+    for column, base, slope, worse in ((0, low, rise, np.maximum), (2, high, fall, np.minimum)):
+        ends = worse((base + slope * np.append(most, 0.0))[:-1], base[1:] + slope[1:] * most)
+        begins = worse(base[:-1], base[1:])
+        found[:, column] = begins
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found[:, column + 1] = np.where(most > 0, (ends - begins) / most, 0.0)
+    return found
+
+
+def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
+    """Between which u_g'' all rows are at least zero at some q.^2."""
+    base, push = plane[..., ONE] + plane[..., RATE] * fast[:, None], plane[..., PUSH]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bound = -base / push
+    low = np.where(push > 0, bound, -ANY).max(axis=1, initial=-ANY)
+    high = np.where(push < 0, bound, ANY).min(axis=1, initial=ANY)
+    never = ((push == 0) & (base < 0)).any(axis=1)
+    return np.where(never, ANY, low), np.where(never, -ANY, high)
+
+
+def _fastest(plane: Reals) -> Reals:
+    """A q.^2 at which some u_g'' is left with which all rows are at least zero; 0 if there is none."""
+    low, high = np.zeros(len(plane)), np.full(len(plane), 1.0)
+    scale = np.abs(plane[..., ONE]).max(axis=1) / np.maximum(np.abs(plane[..., RATE]).max(axis=1), 1e-300)
+    high *= np.minimum(scale, 1e12)
+    for _ in range(12):
+        one, other = _range(plane, high)
+        low = np.where(other - one > 0, high, low)
+        if (low == high).all():
+            break
+        high = np.where(low == high, high, (low + high) / 2)
+    return low
+
+
+def _reach(mechanism: Mechanism, statics: Sequence[Statics]) -> float:
+    """D_cr [m]."""
+    reaches = []
+    for direction, side in zip(mechanism.sides, statics, strict=True):
+        bodies = {body.name: k for k, body in enumerate(mechanism.bodies())}
+        motions = mechanism.motion(np.array([side.reference]), direction)
+        moved = [
+            abs(motions[bodies[each.of]].carry(each.body.centroid)[0][0] - each.body.centroid)
+            for each in mechanism.pieces(direction)
+            if each.of is not None
+        ]
+        reaches.append(float(max(moved)))
+    return min(reaches)
+
+
+def laid_out(all_joints: Sequence[Joints | None]) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals]:
+    """Lay out the joints of several structures one after the other, as the fields of `kernels.Joints`."""
+    counts = np.zeros((len(all_joints), 8), np.int64)
+    numbers = np.ones((len(all_joints), 4))
+    known = [each for each in all_joints if each is not None]
+    first = rows_at = struck_at = within_at = 0
+    for k, each in enumerate(all_joints):
+        if each is None:
+            continue
+        counts[k] = (
+            first, len(each.labels), each.rows.shape[2], len(each.rows), rows_at, struck_at, within_at,
+            len(each.within),
+        )  # fmt: skip
+        numbers[k] = each.gravity, each.limit * each.reach, each.step, each.scales
+        first += len(each.labels)
+        rows_at, struck_at, within_at = (
+            rows_at + each.rows.size, struck_at + each.struck.size, within_at + each.within.size,
+        )  # fmt: skip
+    return (
+        counts,
+        np.concatenate([np.zeros((0, 2, 4), np.int64), *(each.contacts for each in known)]),
+        np.concatenate([np.zeros((0, 2)), *(each.bearing for each in known)]),
+        np.concatenate([np.zeros(0), *(each.rows.ravel() for each in known)]),
+        np.concatenate([np.zeros(0), *(each.struck.ravel() for each in known)]),
+        np.concatenate([np.zeros(0), *(each.within.ravel() for each in known)]),
+        numbers,
+    )
