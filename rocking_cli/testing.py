@@ -36,6 +36,7 @@ from rocking_cli.core import (
     Mechanism,
     NoEquivalentBlock,
     Outline,
+    Piece,
     PointMass,
     RigidMotion,
     equilibrium,
@@ -48,6 +49,7 @@ from rocking_cli.core.coefficients import coefficients, jump
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.reactions import reactions
 from rocking_cli.core.registry import conformance
+from rocking_cli.core.released import Pieces, Undetermined, released
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.verdict import Verdict as Verdict
 from rocking_cli.errors import RockingError
@@ -69,6 +71,7 @@ ALIKE = 1e-9  # of its size: how near a value must come to what the bodies say
 DRAWN = 2e-3  # how near, over the size of a body, its outlines with their straight sides must come to its inertia
 A_LITTLE = 0.25  # of the critical rotation, in which nothing may go through the ground
 FLUSH = 1e-8  # of the size of the structure: how near to the ground counts as on it
+BORNE = 1e-6  # of the weight: how near the forces at contacts must come to it
 A_BIT = 0.01  # of the weight: what is hung on a structure to see whether it takes it
 A_MASS = 1000.0  # kg
 SIDED = ("one_sided", "rebound")
@@ -362,6 +365,65 @@ def an_impact_gains_no_energy(structure: Mechanism) -> None:
         )
 
 
+def contacts_bear_its_weight(structure: Mechanism) -> None:
+    """The forces at its contacts, if it names them, balance its weight, and all contacts press as rocking starts."""
+    weight = structure.gravity * sum(body.mass for body in structure.weighed())
+    for direction in structure.directions:
+        contacts = structure.contacts(direction)
+        if not contacts:
+            continue
+        here = f"the contacts of the {direction.label} direction"
+        names = [each.body.name for each in _pieces(structure, direction)]
+        for contact in contacts:
+            known = {*contact.pieces, contact.face} <= {None, *names}
+            _demand(known, f"the contact of {contact.label} names a piece that does not exist: there are {names}")
+        try:
+            found = released(structure, direction, np.zeros(1))
+        except Undetermined as error:
+            needed = "n pieces need 3n - 1 forces, two at a hinge, three at a joint that stays closed, one at a guide"
+            _demand(error.redundant, f"{here} do not leave one degree of freedom: {needed}")
+            continue
+        assert found is not None
+        starts = np.array([1.0, -int(direction) * structure.uplift(direction) * structure.gravity, 0.0, 0.0])
+        force, there = found.force[0] @ starts, Pieces(structure, direction, np.zeros(1))
+        missing = np.abs(there.rates(contacts)[0][0].T @ force - there.demands()[0] @ starts) / there.scale
+        k = int(missing.argmax())
+        _demand(
+            missing[k] <= BORNE * weight,
+            f"{here} do not balance {names[k // 3]} as rocking starts, {missing[k]:.4g} N are missing: they must be "
+            "the joints that its motion keeps together",
+        )
+        for contact, (normal, _) in zip(found.contacts, found.rows, strict=True):
+            least = min((float(force[row]) for row in normal), default=0.0)
+            _demand(
+                least >= -BORNE * weight,
+                f"the contact of {contact.label} pulls with {-least:.4g} N as rocking starts in the {direction.label} "
+                "direction: its normal must point from the first piece into the second",
+            )
+
+
+def _pieces(structure: Mechanism, direction: Direction) -> Sequence[Piece]:
+    """Return the pieces of a direction, which must be all of each of its bodies; one that rests needs none."""
+    bodies, pieces = structure.weighed(), structure.pieces(direction)
+    names = {body.name for body in bodies}
+    _demand(len({each.body.name for each in pieces}) == len(pieces), "two pieces have the same name")
+    for each in pieces:
+        _demand(each.of is None or each.of in names, f"the piece {each.body.name} is of {each.of}, which is no body")
+    for body, motion in zip(bodies, structure.motion(np.zeros(1), direction), strict=True):
+        parts = [each.body for each in pieces if each.of == body.name]
+        if parts:
+            mass = sum(part.mass for part in parts)
+            moment = sum(part.mass * part.centroid for part in parts) - mass * body.centroid
+            _demand(
+                abs(mass - body.mass) <= BORNE * body.mass and abs(moment) <= DRAWN * body.mass * _size(structure),
+                f"the pieces of {body.name} have {mass:.6g} kg of its {body.mass:.6g} kg, or another centroid",
+            )
+        else:
+            rates = abs(complex(motion.carry(body.centroid)[1][0])), abs(float(motion.dpsi[0]))
+            _demand(max(rates) <= ALIKE * _size(structure), f"{body.name} moves, but no piece is of it")
+    return pieces
+
+
 def carries_what_hangs_on_it(structure: Mechanism) -> None:
     """With a load, a force and a tie, unless it refuses them, coefficients and restitution include all of them."""
     bare = _with(structure, crushing=None)  # how far pivots move depends on the load
@@ -586,6 +648,7 @@ CHECKS: tuple[Callable[[Mechanism], None], ...] = (
     outlines_are_those_of_the_bodies,
     hinges_hold_together,
     joints_hold_what_moves,
+    contacts_bear_its_weight,
     carries_what_hangs_on_it,
     may_lean_on_side_walls,
     stands_on_the_edge_of_its_base,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.api.answer import Answer, MappingAnswer
 from rocking_cli.core import CollapseMechanism, Direction, Equivalence, Mechanism
@@ -45,6 +45,18 @@ Structure = Mechanism | str | Path
 """Mechanism, or its YAML file."""
 Motion = GroundMotion | Pulse | str | Path
 """Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
+
+
+def _known(outcome: Outcomes) -> NDArray[np.float64]:
+    """Whether motions overturn a structure, 1 or 0; NaN where the outcome is unknown."""
+    return np.where(outcome.unknown, np.nan, outcome.overturned)
+
+
+def _with_gaps(values: NDArray[np.bool_], missing: NDArray[np.bool_]) -> Any:
+    """Return values as nested lists, with None where they are missing."""
+    found = values.astype(object)
+    found[missing] = None
+    return found.tolist()
 
 
 def _structure(given: Structure) -> Prepared:
@@ -426,7 +438,8 @@ def respond_each(
     Returns
     -------
     MappingAnswer of str to Outcome
-        Arrays of shape (structures, motions, scales), by model; `failed` marks motions that could not be simulated.
+        Arrays of shape (structures, motions, scales), by model; `failed` marks motions that could not be simulated, and
+        `unknown` those whose outcome is unknown from `known_to` on.
 
     Raises
     ------
@@ -471,14 +484,23 @@ def respond_each(
         for name, outcome in found.items():
             for column in ("overturned", "peak_ratio", "uplift_time", "overturning_time", "impact_count"):
                 table[f"{name} {column}"] = getattr(outcome, column).ravel()
+            if outcome.unknown.any():
+                table[f"{name} overturned"] = _known(outcome).ravel()
+                table |= {f"{name} {column}": getattr(outcome, column).ravel() for column in ("unknown", "known_to")}
         return table
 
     def figure() -> Figure:
         raise InputError("many responses have no plot of their own: plot a spectrum, a map or a margin")
 
     first = found[chosen[0]]
-    said = f"By the {chosen[0]} model {int(first.overturned.sum())} of {first.overturned.size} motions overturn."
+    said = f"By the {chosen[0]} model {int(first.overturned.sum())} of {first.overturned.size} motions overturn"
+    said += f", and the outcome of {int(first.unknown.sum())} is unknown." if first.unknown.any() else "."
     data: dict[str, Any] = {name: {column: getattr(each, column) for column in OUTCOME} for name, each in found.items()}
+    for name, each in found.items():
+        if each.unknown.any():
+            data[name]["overturned"] = _with_gaps(each.overturned, each.unknown)
+        if name == "nonlinear" and np.isnan(each.opening).any():
+            data[name]["unknown"] = _with_gaps(each.unknown, np.isnan(each.opening) & ~each.unknown)
     return MappingAnswer("responses", found, View(data, [said]), columns, figure)
 
 
@@ -518,7 +540,8 @@ def spectrum(
     Returns
     -------
     Answer of list of Spectrum
-        One for each structure and slenderness; the peak of a motion that could not be simulated is NaN.
+        One for each structure and slenderness; the peak of a motion that could not be simulated is NaN, that of an
+        unknown outcome infinite, with its `lower_bound`.
 
     Raises
     ------
@@ -589,7 +612,7 @@ def overturning_map(
     Returns
     -------
     Answer of OverturningMap
-        Outcome under every pulse.
+        Outcome under every pulse; `regions` has the class of each, unknown outcomes among them.
 
     Raises
     ------
@@ -665,7 +688,8 @@ def overturning_curves(
     Returns
     -------
     Answer of Comparison
-        Smallest amplitudes, and the structure that overturns first.
+        Smallest amplitudes `least` known to overturn, and the structure that overturns first; overturning starts
+        between `possible` and `least` if outcomes below are unknown.
 
     Raises
     ------
@@ -746,6 +770,9 @@ def margin(
             "motion": [name for name, each in found.items() for _ in each.factors],
             "factor": np.concatenate([each.factors for each in found.values()]),
             "overturned": np.concatenate([each.overturned for each in found.values()]),
+            "unknown": np.concatenate(
+                [each.unknown if each.checked else each.unknown + np.nan for each in found.values()]
+            ),
         }
 
     def figure() -> Figure:
@@ -882,7 +909,8 @@ def fragility(
     Returns
     -------
     Answer of list of Fragility
-        One per curve: structure, limit state, measure and fit.
+        One per curve: structure, limit state, measure and fit. If the outcome of some runs is unknown, as a joint opens
+        that the model keeps closed, these exceed the limit in the fit and do not in its `lower`.
 
     Raises
     ------
@@ -922,7 +950,7 @@ def fragility(
         hazard = HazardCurve(*np.array(points)) if points is not None else None
         counted = assess.counted(kept, plan, definition, lambda count: None)
         curves, surfaces = assess.fitted(counted, definition, hazard, lambda count: None)
-        shown = view(kept, plan, definition, *kept.count(), curves, surfaces)
+        shown = view(kept, plan, definition, *kept.count(), curves, surfaces, assess.outcomes(counted))
         shown = with_quantiles(shown, list(all_quantiles(kept, plan, definition)), in_words=False)
         if rank_measures:
             from rocking_cli.studies.fragility.ranking import rank
@@ -939,7 +967,7 @@ def fragility(
 
         measure = definition.fitted_measures[0]
         lines = [
-            LabelledCurve(f"{each.structure}, {limit_name(each.limit)}", each.curve, each.seen)
+            LabelledCurve.of(f"{each.structure}, {limit_name(each.limit)}", each)
             for each in curves
             if each.measure == measure
         ]
@@ -1018,7 +1046,8 @@ def write_report(
         return {
             "motion": [name for name, _ in runs],
             "peak_ratio": [run.peak_ratio for _, run in runs],
-            "overturned": [run.overturned for _, run in runs],
+            "overturned": [None if run.unknown else run.overturned for _, run in runs],
+            "unknown": [run.unknown for _, run in runs],
         }
 
     def figure() -> Figure:

@@ -37,7 +37,8 @@ def verify(
     control : tuple, optional
         Control point x, y [m], and the body it is on; by default the centroid of the moving weights.
     motions : sequence of GroundMotion, Pulse, str or Path
-        Motions of the dynamic method: records that match the spectrum of the site, already scaled.
+        Motions of the dynamic method: records that match the spectrum of the site, already scaled. An unknown outcome
+        does not pass.
     polarities : sequence of int
         Polarities of the motions, of 1 and -1; with both, the worse governs.
 

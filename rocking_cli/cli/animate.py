@@ -13,8 +13,7 @@ from rocking_cli.cli.groups import GroundMotions, Near
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Finite
 from rocking_cli.errors import INCOMPLETE, InputError, Problem, RockingError
-from rocking_cli.names import percent
-from rocking_cli.views.view import ABSENT, Table, View, heading
+from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.model import Model, ModelName
@@ -69,6 +68,7 @@ class Pace:
     help="Frames per second of a GIF.",
 )  # fmt: skip
 @options.around
+@options.opening
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, pace=Pace, near=Near)
@@ -86,7 +86,7 @@ def command(
 
     A GIF is for slides and mails; it shows the time between uplift and rest or overturning. A page (.html) has a
     slider, works without a network, and shows the whole motion. The motion of the bodies is relative to the ground and
-    drawn to scale, not enlarged.
+    drawn to scale, not enlarged. Both end where the outcome becomes unknown, as a joint opens or slides too far.
 
     With several motions, each is written to a file with its name in the file name, and the output has one row per
     motion (with --json, one object per line). A motion that cannot be used is reported and skipped, and the exit code
@@ -108,7 +108,7 @@ def command(
     from rocking_cli.cli.waiting import compile_first
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.picture import picture
-    from rocking_cli.views.animation import view
+    from rocking_cli.views import animation as views
 
     read = [*files, *(str(each.path) for each in paths)]
     keep_apart([("--out", out)], read)
@@ -131,13 +131,11 @@ def command(
             terminal.error(f"{motion.name}: {error}")
             refused += 1
             continue
-        rows.append([motion.name, film.verdict, ABSENT if beside is None else percent(beside.overturned)])
-        one = view(structure, film, beside, {**found, "file": str(place)})
+        rows.append(views.row(film, beside))
         if as_json or not several:
-            terminal.show(one, as_json=as_json)
+            terminal.show(views.view(structure, film, beside, {**found, "file": str(place)}), as_json=as_json)
     if several and rows and not as_json:
-        table = Table(title, ["under", model, "neighbours\noverturn"], rows, numbers=(2,))
-        terminal.show(View({}, [table, one.parts[-1]]), as_json=False)
+        terminal.show(views.several(structure, film, rows), as_json=False)
     if missing or refused:
         ctx.exit(INCOMPLETE)
 

@@ -24,12 +24,15 @@ PREFIX = "ROCKING_"
 LARGEST = 1_000_000  # bytes of a file
 
 EVERYWHERE = (
-    "units", "dt", "channel", "neighbours", "within-amplitude", "within-restitution", "tail", "rtol", "points",
+    "units", "dt", "channel", "neighbours", "amplitude-deviation", "slenderness-deviation",
+    "restitution-deviation", "tail", "rtol", "points",
     "fractiles", "fps", "speed", "jobs", "format", "project", "place", "author", "logo",
 )  # fmt: skip
 """Options with one meaning in all commands; none that choose the question, the input or the output."""
 IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")
 """Options whose meaning differs between commands: only the table of a command may set them."""
+GONE = {"within-amplitude": "amplitude-deviation", "within-restitution": "restitution-deviation"}
+"""Options that no longer exist, and what to give instead: their values had another meaning."""
 OTHERS = ("DEBUG", "BROWSER")
 """Other variables of the environment that the program reads."""
 
@@ -83,7 +86,12 @@ def in_force(commands: tuple[str, ...]) -> list[Default]:
         for option in EVERYWHERE
         if (value := os.environ.get(variable := PREFIX + option.upper().replace("-", "_")))
     ]
-    problems: list[Problem] = []
+    variables = {PREFIX + old.upper().replace("-", "_"): old for old in GONE}
+    problems = [
+        Problem("this option is gone", name, hint=_instead(old))
+        for name, old in variables.items()
+        if name in os.environ
+    ]
     for file in files():
         found += _of_file(file, commands, problems)
     if problems:
@@ -179,6 +187,9 @@ def _one(
             if only
             else None
         )
+        if option in GONE:
+            problems.append(Problem("this option is gone", file, field=place, hint=_instead(option)))
+            return
         problems.append(Problem("this option cannot have a default", file, field=cut(one_line(place)),
                                 hint=hint or did_you_mean(option, list(known))))  # fmt: skip
         return
@@ -187,6 +198,11 @@ def _one(
         problems.append(Problem("the value is neither a text nor a number, nor a list of them", file, field=place))
         return
     yield Default(option, command, ",".join(map(str, values)), file, f"{file}: {place}")
+
+
+def _instead(old: str) -> str:
+    """Return what to give instead of an option that is gone."""
+    return f"give {GONE[old]}, a standard deviation"
 
 
 def _read(file: Path) -> dict[str, Any]:

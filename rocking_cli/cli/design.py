@@ -50,6 +50,7 @@ def _aim() -> Callable[[str], Any]:
 @options.reading
 @options.scaling("1", "-1", "both")
 @options.around
+@options.opening
 @options.site
 @options.out(".csv", ".parquet", what="Write the scanned values and the metric at each (.csv or .parquet).")
 @options.plot("Plot the metric against the field")
@@ -71,7 +72,8 @@ def command(
 
     The metrics are lambda, phi_cr and p of `rocking equiv`: of the two directions, the smaller phi_cr and lambda and
     the larger p. With a ground motion, the metric may also be the share of its neighbours that overturn (overturned),
-    or the median of their peak rotation over the critical rotation (peak_ratio). With several motions, or with
+    or the median of their peak rotation over the critical rotation (peak_ratio); an unknown outcome, because a joint
+    opens or slides that the model keeps closed, counts as overturning. With several motions, or with
     --polarity both, the worst case governs. alpha0 and, with --site, the zeta_E of a method are those of
     `rocking verify`, the smaller of both directions.
 

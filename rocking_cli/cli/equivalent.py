@@ -48,6 +48,7 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
     callback=_eta,
     help=options.HELP["eta"],
 )
+@options.opening
 @options.out(".csv", what="Write the responses against p t.")
 @options.plot("Plot the responses")
 @options.as_json

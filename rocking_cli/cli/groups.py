@@ -197,15 +197,16 @@ class Near:
     """Options of the neighbouring motions."""
 
     neighbours: int
-    within_amplitude: float
-    within_restitution: float
+    amplitude_deviation: float
+    slenderness_deviation: float | None
+    restitution_deviation: float | None
 
     @property
     def around(self) -> Around:
-        """Ranges from which the neighbours are drawn."""
+        """How the neighbours are drawn."""
         from rocking_cli.studies.neighbours import Around
 
-        return Around(self.neighbours, self.within_amplitude, self.within_restitution)
+        return Around(self.neighbours, self.amplitude_deviation, self.restitution_deviation, self.slenderness_deviation)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,8 @@ import click
 
 from rocking_cli.cli import complete, options, terminal
 
-PARTS = ("loads", "ties", "interlock", "strength", "crushing")  # additions to any mechanism, with fields of their own
+# Additions to any mechanism, with fields of their own.
+PARTS = ("loads", "ties", "interlock", "strength", "crushing", "uncertainty")
 
 if TYPE_CHECKING:
     from rocking_cli.core.registry import Registry
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
 def command(name: str | None, file: str | None, checked: bool, as_json: bool) -> None:
     """List the installed mechanisms and the package of each; with NAME, show the fields of one.
 
-    NAME may also be `loads`, `ties`, `interlock`, `strength` or `crushing`, which can be added to any mechanism.
+    NAME may also be `loads`, `ties`, `interlock`, `strength`, `crushing` or `uncertainty`, which can be added to any
+    mechanism.
 
     With --check, the command compares the coefficients of the mechanism with its bodies and their motion, and prints
     which checks pass and which fail, with the traceback of an error in the mechanism. The exit code is 3 if a check

@@ -379,6 +379,21 @@ def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
     )
 
 
+def _was_within(ctx: click.Context, parameter: click.Parameter, value: object) -> None:
+    if value is not None and parameter.name is not None:
+        new = f"--{parameter.name.removeprefix('within_')}-deviation"
+        raise click.UsageError(f"--{parameter.name.replace('_', '-')} is gone: give {new}, a standard deviation.")
+
+
+def _note_opening(ctx: click.Context, parameter: click.Parameter, value: float | None) -> None:
+    if value is not None and not 0 <= value <= 1000:
+        raise click.BadParameter("must be from 0 to 1000, as a share or in %.", ctx, parameter)
+    ctx.meta[OPENING] = value
+
+
+OPENING = "rocking_cli.opening"
+"""Where the context of a command keeps the limit of the opening of joints."""
+
 around: Decorator = in_order(
     click.option(
         "--neighbours",
@@ -389,22 +404,39 @@ around: Decorator = in_order(
         help="Number of neighbouring motions to simulate as well; `respond` and `animate` accept 0 for none.",
     ),
     click.option(
-        "--within-amplitude",
+        "--amplitude-deviation",
         type=Share(),
-        default=0.02,
+        default=0.04,
         show_default=True,
         metavar="SHARE",
         callback=share,
-        help="Largest deviation of the neighbours' amplitude factors from 1.",
+        help="Standard deviation of ln amplitude of the neighbours.",
     ),
     click.option(
-        "--within-restitution",
+        "--slenderness-deviation",
+        type=Share(),
+        metavar="SHARE",
+        callback=share,
+        help="Standard deviation of ln slenderness; by default that of the file, or 10 %.",
+    ),
+    click.option(
+        "--restitution-deviation",
         type=Finite(),
-        default=0.02,
-        show_default=True,
         metavar="ETA",
         callback=share,
-        help="Largest deviation of the neighbours' restitution from the structure's.",
+        help="Standard deviation of restitution; by default that of the file, 0.03 of a given value, or 0.05.",
     ),
+    click.option("--within-amplitude", hidden=True, expose_value=False, metavar="SHARE", callback=_was_within),
+    click.option("--within-restitution", hidden=True, expose_value=False, metavar="ETA", callback=_was_within),
 )
-"""The neighbours of a motion: `neighbours`, `within_amplitude` and `within_restitution`."""
+"""The neighbours of a motion: `neighbours` and the three deviations."""
+
+opening: Decorator = click.option(
+    "--opening",
+    type=Share(),
+    metavar="SHARE",
+    expose_value=False,
+    callback=_note_opening,
+    help="Largest opening of a joint up to which a history holds, over D_cr; by default that of the file, or 0.5 %.",
+)
+"""The limit of the opening of joints, which `structures.load` gives to every structure of the command."""

@@ -85,6 +85,7 @@ class Plane:
     metavar="N",
     help=f"{options.HELP['points']}  [default: {PLANE}; {CURVE} with --compare]",
 )
+@options.opening
 @options.out(".csv", what="Write the map, one point per line, or the curves.")
 @options.plot("Plot the map, or the curves")
 @options.as_json
@@ -96,9 +97,9 @@ def command(
     """Map the pulses that overturn a structure, by their periods and amplitudes.
 
     Each point of the map is a simulated motion that ends in no uplift, rocking, overturning after one or more impacts,
-    or overturning without impact. --period and --ag are ranges, such as 0.2:4 and 0.1g:2g. Without FILE, the map is
-    that of the linear block, with the axes omega = omega_g/p and a = a_g/(g lambda). With --polarity both, the worse
-    of the two polarities governs.
+    overturning without impact, or in an unknown outcome, if a joint opens or slides beyond --opening. --period and --ag
+    are ranges, such as 0.2:4 and 0.1g:2g. Without FILE, the map is that of the linear block, with the axes omega =
+    omega_g/p and a = a_g/(g lambda). With --polarity both, the worse of the two polarities governs.
 
     With --compare, the command computes the smallest amplitude that overturns each FILE as a function of the period,
     and which structure overturns first. A FILE that cannot be used is reported and skipped, and the exit code is 5.
@@ -154,9 +155,7 @@ def _compare(
     from rocking_cli.views import overturning as views
 
     spread, top = _curves(subjects, plane)
-    with waiting.histories(
-        study.count_histories(subjects, spread.size * study.SCAN * study.PASSES, signs), exact=exact
-    ) as progress:
+    with waiting.histories(study.count_scans(subjects, spread.size, signs), exact=exact) as progress:
         found = study.compare(subjects, shape, spread, top, polarities=signs, progress=progress)
 
     def draw() -> Figure:

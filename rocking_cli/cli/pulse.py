@@ -28,6 +28,7 @@ class Dimensionless:
 @click.option("--a", type=Finite(positive=True), help=options.HELP["a"])
 @click.option("--omega", type=Finite(positive=True), help=options.HELP["omega"])
 @click.option("--eta", type=click.FloatRange(0, 1, min_open=True), help=f"{options.HELP['eta']}  [default: {ETA}]")
+@options.opening
 @options.as_json
 @options.grouped(real=SizedPulse, bare=Dimensionless)
 def command(file: str | None, real: SizedPulse, bare: Dimensionless, as_json: bool) -> None:

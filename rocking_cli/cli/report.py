@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     help="Site file of a verification by code that becomes part of the report.",
 )  # fmt: skip
 @options.around
+@options.opening
 @options.as_json
 @click.pass_context
 @options.grouped(asked=GroundMotions, head=Head, near=Near)

@@ -109,6 +109,7 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
     help="Relative error tolerance per step of the nonlinear integration.",
 )
 @options.around
+@options.opening
 @click.option("--impacts", is_flag=True, help="List the impacts: time, and angular velocity before and after.")
 @options.out(".csv", ".parquet", what="Write the time histories (.csv or .parquet).")
 @options.plot("Plot the time histories")
@@ -191,7 +192,15 @@ def command(
     names = _names(structure, history)
     structure.models(names)
     release = history.release.ratio(structure) if history.release is not None else None
-    question = Question(asked.signs, release, history.tail, history.rtol, history.with_pulse, near.around)
+    question = Question(
+        asked.signs,
+        release,
+        history.tail,
+        history.rtol,
+        history.with_pulse,
+        near.around,
+        history.release is not None and history.release.is_angle,
+    )
     job = _Job(structure, names, question, asked.polarity, several, impacts, contact, output.as_json)
     with terminal.progress(len(outs), "motions") as advance:
         for each, out, plot in zip(chosen, outs, plots, strict=True):

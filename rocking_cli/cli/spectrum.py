@@ -103,6 +103,7 @@ class Sizing:
     help="Fractiles to show in addition to the median, with several motions.",
 )
 @click.option("--jobs", type=click.IntRange(1, 1024), metavar="N", help=options.HELP["jobs"])
+@options.opening
 @options.out(".csv", what="Write the curves, including those of each motion.")
 @options.plot("Plot the curves")
 @options.as_json

@@ -6,7 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from rocking_cli.cli import terminal
+from rocking_cli.cli.options import OPENING
 from rocking_cli.core import Mechanism
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
@@ -43,7 +46,8 @@ def load(files: Sequence[str]) -> list[Mechanism]:
         raise InputError(*problems)
     for mechanism in found:
         warn(mechanism)
-    return found
+    limit = click.get_current_context().meta.get(OPENING)
+    return found if limit is None else [each.model_copy(update={"opening": limit}) for each in found]
 
 
 def warn(mechanism: Mechanism) -> None:

@@ -11,7 +11,7 @@ from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
 
 if TYPE_CHECKING:
-    from rocking_cli.studies.fragility.assess import Bivariate, Fragility
+    from rocking_cli.studies.fragility.assess import Bivariate, Fragility, Outcomes
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store
@@ -50,7 +50,7 @@ def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json
 
     plan, definition = store.plan(), _definition(store)
     finished, failed = store.count()
-    curves, surfaces = _fitted(store, plan, definition)
+    curves, surfaces, outcomes = _fitted(store, plan, definition)
     if tables.out is not None:
         _write(tables.out, store, plan, definition)
     if tables.curves is not None:
@@ -61,7 +61,7 @@ def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json
         from rocking_cli.cli.study_pictures import draw_all
 
         draw_all(Path(shown.plot), store, definition, curves, surfaces, spread)
-    result = view(store, plan, definition, finished, failed, curves, surfaces)
+    result = view(store, plan, definition, finished, failed, curves, surfaces, outcomes)
     result = with_quantiles(result, spread, in_words=shown.quantiles)
     if shown.rank_measures:
         result = _with_ranking(result, store, plan, definition, shown)
@@ -102,7 +102,9 @@ def _with_ranking(result: View, store: Store, plan: Plan, definition: Definition
     return added(result, rankings)
 
 
-def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Fragility], list[Bivariate]]:
+def _fitted(
+    store: Store, plan: Plan, definition: Definition
+) -> tuple[list[Fragility], list[Bivariate], list[Outcomes]]:
     """Count the runs of a store, and fit the curves of its study."""
     import numpy as np
 
@@ -115,7 +117,7 @@ def _fitted(store: Store, plan: Plan, definition: Definition) -> tuple[list[Frag
         found = assess.counted(store, plan, definition, counted)
     each = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
     with terminal.progress(each * len(found), "fits") as advance:
-        return assess.fitted(found, definition, hazard, advance)
+        return *assess.fitted(found, definition, hazard, advance), assess.outcomes(found)
 
 
 def _write(out: Path, store: Store, plan: Plan, definition: Definition) -> None:
@@ -127,14 +129,13 @@ def _write(out: Path, store: Store, plan: Plan, definition: Definition) -> None:
 
 def _write_curves(out: Path, curves: Sequence[Fragility]) -> None:
     from rocking_cli.cli import table_files
-    from rocking_cli.views.fragility import limit_name
+    from rocking_cli.views.fragility import edges
     from rocking_cli.views.fragility_table import blocks
 
     for each in curves:
-        if each.curve.kind == "none":
-            terminal.warning(
-                f"{each.structure}, {limit_name(each.limit)} against {each.measure}: no curve: {each.curve.why}"
-            )
+        for name, fit in edges([each]):
+            if fit.curve.kind == "none":
+                terminal.warning(f"{each.structure}, {name} against {each.measure}: no curve: {fit.curve.why}")
     table_files.write(out, blocks(curves))
 
 

@@ -47,11 +47,11 @@ def draw_all(
         these = [each for each in curves if each.measure == measure]
         for structure in structures:
             own = [each for each in these if each.structure == structure]
-            lines = [plotting.LabelledCurve(limit_name(each.limit), each.curve, each.seen) for each in own]
+            lines = [plotting.LabelledCurve.of(limit_name(each.limit), each) for each in own]
             add(f"{structure} {measure}", plotting.draw_curves(lines, label(measure), structure))
         for limit in definition.limit_states if len(structures) > 1 else []:
             own = [each for each in these if each.limit == limit]
-            lines = [plotting.LabelledCurve(each.structure, each.curve, each.seen) for each in own]
+            lines = [plotting.LabelledCurve.of(each.structure, each) for each in own]
             add(f"{limit_name(limit)} {measure}", plotting.draw_curves(lines, label(measure), limit_name(limit)))
     if definition.method == "ida":
         for structure in structures:

@@ -68,6 +68,7 @@ class Results:
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both")
+@options.opening
 @options.site
 @click.option(
     "--top", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="Number of structures to show."
@@ -90,9 +91,10 @@ def command(ctx: click.Context, file: str, asked: GroundMotions, site: str | Non
     headings (width [mm]). TABLE.csv may be - for standard input.
 
     Without ground motions, structures are ranked by their uplift acceleration. With ground motions, they are ranked by
-    the share of motions that overturn them and then by their largest peak rotation, both from the nonlinear model; with
-    --polarity both, the worse of the two polarities governs. With --site, each is verified by the code of the site and
-    ranked by its ratio of capacity to demand.
+    the share of motions that overturn them and then by their largest peak rotation, both from the nonlinear model; a
+    motion whose outcome is unknown, because a joint opens or slides that the model keeps closed, counts as overturning.
+    With --polarity both, the worse of the two polarities governs. With --site, each is verified by the code of the site
+    and ranked by its ratio of capacity to demand.
 
     A row that cannot be used is reported with its line number and skipped, and the exit code is 5.
 
@@ -158,8 +160,9 @@ def _survey(table: StructureTable, chosen: list[Scaled], asked: GroundMotions, s
     if motions:
         compile_first()
     count = _processes(len(table), bool(motions) or where is not None)
+    opening = click.get_current_context().meta.get(options.OPENING)
     with terminal.progress(len(table), "structures") as advance:
-        return survey(table, motions, asked.signs, site=where, processes=count, progress=advance)
+        return survey(table, motions, asked.signs, site=where, opening=opening, processes=count, progress=advance)
 
 
 def _processes(rows: int, shaken: bool) -> int | None:

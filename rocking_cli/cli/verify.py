@@ -54,6 +54,7 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both")
+@options.opening
 @options.plot("Plot the capacity curves")
 @heads.sheet
 @options.as_json
@@ -76,7 +77,8 @@ def command(
     is given with its clause. The exit code is 0 whether the structure passes or fails.
 
     With --record (repeatable), the dynamic method is added: time histories on the capacity curve, with and without the
-    confidence factor; with --polarity both, the worse of the two polarities governs. Whether the records match the
+    confidence factor; with --polarity both, the worse of the two polarities governs. A record whose outcome is unknown,
+    because a joint opens or slides that the model keeps closed, does not pass. Whether the records match the
     spectrum of the site is not checked. --sheet writes the calculation sheet for submission: every formula with its
     numbers, in English or Italian.
 

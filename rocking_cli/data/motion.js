@@ -255,6 +255,7 @@ function motionView(root, {picture, colours, film, charts, ratio, label, speed, 
   for (const each of [...new Set([0.1, 0.25, 0.5, 1, 2, 4, speed])].sort((a, b) => a - b))
     rate.add(new Option(`${Number(each.toPrecision(3))} ×`, each, false, each === speed));
   const read = element(root, "output", {class: "now", "aria-live": "off"});
+  if (film.ending) element(root, "p", {class: "ending"}, film.ending);
   const drawn = charts.map(each => timeChart(root, each));
   const zooms = element(root, "div", {class: "controls"});
   const button = (text, act) => element(zooms, "button", {type: "button"}, text).addEventListener("click", act);

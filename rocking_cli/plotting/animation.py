@@ -178,6 +178,8 @@ class _Stage:
         over = style.over(self._film.history.ends_at_limit)
         now = f"t = {time:6.2f} s    {over} = {round(ratio, self._digits) + 0.0:+.{self._digits}f}"
         pen.text((frame.width - 12, 30), now, fill=style.INK, font=_font(13), anchor="ra")
+        if time >= end:
+            pen.text((12, 46), self._film.ending, fill=style.CURSOR, font=_font(13, bold=True))
         return frame
 
     def _draw_structure(self, rotation: float) -> list[tuple[str, complex]]:

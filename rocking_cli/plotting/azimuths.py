@@ -22,7 +22,8 @@ def draw_azimuths(found: Around, title: str, over: str) -> Figure:
     Parameters
     ----------
     found : Around
-        What is drawn: a closed curve for each model, crosses outside where it overturns.
+        What is drawn: a closed curve for each model, crosses outside where it overturns, circles where its outcome is
+        unknown.
     title : str
         Heading.
     over : str
@@ -38,21 +39,26 @@ def draw_azimuths(found: Around, title: str, over: str) -> Figure:
     axes.set_theta_direction(-1)
     style.heading(axes, title)
     angles = np.radians(np.append(found.azimuths, found.azimuths[0]))
-    peaks = [each.peak_ratio for each in found.outcomes.values()]
-    reach = max((float(np.nanmax(each)) for each in peaks if np.isfinite(each).any()), default=0.0)
+    peaks = {name: np.where(each.unknown, np.nan, each.peak_ratio) for name, each in found.outcomes.items()}
+    reach = max((float(np.nanmax(each)) for each in peaks.values() if np.isfinite(each).any()), default=0.0)
     falls = any(each.overturned.any() for each in found.outcomes.values())
+    doubtful = any(each.unknown.any() for each in found.outcomes.values())
+    marked = falls or doubtful
     outside = max(OUTSIDE, reach * OUTSIDE)
     for k, (name, each) in enumerate(found.outcomes.items()):
         look: Any = style.LINES[name]
-        ratio = np.append(each.peak_ratio, each.peak_ratio[0])
-        axes.plot(angles, ratio, label=style.LABELS[name], **look)
-        fallen = np.radians(found.azimuths[each.overturned])
+        axes.plot(angles, np.append(peaks[name], peaks[name][0]), label=style.LABELS[name], **look)
         ring = outside * (1 + 0.07 * k)
-        axes.plot(fallen, np.full(fallen.size, ring), linestyle="none", marker="x", markersize=5, color=look["color"])
-    if falls or reach > 0.5:
+        for flags, marker in ((each.overturned, "x"), (each.unknown, "o")):
+            at = np.radians(found.azimuths[flags])
+            axes.plot(
+                at, np.full(at.size, ring), linestyle="none", marker=marker, markersize=5, color=look["color"],
+                markerfacecolor="white",
+            )  # fmt: skip
+    if marked or reach > 0.5:
         around = np.linspace(0.0, 2 * np.pi, 361)
         axes.plot(around, np.ones(around.size), color=style.FAINT, linewidth=style.MEDIUM, linestyle=":")
-    axes.set_ylim(0.0, outside * (1 + 0.07 * len(found.outcomes)) if falls else max(1.1 * reach, 1e-3))
+    axes.set_ylim(0.0, outside * (1 + 0.07 * len(found.outcomes)) if marked else max(1.1 * reach, 1e-3))
     one, other = (shorten(name, LONGEST, placeholder=" ...") for name in found.names)
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.tick_params(labelsize=style.TICK, colors=style.INK)
@@ -60,6 +66,7 @@ def draw_azimuths(found: Around, title: str, over: str) -> Figure:
     axes.grid(True, color=style.GRID, linewidth=style.THIN)
     said = f"peak {over}; 0° is {style.plain(one)}, 90° {style.plain(other)}"
     crosses = f"; crosses: {names.OVERTURNS}" if falls else ""
-    axes.set_xlabel(said + crosses, fontsize=style.LABEL)
+    circles = f"; circles: {names.UNKNOWN}" if doubtful else ""
+    axes.set_xlabel(said + crosses + circles, fontsize=style.LABEL)
     axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), **style.LEGEND)
     return figure

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
 from rocking_cli.studies.design import Design
@@ -35,6 +36,7 @@ def draw_design(found: Design) -> Figure:
         found.values, shown, color=style.INK, linewidth=style.BOLD, marker="o" if few else "", markersize=3,
         label=f"{found.aim.metric.name}, {len(found.values)} values tried",
     )  # fmt: skip
+    _mark_unknown(axes, found)
     _mark_missing(axes, found)
     if found.value is not None:
         at = _height(found)
@@ -64,12 +66,28 @@ def _height(found: Design) -> float:
     return found.aim.level
 
 
+def _unknown(found: Design) -> NDArray[np.bool_]:
+    """Whether some neighbours at each value are of unknown outcome."""
+    return np.array([near is not None and bool(near.unknown) for near in found.behind], dtype=bool)
+
+
+def _mark_unknown(axes: Axes, found: Design) -> None:
+    """Put open symbols at values at which some neighbours are of unknown outcome."""
+    here = _unknown(found) & np.isfinite(found.metric)
+    if here.any():
+        axes.plot(
+            found.values[here], found.metric[here], linestyle="none", marker="D", markersize=5, color="white",
+            markeredgecolor=style.INK, label="open: some neighbours of unknown outcome, counted as overturning",
+        )  # fmt: skip
+
+
 def _mark_missing(axes: Axes, found: Design) -> None:
     """Mark values without a metric by crosses, and those at which most neighbours overturn by triangles."""
-    across = axes.get_xaxis_transform()
+    across, doubtful = axes.get_xaxis_transform(), _unknown(found)
     for values, height, marker, label in (
         (found.values[np.isnan(found.metric)], 0.03, "x", "could not be computed"),
-        (found.values[np.isinf(found.metric)], 0.97, "^", "at least half of the neighbours overturn"),
+        (found.values[np.isinf(found.metric) & ~doubtful], 0.97, "^", "at least half of the neighbours overturn"),
+        (found.values[np.isinf(found.metric) & doubtful], 0.97, "D", "at least half overturn or are unknown"),
     ):
         if values.size:
             axes.plot(
@@ -78,6 +96,7 @@ def _mark_missing(axes: Axes, found: Design) -> None:
                 marker,
                 transform=across,
                 color=style.FAINT,
+                markerfacecolor="white" if marker == "D" else style.FAINT,
                 markersize=5,
                 label=label,
             )

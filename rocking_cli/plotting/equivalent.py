@@ -38,10 +38,15 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
         if seen.size or not np.isfinite(ratio).all():
             ratio = ratio[: seen[0] if seen.size else int(np.isfinite(ratio).sum())]
         tau = found.tau[: ratio.size]
-        fate = ", overturns" if each.history.overturned else ""
+        known_to = each.history.known_to
+        unknown = f", unknown after {known_to:.3g} s (open circle)" if each.history.unknown else ""
+        fate = ", overturns" if each.history.overturned else unknown
         below.plot(tau, ratio, label=style.plain(f"{each.name}{fate}"), markevery=_spaced(tau, k), **style.distinct(k))
         if each.history.overturned and ratio.size:
             below.plot(tau[-1], ratio[-1], marker="x", markersize=7, color=style.distinct(k)["color"])
+        if unknown and ratio.size:
+            colour = style.distinct(k)["color"]
+            below.plot(tau[-1], ratio[-1], marker="o", markersize=9, color=colour, markerfacecolor="white", zorder=3)
     _draw_linear(below, found)
     end = found.pulse_end + FREE
     below.set_xlim(0.0, min(end, float(found.tau[-1])))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import wrap
 from typing import Any
 
@@ -12,12 +12,14 @@ from matplotlib.axes import Axes
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import PercentFormatter
 from numpy.typing import NDArray
 
+from rocking_cli import names
 from rocking_cli.plotting import style
-from rocking_cli.studies.fragility.assess import Bivariate
-from rocking_cli.studies.fragility.curves import Curve, Observations
+from rocking_cli.studies.fragility.assess import Bivariate, Fragility
+from rocking_cli.studies.fragility.curves import Curve, Observations, Surface
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -26,10 +28,14 @@ FINE = 400  # points of a curve
 MARKS = {True: 25, False: 10}  # observed parts at most, of one curve alone and of each of several
 FILLED = 2  # bands in one picture that are filled: of more the edges are drawn
 SHADED = 0.14  # how dark they are
+BAND = 0.35  # inches of the legend of a band between two curves
+HATCHED = 0.4  # how dark such a band is
+HATCHES = ("////", "\\\\\\\\", "||||", "----")
 WIDEST_LINE = 96  # characters of a line of the legend
 DRAWN_RUNS = 3000  # runs and records that are drawn one by one, at most
 DRAWN_LADDERS = 300
 LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
+EDGES = (f"if {names.UNKNOWN} runs exceed", f"if {names.UNKNOWN} runs do not")
 FRACTILES = ((0.16, "16 %"), (0.5, "median"), (0.84, "84 %"))
 MARGIN = 0.08  # of the plane: without names of contours
 CROWDED = 15  # levels of shaking from which on not every one is counted out
@@ -37,7 +43,7 @@ CROWDED = 15  # levels of shaking from which on not every one is counted out
 
 @dataclass(frozen=True, eq=False)
 class LabelledCurve:
-    """One curve of a picture.
+    """One curve of a picture, or a band between two.
 
     Parameters
     ----------
@@ -47,11 +53,29 @@ class LabelledCurve:
         What was fitted.
     observations : Observations
         The runs.
+    lower : LabelledCurve, optional
+        The lower edge of a band, of the same runs: those of unknown outcome exceed in this one and not in that.
+    share : float
+        Share of the runs that are of unknown outcome.
     """
 
     name: str
     curve: Curve
     observations: Observations
+    lower: LabelledCurve | None = None
+    share: float = 0.0
+
+    @classmethod
+    def of(cls, name: str, found: Fragility) -> LabelledCurve:
+        """Return the curve of a result, or its band if many runs are of unknown outcome."""
+        if not found.is_band or found.lower is None:
+            return cls(name, found.curve, found.seen)
+        return cls(name, found.curve, found.seen, cls.of(name, found.lower), found.share or 0.0)
+
+    @property
+    def edges(self) -> list[LabelledCurve]:
+        """The curve, or both edges of the band."""
+        return [self] if self.lower is None else [self, self.lower]
 
 
 def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figure:
@@ -60,7 +84,8 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     Parameters
     ----------
     drawn : sequence of LabelledCurve
-        Several limit states of one structure, or several structures for one limit state.
+        Several limit states of one structure, or several structures for one limit state. Bands between two curves are
+        hatched.
     label : str
         The measure of intensity, with its unit in brackets.
     title : str
@@ -70,7 +95,7 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(4.6)
+    figure = style.new_figure(4.6 + BAND * sum(each.lower is not None for each in drawn))
     axes = figure.subplots()
     _head(axes, title)
     reach = np.concatenate([each.observations.x for each in drawn])
@@ -83,6 +108,10 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
         fine = np.linspace(0.0, stop * 1.05, FINE)
     for k, each in enumerate(drawn):
         look = style.distinct(k)
+        if each.lower is not None:
+            _draw_band(axes, each, look, fine, HATCHES[k % len(HATCHES)], filled=len(drawn) <= FILLED)
+            _draw_observed(axes, each, look, alone=len(drawn) == 1)
+            continue
         _draw_observed(axes, each, look, alone=len(drawn) == 1)
         _draw_curve(axes, each, look, fine, filled=len(drawn) <= FILLED)
     axes.set_xlim(fine[0], fine[-1])
@@ -91,7 +120,11 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     axes.set_xlabel(label, fontsize=style.LABEL)
     axes.set_ylabel("probability of exceedance", fontsize=style.LABEL)
     style.tidy(axes)
-    handles = [_key(each, style.distinct(k)) for k, each in enumerate(drawn)]
+    handles: list[Any] = [_key(*edge) for k, each in enumerate(drawn) for edge in _named(each, style.distinct(k))]
+    if doubtful := [each for each in drawn if each.lower is not None]:
+        shares = ", ".join(f"{each.name} {names.percent(each.share)}" for each in doubtful)
+        said = f"band between the two curves: runs of {names.UNKNOWN} outcome ({shares})"
+        handles.append(Patch(**style.UNKNOWN, label=_lines(said)))
     bands = "shades" if len(drawn) <= FILLED else "thin lines"
     marks = f"marks: observed shares; bars and {bands}: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
     most = max(int(each.observations.group.max()) + 1 for each in drawn)
@@ -112,8 +145,9 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
 
 def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:
     """What to be careful about in a picture, each thing once."""
-    unbounded = [each.name for each in drawn if each.curve.unbounded]
-    steps = [each.name for each in drawn if each.curve.step is not None]
+    drawn = [edge for each in drawn for edge in each.edges]
+    unbounded = dict.fromkeys(each.name for each in drawn if each.curve.unbounded)
+    steps = dict.fromkeys(each.name for each in drawn if each.curve.step is not None)
     step = (
         f"shade of a step: the interval between two levels, not a confidence band: {', '.join(steps)}" if steps else ""
     )
@@ -128,17 +162,23 @@ def _lines(text: str) -> str:
 
 
 def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], *, alone: bool) -> None:
-    """Mark the part that exceeds in each group, at the mean intensity, with its interval; faint beside others."""
-    seen = each.observations.parts(each.curve.confidence)
+    """Mark the part that exceeds in each group, at the mean intensity, with its interval; faint beside others.
+
+    Of a band both edges are marked, and the interval is that of both.
+    """
+    seen, least = (edge.observations.parts(each.curve.confidence) for edge in (each, each.lower or each))
     some = slice(None, None, _every(seen.x.size, alone=alone))
-    x, part, low, high = (values[some] for values in (seen.x, seen.part, seen.low, seen.high))
+    low, high = np.minimum(least.low, seen.low)[some], np.maximum(least.high, seen.high)[some]
+    x = seen.x[some]
     axes.vlines(x, low, high, color=look["color"], linewidth=style.CURVE, alpha=1.0 if alone else 0.4)
-    axes.plot(
-        x, part, linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
-        markerfacecolor="white", zorder=4,
-    )  # fmt: skip
+    for parts in (seen, least) if each.lower is not None else (seen,):
+        axes.plot(
+            x, parts.part[some], linestyle="none", marker=look["marker"], color=look["color"], markersize=4.5,
+            markerfacecolor="white", zorder=4,
+        )  # fmt: skip
     if alone:
-        for place, n, m, top in zip(x, seen.exceeding[some], seen.runs[some], high, strict=True):
+        counts = [f"{n}" if n == k else f"{k}-{n}" for n, k in zip(seen.exceeding, least.exceeding, strict=True)]
+        for place, n, m, top in zip(x, counts[some], seen.runs[some], high, strict=True):
             axes.annotate(
                 f"{n}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center",
                 fontsize=style.SMALL if x.size <= CROWDED else style.TINY, color=style.INK,
@@ -169,6 +209,43 @@ def _draw_curve(axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Rea
     )
 
 
+def _draw_band(
+    axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Reals, hatch: str, *, filled: bool
+) -> None:  # fmt: skip
+    """Hatch what lies between two curves, with the confidence of both; where there is none, up to 1 or down to 0."""
+    steps = [edge.curve.step.value for edge in each.edges if edge.curve.step is not None]
+    fine = np.sort(np.concatenate([fine, *([np.nextafter(at, 0), np.nextafter(at, np.inf)] for at in steps)]))
+    values: list[Reals] = []
+    bands: list[Reals] = []
+    for edge, without in zip(each.edges, (1.0, 0.0), strict=True):
+        if edge.curve.kind == "none":
+            values.append(np.full(fine.size, without))
+            continue
+        values.append(edge.curve.probability(fine))
+        if not edge.curve.unbounded:
+            bands += edge.curve.band(fine)
+    hatched = style.UNKNOWN | {"edgecolor": look["color"], "hatch": hatch, "alpha": HATCHED}
+    axes.fill_between(fine, np.minimum(*values), np.maximum(*values), **hatched)
+    ends = [between([*bands, *values], axis=0) for between in (np.min, np.max)]
+    if filled:
+        axes.fill_between(fine, *ends, color=look["color"], alpha=SHADED, linewidth=0.0)
+    else:
+        for end in ends:
+            axes.plot(fine, end, color=look["color"], linestyle=look["linestyle"], linewidth=style.THIN, zorder=2)
+    for edge, width in zip(each.edges, (style.BOLD, style.MEDIUM), strict=True):
+        if edge.curve.kind != "none":
+            line = edge.curve.probability(fine)
+            axes.plot(fine, line, color=look["color"], linestyle=look["linestyle"], linewidth=width, zorder=3)
+
+
+def _named(each: LabelledCurve, look: dict[str, Any]) -> list[tuple[LabelledCurve, dict[str, Any]]]:
+    """The entries of a curve, or of both edges of a band, with their looks."""
+    if each.lower is None:
+        return [(each, look)]
+    upper, lower = (replace(edge, name=f"{each.name}, {word}") for edge, word in zip(each.edges, EDGES, strict=True))
+    return [(upper, look), (lower, look | {"linewidth": style.MEDIUM})]
+
+
 def _key(each: LabelledCurve, look: dict[str, Any]) -> Line2D:
     """The entry of a curve in the legend, with its numbers."""
     curve = each.curve
@@ -194,7 +271,7 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     intensity : ndarray, shape (m,)
         Levels of shaking, ascending.
     peaks : ndarray, shape (n, m)
-        Peak phi/phi_cr of each record at each level; NaN where it overturns.
+        Peak phi/phi_cr of each record at each level; NaN where it overturns, infinite where the outcome is unknown.
     label : str
         The measure of intensity, with its unit in brackets.
     title : str
@@ -203,44 +280,55 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Overturning has a band of its own above the rotations, with the number of records at each level.
+        Overturning has a band of its own above the rotations, with the number of records at each level; so has an
+        unknown outcome, which ranks below overturning.
     """
     figure = style.new_figure(4.6)
     axes = figure.subplots()
     _head(axes, title)
-    fallen = np.isnan(peaks)
-    floor = 1.05 * max(1.0, float(np.nanmax(peaks, initial=0.0)))  # of the band
-    top = 1.15 * floor
-    middle = floor + 0.4 * (top - floor)
+    fallen, doubtful = np.isnan(peaks), np.isposinf(peaks)
+    floor = 1.05 * max(1.0, float(np.max(peaks, initial=0.0, where=np.isfinite(peaks))))  # of the bands
+    high = 0.15 * floor
+    places = {names.UNKNOWN: floor + 0.4 * high} if doubtful.any() else {}
+    floor += high * len(places)
+    top = floor + high
+    places[names.OVERTURNS] = middle = floor + 0.4 * high
     axes.axhspan(floor, top, color=style.SHADE, linewidth=0)
+    if doubtful.any():
+        axes.axhspan(floor - high, floor, **style.UNKNOWN, alpha=0.5)
+    peaks = np.where(fallen, middle, np.where(doubtful, places.get(names.UNKNOWN, middle), peaks))
     axes.axhline(1.0, color=style.FAINT, linewidth=style.CURVE)
     some = np.linspace(0, len(peaks) - 1, min(len(peaks), DRAWN_LADDERS)).round().astype(int)
-    for each in np.where(fallen, middle, peaks)[some]:
+    for each in peaks[some]:
         axes.plot(intensity, each, color=style.FAINT, linewidth=style.THIN, alpha=0.8)
-    ranked = np.sort(np.where(fallen, np.inf, peaks), axis=0)
+    ranked = np.sort(peaks, axis=0)
     name = "one record" if some.size == len(peaks) else f"one record, {some.size} drawn"
     handles = [Line2D([], [], color=style.FAINT, linewidth=style.THIN, label=name)]
     for k, (fractile, name) in zip((1, 0, 2), FRACTILES, strict=True):
         place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that so many records do not exceed
         look = style.distinct(k) | {"marker": "none", "linewidth": 2.0}
-        line = np.minimum(ranked[place], middle)
-        line[1:][np.isinf(ranked[place][1:]) & np.isinf(ranked[place][:-1])] = np.nan  # it ends where it overturns
+        line = ranked[place].copy()
+        above = line > min(places.values()) * (1 - 1e-9)
+        line[1:][above[1:] & above[:-1]] = np.nan  # it ends where it overturns, or is not known
         handles += axes.plot(intensity, line, label=name, **look)
     every = max(1, int(np.ceil(intensity.size / CROWDED)))
-    for x, count in list(zip(intensity, fallen.sum(axis=0), strict=True))[::every]:
-        if count:
-            axes.annotate(f"{count}", (x, top), xytext=(0, -2), textcoords="offset points", ha="center", va="top",
-                          fontsize=style.SMALL)  # fmt: skip
+    for which, edge in ((fallen, top), (doubtful, floor)):
+        for x, count in list(zip(intensity, which.sum(axis=0), strict=True))[::every]:
+            if count:
+                axes.annotate(f"{count}", (x, edge), xytext=(0, -2), textcoords="offset points", ha="center", va="top",
+                              fontsize=style.SMALL)  # fmt: skip
     if intensity[-1] > WIDEST * intensity[0]:
         axes.set_xscale("log")
         style.plain_numbers(axes.xaxis)
     axes.set_xlim(float(intensity[0]), float(intensity[-1]))
     axes.set_ylim(0.0, top)
-    axes.set_yticks([*np.arange(0.0, 1.1, 0.2), middle], [*(f"{y:.1f}" for y in np.arange(0.0, 1.1, 0.2)), "overturns"])
+    ticks = np.arange(0.0, 1.1, 0.2)
+    axes.set_yticks([*ticks, *places.values()], [*(f"{y:.1f}" for y in ticks), *places])
     axes.set_xlabel(label, fontsize=style.LABEL)
     axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=style.LABEL)
     style.tidy(axes)
-    handles.append(Line2D([], [], linestyle="none", label=f"numbers: records that overturn, of {len(peaks)}"))
+    also = f" or\nare of {names.UNKNOWN} outcome" if doubtful.any() else ""
+    handles.append(Line2D([], [], linestyle="none", label=f"numbers: records that overturn{also}, of {len(peaks)}"))
     figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=style.TICK, frameon=False)
     return figure
 
@@ -260,36 +348,34 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     Returns
     -------
     matplotlib.figure.Figure
-        Of many runs an even share is drawn.
+        Of many runs an even share is drawn. If many are of unknown outcome, grey contours are those of the surface in
+        which these do not exceed.
     """
     figure = style.new_figure(4.9)
     axes = figure.subplots()
     _head(axes, title)
-    surface, spared = found.surface, found.runs - found.exceeding
-    share = max(int(np.count_nonzero(spared)) + int(np.count_nonzero(found.exceeding)), 1)
+    surface, spared, exceeding = found.surface, found.runs - found.exceeding, (found.lower or found).exceeding
+    doubtful = found.exceeding - exceeding
+    share = max(sum(int(np.count_nonzero(each)) for each in (spared, exceeding, doubtful)), 1)
     every = int(np.ceil(share / DRAWN_RUNS))
     handles: list[Any] = [
         axes.scatter(*_some(found, spared, every), s=14, facecolors="none", edgecolors=style.SPARED,
                      linewidths=style.CURVE, label=f"does not exceed ({spared.sum()})"),
-        axes.scatter(*_some(found, found.exceeding, every), s=16, marker="x", color=style.EXCEEDED,
-                     linewidths=style.MEDIUM, label=f"exceeds ({found.exceeding.sum()})"),
+        axes.scatter(*_some(found, exceeding, every), s=16, marker="x", color=style.EXCEEDED,
+                     linewidths=style.MEDIUM, label=f"exceeds ({exceeding.sum()})"),
     ]  # fmt: skip
+    if doubtful.any():
+        handles.append(
+            axes.scatter(*_some(found, doubtful, every), s=14, marker="D", facecolors="none", edgecolors=style.FAINT,
+                         linewidths=style.CURVE, label=f"{names.UNKNOWN} outcome ({doubtful.sum()})")
+        )  # fmt: skip
     axes.set_xscale("log")
     axes.set_yscale("log")
     across, up = (np.geomspace(x.min() / 1.15, x.max() * 1.15, FINE) for x in (found.x1, found.x2))
-    if surface.kind == "none":
-        handles.append(Line2D([], [], linestyle="none", label=_lines(f"no surface: {surface.why}")))
-    else:
-        drawn = axes.contour(
-            across, up, surface.probability(*np.meshgrid(across, up)), levels=LEVELS, colors=style.INK,
-            linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],
-        )  # fmt: skip
-        for name in axes.clabel(
-            drawn, manual=_label_places(drawn, across, up), fmt=lambda level: f"{100 * level:g} %", fontsize=style.TICK
-        ):
-            name.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
-            name.set_zorder(6)  # over the marks
-        handles.append(Line2D([], [], color=style.INK, label="probability of exceedance"))
+    band = found.is_band and found.lower is not None
+    if band and found.lower is not None:
+        handles.append(_contours(axes, found.lower.surface, across, up, style.RECORD, EDGES[1]))
+    handles.append(_contours(axes, surface, across, up, style.INK, EDGES[0] if band else ""))
     said = [surface.warning] if surface.warning else []
     said += [f"one of every {every} runs is drawn"] if every > 1 else []
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in said]
@@ -300,9 +386,25 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     axes.set_xlabel(labels[0], fontsize=style.LABEL)
     axes.set_ylabel(labels[1], fontsize=style.LABEL)
     style.tidy(axes)
-    columns = 1 if surface.kind == "none" or said else 2
+    columns = 1 if surface.kind == "none" or said or band else 2
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=style.TICK, frameon=False)
     return figure
+
+
+def _contours(axes: Axes, surface: Surface, across: Reals, up: Reals, color: str, which: str) -> Line2D:
+    """Draw the contours of a surface, and return its entry in the legend."""
+    if surface.kind == "none":
+        return Line2D([], [], linestyle="none", label=_lines(f"no surface{which and f' {which}'}: {surface.why}"))
+    drawn = axes.contour(
+        across, up, surface.probability(*np.meshgrid(across, up)), levels=LEVELS, colors=color,
+        linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],
+    )  # fmt: skip
+    for name in axes.clabel(
+        drawn, manual=_label_places(drawn, across, up), fmt=lambda level: f"{100 * level:g} %", fontsize=style.TICK
+    ):
+        name.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
+        name.set_zorder(6)  # over the marks
+    return Line2D([], [], color=color, label=f"probability of exceedance{which and f', {which}'}")
 
 
 def _label_places(drawn: QuadContourSet, across: Reals, up: Reals) -> list[tuple[float, float]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import inf, isfinite
 from textwrap import shorten
 
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.holding import known_until
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
@@ -29,6 +31,7 @@ MOST_NEEDED = 2.0  # friction shown at most: a joint with almost no normal force
 IMPACTS = f"impacts of {100 * FELT:g} % of the strongest or more, in the order of the legend"
 FORCE = " force [N]"  # what columns of forces end with
 MOST_TIES, LONGEST = 6, 30  # ties in a panel, and characters of their names
+NARROW = 0.7  # of the time axis: words do not fit beyond an outcome that is known further than that
 LANE = 0.025  # of the panel's height: where the impacts of each model are marked
 
 
@@ -43,6 +46,8 @@ def draw_history(
     watched: Watched | None = None,
 ) -> Figure:
     """Draw histories over time.
+
+    Where the outcome is unknown, panels are hatched, and nothing else is drawn there, as no model is a result.
 
     Parameters
     ----------
@@ -86,18 +91,26 @@ def draw_history(
         _draw_motion(panels[0], motion, end, pulse[0] if pulse is not None else None)
         if uplift is not None and motion.vertical is None and not any(run.lifted for run in runs):
             _draw_uplift(panels[0], uplift)
-    reach = max(float(np.nanmax(np.abs(run.ratio))) for run in runs)
+    until = {what: known_until(each) for what, each in responses.items()}
+    reach = max(
+        float(np.nanmax(np.abs(run.ratio[run.time <= until[what]])))
+        for what, each in responses.items()
+        for run in each.values()
+    )
     tall = min(max(1.1 * reach, 1e-3), TALLEST)
     below = panels[shaken : shaken + len(each_has) * len(responses)]
     for axes, (what, each) in zip(below[:: len(each_has)], responses.items(), strict=True):
-        _draw_responses(axes, each, what, tall)
+        _draw_responses(axes, each, what, tall, until[what])
+        _hatch_unknown(axes, until[what], end)
         if watched is not None and not watched.mechanism.rocks_both_ways:
             _draw_wall(axes, watched.mechanism.directions[0], tall)
     if watched is not None and tied:
-        for axes, each in zip(below[1::2], responses.values(), strict=True):
+        for axes, (what, each) in zip(below[1::2], responses.items(), strict=True):
             _draw_forces(axes, each, watched)
+            _hatch_unknown(axes, until[what], end)
     if rubs:
         _draw_contacts(panels[-1], contacts)
+        _hatch_unknown(panels[-1], max(list(until.values())[: len(contacts)]), end)
     panels[-1].set_xlim(0.0, end)
     panels[-1].set_xlabel("time [s]", fontsize=style.LABEL)
     figure.align_ylabels()
@@ -111,6 +124,18 @@ def _draw_uplift(axes: Axes, uplift: tuple[float, float]) -> None:
         axes.axhline(level, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
     axes.set_ylim(-1.5 * positive, 1.5 * negative)  # room for the notes
     style.note(axes, f"dotted: uplift at {negative:.3g} g and {-positive:.3g} g", height=0.14)
+
+
+def _hatch_unknown(axes: Axes, until: float, end: float) -> None:
+    """Hatch what is after the time until which the outcome is known [s], up to the end of the panel."""
+    if not isfinite(until):
+        return
+    axes.axvspan(until, end, zorder=0.5, **style.UNKNOWN)
+    place, side = (end, "right") if until > NARROW * end else ((until + end) / 2, "center")
+    axes.annotate(
+        f"{names.UNKNOWN} after {until:.4g} s", (place, 0.55), xycoords=axes.get_xaxis_transform(), ha=side,
+        va="center", fontsize=style.LABEL, bbox={"facecolor": "white", "edgecolor": "none", "pad": 2},
+    )  # fmt: skip
 
 
 def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit | None) -> None:
@@ -139,9 +164,11 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
     style.tidy(axes)
 
 
-def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: str, tall: float) -> None:
+def _draw_responses(
+    axes: Axes, histories: Mapping[ModelName, History], what: str, tall: float, until: float = inf
+) -> None:
     for lane, (name, run) in enumerate(histories.items()):
-        _draw_run(axes, name, run, (len(histories) - lane) * LANE)
+        _draw_run(axes, name, run, (len(histories) - lane) * LANE, until)
     for level in (-1.0, 1.0):
         axes.axhline(level, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
@@ -149,7 +176,10 @@ def _draw_responses(axes: Axes, histories: Mapping[ModelName, History], what: st
     over = style.over(next(iter(histories.values())).ends_at_limit, math=True)
     axes.set_ylabel(f"rotation {over}, clockwise up", fontsize=style.LABEL)
     place = (0.005, (len(histories) + 1.2) * LANE)
-    axes.annotate(IMPACTS, place, xycoords="axes fraction", fontsize=style.SMALL, color=style.INK)
+    axes.annotate(
+        IMPACTS, place, xycoords="axes fraction", fontsize=style.SMALL, color=style.INK,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
+    )  # fmt: skip
     if not any(run.lifted for run in histories.values()):
         axes.text(0.5, 0.6, names.NO_UPLIFT, transform=axes.transAxes, ha="center", fontsize=style.LABEL)
     falls_up = any(run.fell_to == Direction.POSITIVE for run in histories.values())  # into the right corner
@@ -215,17 +245,19 @@ def _draw_forces(axes: Axes, histories: Mapping[ModelName, History], watched: Wa
     style.tidy(axes)
 
 
-def _draw_run(axes: Axes, name: str, run: History, height: float) -> None:
+def _draw_run(axes: Axes, name: str, run: History, height: float, until: float) -> None:
     look = style.LINES[name]
-    fate = f", {names.OVERTURNS}" if run.overturned else ""
-    followed = run.ratio[np.isfinite(run.ratio)]  # all, or all before overturning
-    if run.overturned:
+    falls = run.overturned and run.overturning_time <= until
+    fate = f", {names.OVERTURNS}" if falls else f", {names.UNKNOWN} after {run.known_to:.4g} s" if run.unknown else ""
+    followed = run.ratio[np.isfinite(run.ratio) & (run.time <= until)]  # all, or all before overturning
+    if falls:
         followed = followed[: np.flatnonzero(np.abs(followed) <= FALLING)[-1] + 1]
         axes.plot(run.time[followed.size - 1], followed[-1], marker="x", markersize=6, color=look["color"])
     shown = visible(followed)
     axes.plot(run.time[shown], followed[shown], label=style.LABELS[name] + fate, **look)  # type: ignore[arg-type]
-    if len(run.impacts):
-        felt = run.impacts[run.impacts[:, 2] >= FELT * run.impacts[:, 2].max(), 0]
+    impacts = run.impacts[run.impacts[:, 0] <= until]
+    if len(impacts):
+        felt = impacts[impacts[:, 2] >= FELT * impacts[:, 2].max(), 0]
         axes.plot(
             felt,
             np.full(felt.size, height),

@@ -18,6 +18,8 @@ TICKS = (0.2, 0.5, 1, 2, 5)
 def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     """Draw the shares of overturning over the factor on one or more motions; a star marks each motion itself.
 
+    A hatched band goes from the share that overturns to that which overturns or is of unknown outcome.
+
     Parameters
     ----------
     margins : mapping of str to Margin
@@ -36,6 +38,12 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
         look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
         axes.plot(each.factors, each.overturned, label=shorten(name, NAME, placeholder=" ..."), **look)
         axes.plot(1.0, each.itself, color=look["color"], clip_on=False, **style.STAR)
+        if each.unknown.any():
+            between = style.UNKNOWN | {"edgecolor": look["color"]}
+            axes.fill_between(each.factors, each.overturned, each.at_most, alpha=0.4, **between)
+            axes.plot(
+                each.factors, each.at_most, color=look["color"], linestyle=look["linestyle"], linewidth=style.CURVE
+            )
         if each.uplift is not None:
             # What lifts it may lie beyond the factors: an arrowhead at that end points to it.
             low, high = each.factors[0], each.factors[-1]
@@ -51,11 +59,14 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.set_ylim(-0.03, 1.03)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    doubtful = any(each.unknown.any() for each in margins.values())
     axes.set_ylabel("share of neighbours that overturn", fontsize=style.LABEL)
     arrow = ", arrowhead: beyond the axis" if beyond else ""
     axes.set_xlabel(f"scale factor of the motion (star: as given; tick: uplift{arrow})", fontsize=style.LABEL)
     axes.margins(x=0.01)
+    if doubtful:
+        axes.fill_between([], [], [], label="hatched: unknown, the share is between the lines", **style.UNKNOWN)
     style.tidy(axes)
-    if len(margins) > 1:
+    if len(margins) > 1 or doubtful:
         figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False, handlelength=3.5)
     return figure

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.holding import known_until
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
@@ -78,12 +79,12 @@ def moving(
 def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dict[str, Any]:
     """The rotation over the critical one, or over the kinematic limit if there is none, against time.
 
-    There is a curve for each model, of some two samples for each bin.
+    There is a curve for each model, of some two samples for each bin, up to where the outcome is known.
     """
-    series, reach = [], 0.0
+    series, reach, until = [], 0.0, known_until(histories)
     first = next(iter(histories.values()))
     for name, run in histories.items():
-        ratio = run.ratio[np.isfinite(run.ratio)]
+        ratio = run.ratio[np.isfinite(run.ratio) & (run.time <= until)]
         reach = max(reach, float(np.abs(ratio).max()))
         shown = visible(ratio, bins)
         series.append(_series(NAMES[name], name, run.time[shown], ratio[shown]))

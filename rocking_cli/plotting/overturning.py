@@ -48,12 +48,16 @@ def draw_map(
         across, up, kinds, cmap=ListedColormap(list(style.REGIONS.values())), vmin=-0.5, vmax=len(style.REGIONS) - 0.5,
         shading="nearest", rasterized=True,
     )  # fmt: skip
-    contours = _draw_peaks(axes, across, up, found.outcome.peak_ratio)
+    _hatch(axes, across, up, found.outcome.unknown)
+    contours = _draw_peaks(axes, across, up, np.where(found.outcome.unknown, np.nan, found.outcome.peak_ratio))
     handles: list[Line2D | Patch] = [
-        Patch(facecolor=fill, edgecolor=style.FAINT, label=label)
+        Patch(
+            facecolor=fill, edgecolor=style.FAINT, label=label,
+            hatch=style.UNKNOWN["hatch"] if label == names.UNKNOWN else None,
+        )
         for k, (label, fill) in enumerate(style.REGIONS.items())
         if (kinds == k).any()
-    ]
+    ]  # fmt: skip
     handles += contours
     handles += _draw_boundaries(axes, found, dimensionless=dimensionless)
     figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
@@ -74,6 +78,15 @@ def draw_map(
     style.tidy(axes)
     axes.grid(False)
     return figure
+
+
+def _hatch(axes: Axes, across: Reals, up: Reals, unknown: NDArray[np.bool_]) -> None:
+    """Hatch the region of unknown outcome."""
+    if unknown.any():
+        region = axes.contourf(
+            across, up, unknown.astype(np.float64), [0.5, 1.5], hatches=[style.UNKNOWN["hatch"]], colors="none"
+        )
+        region.set(edgecolor=style.UNKNOWN["edgecolor"], linewidth=0.0)
 
 
 def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line2D]:
@@ -99,7 +112,7 @@ def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line
 
 def _kinds(found: OverturningMap) -> NDArray[np.int64]:
     """For each point the place of its fill."""
-    kinds = found.regions + (found.regions == Region.WITHOUT_IMPACT)
+    kinds = found.regions + (found.regions >= Region.WITHOUT_IMPACT)
     return np.where((found.regions == Region.AFTER_IMPACT) & (found.outcome.impact_count > 1), 3, kinds)
 
 
@@ -129,6 +142,8 @@ def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) 
 def draw_comparison(found: Comparison, title: str) -> Figure:
     """Draw the least amplitude that overturns each structure over the period of the pulse.
 
+    If outcomes are unknown below it, a hatched band goes down to the least amplitude of unknown outcome.
+
     Parameters
     ----------
     found : Comparison
@@ -143,9 +158,12 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     for k, (structure, least) in enumerate(zip(found.structures, found.least, strict=True)):
         name = style.plain(structure.name)
         axes.plot(found.periods, least, label=name, markevery=(k * every // 4, every), **style.distinct(k))
+        _draw_doubt(axes, found, k)
+    if found.doubtful.any():
+        axes.fill_between([], [], [], label="hatched down to the thin line: unknown outcome", **style.UNKNOWN)
     axes.set_xscale("log")  # a curve is steep where pulses are short
     axes.set_yscale("log")
-    if np.isnan(found.least).all():
+    if np.isnan(found.possible).all():
         axes.set_ylim(found.top / 10, found.top)  # there is no curve to choose them by
         style.note(axes, "no structure overturns")
     for axis in (axes.xaxis, axes.yaxis):
@@ -156,3 +174,14 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     axes.legend(**style.LEGEND, handlelength=4)
     style.tidy(axes)
     return figure
+
+
+def _draw_doubt(axes: Axes, found: Comparison, k: int) -> None:
+    """Hatch between which amplitudes a structure begins to overturn, if unknown outcomes leave that open."""
+    if not found.doubtful[k].any():
+        return
+    look = style.distinct(k)
+    possible = found.possible[k]
+    end = np.where(np.isnan(found.least[k]) & np.isfinite(possible), found.top, found.least[k])
+    axes.fill_between(found.periods, possible, end, alpha=0.4, **(style.UNKNOWN | {"edgecolor": look["color"]}))
+    axes.plot(found.periods, possible, color=look["color"], linestyle=look["linestyle"], linewidth=style.CURVE)

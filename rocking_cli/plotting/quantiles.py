@@ -19,12 +19,14 @@ Reals = NDArray[np.float64]
 WIDEST = 30.0  # ratio of the ends of an axis from which on it is logarithmic
 SHADED = 0.16  # how dark the shade from the lowest quantile to the highest is
 HIGHEST = 0.85  # where in the band of overturning the lines end
-ORDER = (names.NO_UPLIFT, names.ROCKS, names.OVERTURNS)
+ORDER = (names.NO_UPLIFT, names.ROCKS, names.UNKNOWN, names.OVERTURNS)
 FALLEN = "#c46a1b"  # light enough for its line, and darker in grey than those that rock
 
 
 def draw_quantiles(found: Quantiles, label: str) -> Figure:
     """Draw the quantiles of the peak rotation, and below them the shares that do not uplift, rock, and overturn.
+
+    The share of unknown outcome is hatched.
 
     Parameters
     ----------
@@ -37,7 +39,7 @@ def draw_quantiles(found: Quantiles, label: str) -> Figure:
     -------
     matplotlib.figure.Figure
         Marked, over a shade: of the runs that rock and stand. Black: of all runs; such a line ends in the band of
-        overturning.
+        overturning, or of unknown outcome.
     """
     figure = style.new_figure(5.2)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))
@@ -69,16 +71,20 @@ def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
     handles: list[Any] = [shade]
     handles += axes.plot(x, rocking[1], color=color, linewidth=style.BOLD, marker="o", markersize=3.5,
                          label="runs that rock, median", zorder=4)  # fmt: skip
-    handles.append(Line2D([], [], linestyle="none", label=""))  # so that each column is of one kind
+    blank = Line2D([], [], linestyle="none", label="")  # so that each column is of one kind
+    handles += [blank, blank] if found.unknown else [blank]
     for line, dash, name in zip(every, ("--", "-", "-."), ("16 %", "median", "84 %"), strict=True):
         end = np.where(np.isinf(line), floor + HIGHEST * (top - floor), line)
         end[1:][np.isinf(line[1:]) & np.isinf(line[:-1])] = np.nan
         handles += axes.plot(x, end, color=style.INK, linestyle=dash, linewidth=style.MEDIUM, label=f"all runs, {name}")
+    handles += [blank] if found.unknown else []
     ticks = np.arange(0.0, floor, 0.2 if floor > 0.5 else floor / 5).tolist()
     if falls:
         axes.axhspan(floor, top, color=style.SHADE, linewidth=0)
         middle = (floor + top) / 2
-        axes.set_yticks([*ticks, middle], [*(f"{y:.2g}" for y in ticks), names.OVERTURNS])
+        known = not any(any(each.doubtful) for each in found.groups)
+        word = names.OVERTURNS if known else f"{names.OVERTURNS}\nor {names.UNKNOWN}"
+        axes.set_yticks([*ticks, middle], [*(f"{y:.2g}" for y in ticks), word])
     axes.set_ylim(0.0, top)
     axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=style.LABEL)
     return handles
@@ -87,13 +93,20 @@ def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
 def _shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
     """The shares of the runs, one over the other."""
     runs = np.array([each.runs for each in found.groups])
-    still, fallen = (
-        np.array([getattr(each, of) for each in found.groups]) / runs for of in ("no_uplift", "overturned")
+    still, unknown, fallen = (
+        np.array([getattr(each, of) for each in found.groups]) / runs for of in ("no_uplift", "unknown", "overturned")
     )  # fmt: skip
-    colors = (style.REGIONS[names.NO_UPLIFT], style.REGIONS[names.ROCKS], FALLEN)
+    colors = (style.REGIONS[names.NO_UPLIFT], style.REGIONS[names.ROCKS], style.SHADE, FALLEN)
+    shares = [still, 1 - still - unknown - fallen, unknown, fallen]
+    those = [k for k in range(len(ORDER)) if ORDER[k] != names.UNKNOWN or found.unknown]
     drawn = axes.stackplot(
-        x, still, 1 - still - fallen, fallen, labels=ORDER, colors=colors, edgecolor=style.INK, linewidth=style.THIN
+        x, *(shares[k] for k in those), labels=[ORDER[k] for k in those], colors=[colors[k] for k in those],
+        edgecolor=style.INK, linewidth=style.THIN,
     )  # fmt: skip
+    for each in drawn:
+        if each.get_label() == names.UNKNOWN:
+            each.set_hatch(style.UNKNOWN["hatch"])
+            each.set_edgecolor(style.UNKNOWN["edgecolor"])
     axes.set_ylim(0.0, 1.0)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     axes.set_ylabel("runs", fontsize=style.LABEL)

@@ -13,7 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, PercentFormatter
+from numpy.typing import NDArray
 
+from rocking_cli import names
 from rocking_cli.plotting import style
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Reals
@@ -22,11 +24,13 @@ NAME = 40  # characters of a structure's name in the legend
 SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks
 SHADED = 2  # curves up to which the spread of the motions is drawn: more shades cannot be told apart
 CLEAR = 20  # motions up to which the line of each is opaque
-ROW = 0.06  # height of the row of marks where a curve overturns, over that of the peaks
+ROW = 0.06  # height of the row of marks where a curve overturns, or is unknown, over that of the peaks
 
 
 def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title: str) -> Figure:
     """Draw spectra over 2 pi/p, the structures as given marked; of several motions below the share that overturns.
+
+    Open symbols above the peaks are of unknown outcome; below, a hatched band goes up to the share with these.
 
     Parameters
     ----------
@@ -43,19 +47,25 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     panels = figure.subplots(1 + many, 1, sharex=True, squeeze=False, height_ratios=[2.4, 1][: 1 + many])[:, 0]
     style.heading(panels[0], title)
     medians = [each.fractile(0.5) for each in spectra]
-    rows = [k for k, median in enumerate(medians) if np.isinf(median).any()]
+    falls = [np.isinf(median) & each.fractile_overturns(0.5) for each, median in zip(spectra, medians, strict=True)]
+    doubtful = [np.isinf(median) & ~fall for median, fall in zip(medians, falls, strict=True)]
+    rows = [(k, True) for k, some in enumerate(falls) if some.any()]
+    rows += [(k, False) for k, some in enumerate(doubtful) if some.any()]
     shaded = many and low < high and len(spectra) <= SHADED
     top = _top(spectra, high if shaded else 0.5)
     for k, (each, median) in enumerate(zip(spectra, medians, strict=True)):
         if shaded:
             _draw_spread(panels[0], each, k, (low, high), top, every=len(spectra) == 1)
         if many:
+            _draw_doubt(panels[1], each, k)
             _draw_line(panels[1], each, k, each.share)
-        _draw_line(panels[0], each, k, median, row=top * (1 + ROW * (rows.index(k) + 0.5)) if k in rows else np.nan)
+        heights = {known: top * (1 + ROW * (place + 0.5)) for place, (of, known) in enumerate(rows) if of == k}
+        beyond = np.where(falls[k], heights.get(True, np.nan), heights.get(False, np.nan))
+        _draw_line(panels[0], each, k, median, beyond, doubtful[k])
         if each.given is not None:
             for axes in panels:
                 axes.axvline(each.periods[each.given], color=style.INK, linewidth=style.CURVE, linestyle=":", zorder=1)
-    _scale_peaks(panels[0], top, len(rows))
+    _scale_peaks(panels[0], top, [known for _, known in rows])
     if many:
         panels[1].set_ylim(-0.04, 1.04)
         panels[1].yaxis.set_major_formatter(PercentFormatter(1.0))
@@ -69,7 +79,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         _log_ticks(axes.xaxis, spectra[0].periods[-1] / spectra[0].periods[0])
         style.tidy(axes)
     _second_axis(panels[0], spectra)
-    handles = _legend(spectra, (low, high) if shaded else None)
+    handles = _legend(spectra, (low, high) if shaded else None, many=many)
     figure.legend(
         handles=handles, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False, handlelength=3.5
     )
@@ -108,8 +118,28 @@ def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float]
         axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=style.THIN, alpha=max(clear, 0.1))
 
 
-def _draw_line(axes: Axes, each: Spectrum, k: int, values: Reals, row: float = np.nan) -> None:
-    """Draw a curve and the structure as given on it; where it is infinite a mark each in a row of its own."""
+def _draw_doubt(axes: Axes, each: Spectrum, k: int) -> None:
+    """Hatch up to the share that overturns if all motions of unknown outcome do."""
+    if not each.unknown.any():
+        return
+    look = style.distinct(k)
+    low, high = each.share * _within(each), each.share_at_most * _within(each)
+    axes.fill_between(each.periods, low, high, alpha=0.4, **(style.UNKNOWN | {"edgecolor": look["color"]}))
+    axes.plot(each.periods, high, color=look["color"], linestyle=look["linestyle"], linewidth=style.CURVE)
+
+
+def _draw_line(
+    axes: Axes,
+    each: Spectrum,
+    k: int,
+    values: Reals,
+    beyond: Reals | float = np.nan,
+    doubtful: NDArray[np.bool_] | bool = False,
+) -> None:
+    """Draw a curve and the structure as given on it; where it is infinite a mark each at the heights `beyond`.
+
+    Marks of unknown outcomes are open.
+    """
     look = style.distinct(k)
     finite = np.where(np.isfinite(values), values, np.nan)
     spaced = max(1, each.scales.size // 8)
@@ -117,22 +147,31 @@ def _draw_line(axes: Axes, each: Spectrum, k: int, values: Reals, row: float = n
     small = look | {"linestyle": "none", "markersize": 3.5}
     no_line = np.isnan(np.pad(finite, 1, constant_values=np.nan))
     axes.plot(each.periods, np.where(no_line[:-2] & no_line[2:], finite, np.nan), **small)
-    marks = np.where(np.isinf(values), row, np.nan)
-    axes.plot(each.periods, marks, **small)
-    finite = np.where(np.isinf(values), row, finite)
+    marks = np.where(np.isinf(values), beyond, np.nan)
+    unknown = np.broadcast_to(doubtful, marks.shape)
+    axes.plot(each.periods, np.where(unknown, np.nan, marks), **small)
+    axes.plot(each.periods, np.where(unknown, marks, np.nan), **small, markerfacecolor="white")
+    finite = np.where(np.isinf(values), beyond, finite)
     if each.given is not None:
-        axes.plot(each.periods[each.given], finite[each.given], color=look["color"], clip_on=False, **style.STAR)
+        star = style.STAR | {"color": look["color"], "clip_on": False}
+        if unknown[each.given]:
+            star |= {"markerfacecolor": "white", "markeredgecolor": look["color"]}
+        axes.plot(each.periods[each.given], finite[each.given], **star)
 
 
-def _scale_peaks(axes: Axes, top: float, rows: int) -> None:
-    """Scale the upper panel: peaks, and above them a row for each curve where it overturns."""
+def _scale_peaks(axes: Axes, top: float, rows: Sequence[bool]) -> None:
+    """Scale the upper panel: peaks, above them a row for each curve where it overturns, then where it is unknown."""
     ticks = [tick for tick in MaxNLocator(6).tick_values(0.0, top) if 0 <= tick <= top]
     labels = [f"{tick:g}" for tick in ticks]
-    roof = top * (1 + ROW * rows)
-    if rows:
-        axes.axhspan(top, roof, color=style.SHADE, zorder=0)
-        ticks.append((top + roof) / 2)
-        labels.append("overturns")
+    middle, roof = (top * (1 + ROW * count) for count in (sum(rows), len(rows)))
+    if middle > top:
+        axes.axhspan(top, middle, color=style.SHADE, zorder=0)
+        ticks.append((top + middle) / 2)
+        labels.append(names.OVERTURNS)
+    if roof > middle:
+        axes.axhspan(middle, roof, zorder=0, **style.UNKNOWN)
+        ticks.append((middle + roof) / 2)
+        labels.append(names.UNKNOWN)
     axes.set_yticks(ticks, labels)
     axes.set_ylim(-0.02 * top, roof)
 
@@ -171,7 +210,7 @@ def _between(x: Reals, y: Reals, power: float) -> Callable[[Reals], Reals]:
     return at
 
 
-def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None) -> list[Line2D | Patch]:
+def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None, *, many: bool) -> list[Line2D | Patch]:
     handles: list[Line2D | Patch] = []
     for k, each in enumerate(spectra):
         alpha = each.shape.slenderness
@@ -183,6 +222,8 @@ def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None) -> 
     if bounds is not None:
         label = f"{100 * bounds[0]:g} to {100 * bounds[1]:g} % of the motions"
         handles.append(Patch(color=style.INK, alpha=0.15, linewidth=0, label=label))
+    if many and any(each.unknown.any() for each in spectra):
+        handles.append(Patch(label="hatched up to the thin line: unknown outcome", **style.UNKNOWN))
     if bounds is not None and len(spectra) == 1:
         handles.append(Line2D([], [], color=style.FAINT, linewidth=style.THIN, label="each motion"))
     return handles

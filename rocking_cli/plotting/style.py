@@ -58,6 +58,7 @@ REGIONS = {
     f"{names.OVERTURNS} after one impact": "#f2b04a",
     f"{names.OVERTURNS} after two or more": "#c46a1b",
     f"{names.OVERTURNS} without impact": "#5b3a55",
+    names.UNKNOWN: "#c9c9c9",  # and hatched, as `UNKNOWN` is
 }
 BOUNDARIES: dict[str, dict[str, Any]] = {
     "uplift": {"color": "#222222", "linestyle": "-", "linewidth": 1.0},
@@ -71,6 +72,9 @@ MARKED: dict[str, Any] = {
 }  # fmt: skip
 
 STAR: dict[str, Any] = {"marker": "*", "markersize": 15, "markeredgecolor": "white", "linestyle": "none", "zorder": 6}
+
+UNKNOWN: dict[str, Any] = {"facecolor": "none", "edgecolor": FAINT, "hatch": "////", "linewidth": 0.0}
+"""The look of areas in which the outcome is not known: hatched in grey."""
 
 SPARED, EXCEEDED = "#1f77b4", "#b35900"  # runs below and above a limit, apart by their marks too
 

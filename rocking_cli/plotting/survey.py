@@ -18,6 +18,7 @@ MANY = 2000  # marks of a picture of lines; more are one image within it
 MARKS: dict[str, dict[str, Any]] = {
     "does not uplift": {"marker": "o", "color": "white", "markeredgecolor": style.SPARED},
     "rocks": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
+    "unknown under at least one motion": {"marker": "D", "color": "white", "markeredgecolor": style.FAINT},
     "overturns under at least one motion": {"marker": "^", "color": style.EXCEEDED, "markeredgecolor": "white"},
     "structure": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
 }
@@ -43,9 +44,10 @@ def draw_survey(found: Survey, title: str) -> Figure:
         here = here & there
         if here.any():
             label = f"{look} ({here.sum():,})" if found.motions else None
+            edge = 0.8 if MARKS[look]["color"] == "white" else 0.3
             axes.plot(
                 p[here], uplift[here], linestyle="none", markersize=5 if len(p) <= MANY else 3, label=label,
-                markeredgewidth=0.8 if look == "does not uplift" else 0.3, rasterized=len(p) > MANY, **MARKS[look],
+                markeredgewidth=edge, rasterized=len(p) > MANY, **MARKS[look],
             )  # fmt: skip
     first = np.flatnonzero(there)[:NAMED]
     if len(p) <= FEW:
@@ -73,8 +75,15 @@ def _groups(found: Survey) -> dict[str, NDArray[np.bool_]]:
     if not found.motions:
         return {"structure": np.ones(len(found.rows), dtype=bool)}
     falls = np.array([each.under is not None and each.under.overturned > 0 for each in found.rows])
+    doubtful = np.array([each.under is not None and bool(each.under.unknown) for each in found.rows]) & ~falls
     lifts = np.array([each.under is not None and each.under.peak_ratio > 0 for each in found.rows])
-    return {"does not uplift": ~falls & ~lifts, "rocks": ~falls & lifts, "overturns under at least one motion": falls}
+    known = ~falls & ~doubtful
+    return {
+        "does not uplift": known & ~lifts,
+        "rocks": known & lifts,
+        "unknown under at least one motion": doubtful,
+        "overturns under at least one motion": falls,
+    }
 
 
 def _axes(axes: Axes) -> None:

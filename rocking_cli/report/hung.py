@@ -48,6 +48,7 @@ def hung_on(content: Assessment) -> Hung | None:
         return None
     watched = Watched(mechanism)
     found = {each.given.motion.name: _worse(watched, each) for each in content.results}
+    shown = {name + _until(moved): moved for name, moved in found.items()}
     things = mechanism.attached
     return Hung(
         masses=[_mass(each) for each in things if isinstance(each, PointMass)],
@@ -55,16 +56,21 @@ def hung_on(content: Assessment) -> Hung | None:
         ties=[_tie(each) for each in things if isinstance(each, Spring | SpringBed)],
         moved=[
             [name, point.name, _mm(point.horizontal), _mm(point.vertical)]
-            for name, moved in found.items()
+            for name, moved in shown.items()
             for point in moved.points
         ],
         strained=[
             [name, tie.name, _kilo(tie.force), _mm(tie.elongation)]
-            for name, moved in found.items()
+            for name, moved in shown.items()
             for tie in moved.ties
         ],
         said=list(_said(found)),
     )
+
+
+def _until(moved: Movements) -> str:
+    """Until when the values are the largest, after the name of a motion; empty if they are so throughout."""
+    return "" if isnan(moved.known_to) else f", up to {moved.known_to:.4g} s"
 
 
 def _worse(watched: Watched, result: MotionResult) -> Movements:
@@ -114,6 +120,7 @@ def _mm(value: float) -> str:
 
 def _said(found: Mapping[str, Movements]) -> Iterator[str]:
     """Yield sentences on the largest tie force, and on the motions that overturn the structure."""
+    unknown = [name for name, moved in found.items() if not isnan(moved.known_to)]
     every = [(name, tie) for name, moved in found.items() for tie in moved.ties if not isnan(tie.force)]
     if every:
         name, tie = max(every, key=lambda each: abs(each[1].force))
@@ -121,7 +128,12 @@ def _said(found: Mapping[str, Movements]) -> Iterator[str]:
             sense = "tension" if tie.force > 0 else "compression"
             yield f"{tie.name} has the largest force: {_kilo(abs(tie.force))} kN in {sense}, under {name}."
         else:
-            yield "No ground motion causes a force in any tie."
+            yield f"No ground motion causes a force in any tie{', as far as outcomes are known' if unknown else ''}."
+    if unknown:
+        yield (
+            f"Under {' and '.join(unknown)} the outcome is unknown from the given time on: displacements and tie "
+            "forces are those until then, and larger ones may follow."
+        )
     falls = [name for name, moved in found.items() if any(isnan(point.horizontal) for point in moved.points)]
     if falls:
         yield (

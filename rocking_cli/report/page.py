@@ -32,6 +32,7 @@ from rocking_cli.studies.assessment import Assessment, MotionResult, PulseMap, a
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
 from rocking_cli.studies.movements import Watched
+from rocking_cli.studies.overturning import Region
 from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.contact import COLUMNS as CONTACT_COLUMNS
@@ -71,9 +72,10 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         verified=verified,
         verification=parts(verified.within, content.mechanism, level=3) if verified is not None else "",
         answer=words.in_a_sentence(content),
-        falls=any(each.histories["nonlinear"].overturned for each in content.results),
+        falls=any(each.histories["nonlinear"].overturned or each.unknown for each in content.results),
         verdicts=words.verdicts(content),
         overview=words.overview(content),
+        overview_columns=words.overview_columns(content, _over(content)),
         governs=words.governs(content) if content.results else "",
         doubts=words.doubts(content),
         restitution=words.restitution(content),
@@ -92,11 +94,13 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
             [
                 each.given.motion.name + (", reversed" if sign < 0 else ""),
                 *contact_row(contact, content.mechanism),
+                _known(each.runs[sign]["nonlinear"]),
             ]
             for each in content.results
             for sign, contact in each.contacts.items()
         ],
-        contact_columns=["ground motion", *CONTACT_COLUMNS],
+        checked=any(contact.followed for each in content.results for contact in each.contacts.values()),
+        contact_columns=["ground motion", *CONTACT_COLUMNS, "outcome known"],
         margins=_still(draw_margins({each.given.motion.name: each.margin for each in content.results}, ""), "margins")
         if content.results
         else None,
@@ -235,6 +239,7 @@ def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> d
     return {
         "name": result.given.motion.name,
         "reversed": result.polarity == -1,
+        "unknown": result.unknown,
         "moment": moment,
         "data": Markup(as_script(data)),
         "id": f"motion-{k}",
@@ -252,6 +257,11 @@ def _peak_time(run: History, film: Film) -> float:
     return float(run.time[int(np.nanargmax(np.abs(run.ratio)))]) if run.peak_ratio else film.start
 
 
+def _known(run: History) -> str:
+    """Return until when the outcome of a nonlinear history is known."""
+    return f"up to {run.known_to:.4g} s" if run.unknown else "not checked" if run.check is None else "throughout"
+
+
 def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
     def angle(phi: float) -> str:
         return ABSENT if isnan(phi) else f"{degrees(phi):.4g}"
@@ -260,8 +270,15 @@ def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
     called = "the limit" if free else "critical rotation, or the limit" if some else "critical rotation"
     over = style.over(runs[0].ends_at_limit).replace("φcr", "φ_cr")
     moved = [watched.peaks(run) for run in runs]
+    known: Rows = []
+    if any(run.unknown for run in runs):
+        until = [_number(run.known_to) for run in runs]
+        known.append(["known up to; peaks, impacts and displacements are those until then", *until, "s"])
+        bounds = [_number(run.lower_bound) if run.unknown else ABSENT for run in runs]
+        known.append(["lower bound of the peak rotation ratio, until the first joint opens", *bounds, "1"])
     return [
         ["outcome", *(run.words for run in runs), ""],
+        *known,
         [
             f"peak rotation over {called}, |φ|/{over.removeprefix('φ/')}",
             *(_number(run.peak_ratio) for run in runs),
@@ -303,6 +320,7 @@ def _map(each: PulseMap, k: int) -> dict[str, Any]:
         "title": each.found.shape.title,
         "picture": _still(draw_map(each.found, "", dimensionless=False, marks=places), f"map-{k}"),
         "share": f"{100 * share(each.found):.0f} %",
+        "unknown": f"{100 * each.found.shares[Region.UNKNOWN]:.0f} %" if each.found.outcome.unknown.any() else "",
         "p": _number(shaken.p),
         "lambda": _number(shaken.lambda_),
         "rows": [

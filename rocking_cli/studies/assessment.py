@@ -120,6 +120,8 @@ class MotionResult:
         What the best pulse alone does: the peak ratio, NaN if it overturns; None if there is no pulse.
     contacts : mapping of int to Contact
         What the nonlinear history asks of the contacts, under each polarity.
+    alone_unknown : bool
+        Whether the outcome under that pulse is unknown: the ratio is then that up to where it is known.
     """
 
     given: Scaled
@@ -134,6 +136,7 @@ class MotionResult:
     fits: tuple[PulseFit, ...]
     alone: float | None
     contacts: Mapping[int, Contact]
+    alone_unknown: bool = False
 
     @property
     def motion(self) -> GroundMotion:
@@ -156,13 +159,20 @@ class MotionResult:
 
     @property
     def close(self) -> bool:
-        """Whether a small change of the motion or the model could give the other outcome."""
+        """Whether a small change of the motion or the model could give the other outcome, if this one is known."""
         best = self.histories["nonlinear"]
+        if best.unknown:
+            return False
         if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > CLOSE:
             return True
         near = (self.margin.factors > 1 / NEAR) & (self.margin.factors < NEAR)
-        shares = self.margin.overturned[near]
-        return bool((shares < LEVELS[-1]).any() if best.overturned else (shares >= LEVELS[0]).any())
+        falls, may_fall = self.margin.overturned[near], self.margin.at_most[near]
+        return bool((falls < LEVELS[-1]).any() if best.overturned else (may_fall >= LEVELS[0]).any())
+
+    @property
+    def unknown(self) -> bool:
+        """Whether the outcome is unknown under the polarity that governs, and overturns it under none."""
+        return self.histories["nonlinear"].unknown
 
     @property
     def histories(self) -> Mapping[ModelName, History]:
@@ -338,21 +348,24 @@ def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], aroun
     runs = {sign: {each.name: follow(each, motion) for each in models} for sign, motion in under.items()}
     contacts = Contacts(structure.mechanism)
     worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
+    doubtful_signs = [sign for sign in polarities if runs[sign]["nonlinear"].unknown]
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
+    alone, alone_unknown = _alone(structure, fits[0], polarities) if fits else (None, False)
     return MotionResult(
         given=given,
         file=file_of_motion(given),
         measured=measure(scaled),
         doubts=tuple(doubtful),
         runs=runs,
-        polarity=worse or polarities[0],
+        polarity=worse or [*doubtful_signs, *polarities][0],
         governs=said,
         neighbours={sign: neighbours(model, motion, around) for sign, motion in under.items()},
         margin=margin(model, scaled, polarities, around=around),
         fits=fits,
-        alone=_alone(structure, fits[0], polarities) if fits else None,
+        alone=alone,
         contacts={sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items()},
+        alone_unknown=alone_unknown,
     )
 
 
@@ -373,16 +386,20 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
     return tuple(sorted(fits, key=lambda fit: -fit.captured))
 
 
-def _alone(structure: Prepared, fit: PulseFit, polarities: Sequence[int]) -> float:
+def _alone(structure: Prepared, fit: PulseFit, polarities: Sequence[int]) -> tuple[float, bool]:
+    """The largest peak ratio under a pulse, NaN if it overturns, and whether the outcome is unknown."""
     if structure.why_no_block is not None:  # by what nothing is measured here
         alone, model = fit.pulse.sampled(), structure.model("nonlinear")
         runs = [follow(model, alone.scaled(polarity * fit.sign)) for polarity in polarities]
-        return nan if any(run.overturned for run in runs) else max(run.peak_ratio for run in runs)
+        if any(run.overturned for run in runs):
+            return nan, False
+        return max(run.peak_ratio for run in runs), any(run.unknown for run in runs)
     shape = _shape(fit.pulse)
     under = pulsed_model(structure, "nonlinear", shape, (1, -1))
     signs = [polarity * fit.sign for polarity in polarities]
     period, amplitude = np.array([fit.pulse.period]), np.array([fit.pulse.amplitude])
-    return float(outcomes(under, shape, period, amplitude, polarities=signs).peak_ratio[0])
+    found = outcomes(under, shape, period, amplitude, polarities=signs)
+    return float(found.peak_ratio[0]), bool(found.unknown[0])
 
 
 def _shape(pulse: Pulse) -> Pulse:

@@ -37,6 +37,8 @@ class Around:
         Peak acceleration in that direction, as scaled [standard gravity].
     outcomes : mapping of str to Outcome
         Of each model, an array over the azimuths.
+    checked : bool
+        Whether the joints of the structure are known; if not, no outcome of the nonlinear model is said to be unknown.
     """
 
     names: tuple[str, str]
@@ -44,6 +46,7 @@ class Around:
     azimuths: Reals
     pga: Reals
     outcomes: Mapping[ModelName, Outcomes]
+    checked: bool = True
 
 
 def all_around(
@@ -94,7 +97,8 @@ def all_around(
         for model, part in zip(followed, each, strict=True)
     }
     pga = np.array([motion.pga for motion in motions])
-    return Around((pair[0].name, pair[1].name), scale, azimuths, pga, outcomes)
+    checked = all(model.is_linear or model.joints is not None for model in followed)
+    return Around((pair[0].name, pair[1].name), scale, azimuths, pga, outcomes, checked)
 
 
 def sectors(azimuths: Reals, flags: NDArray[np.bool_]) -> list[tuple[float, float]]:

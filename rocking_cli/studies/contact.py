@@ -6,7 +6,7 @@ that is so: at every sample while the structure rocks, at its first uplift and o
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.reactions import Reactions, acceleration, at_uplift, impulses, parts, reactions
+from rocking_cli.core.reactions import Reactions, at_uplift, impulses, parts, reactions
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
@@ -74,7 +74,7 @@ class Contact:
     impact_friction : float
         The largest |dP_x|/dP_y of any impact; NaN where it does not follow, see `rocking_cli.core.reactions.impulses`.
     lost : float
-        When first a joint would have to pull, or an impact to throw one apart [s]; NaN: never.
+        When first a joint would have to pull, an impact to throw one apart, or nothing to weigh [s]; NaN: never.
     lost_joint : str
         Which.
     whole : bool
@@ -94,6 +94,10 @@ class Contact:
         looked at; None: not known, as of all structures that did not search for their mechanism.
     opens_joint : str
         Which.
+    followed : bool
+        Whether the history says itself how far joints open and slide, and until when it is known.
+    known_to : float
+        That moment [s]; NaN if all of the history is known, or it does not say so.
     """
 
     friction_needed: float
@@ -114,6 +118,8 @@ class Contact:
     demand: Reals
     opens: float | None = None
     opens_joint: str = ""
+    followed: bool = False
+    known_to: float = NONE
 
     @property
     def holds(self) -> bool:
@@ -121,6 +127,11 @@ class Contact:
         crushes = self.crushing is not None and self.crushing.used > 1
         stays = self.opens is None or bool(np.isnan(self.opens))
         return bool(np.isnan(self.lost) and np.isnan(self.slides)) and stays and not crushes
+
+    @property
+    def stands(self) -> bool:
+        """Whether the history is a result to its end: joints hold, or open and slide by no more than they may."""
+        return bool(np.isnan(self.known_to)) and (self.followed or self.holds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +146,7 @@ class Contacts:
 
     mechanism: Mechanism
 
-    def check(self, history: History, motion: GroundMotion | None, *, closed: bool = True) -> Contact:
+    def check(self, history: History, motion: GroundMotion | None) -> Contact:
         """Hold a history against what its contacts can do.
 
         Parameters
@@ -144,8 +155,6 @@ class Contacts:
             Of the nonlinear model.
         motion : GroundMotion or None
             The ground motion it is the response to.
-        closed : bool
-            Whether to look at the joints that the mechanism keeps closed too, which takes longest.
         """
         states = _states(self.mechanism, history, motion)
         # For each state the largest of all joints, and which: friction needed, pull, and force over strength.
@@ -161,39 +170,11 @@ class Contacts:
                 most[:, part], joint[:, part] = self._worst(direction, found)
                 shear = max(shear, float(np.abs(_base(found, self._rest[direction])).max()))
         asked = self._summed_up(history, states, most, joint, shear)
-        opened = self._opened(states) if closed else None
-        return asked if opened is None else replace(asked, opens=opened[0], opens_joint=opened[1])
-
-    def _opened(self, states: _States) -> tuple[float, str] | None:
-        """When first, of moments spread over the history, another joint would have opened, and which it is."""
-        moments: list[tuple[float, str]] = []
-        for direction in self.mechanism.directions:
-            mine = np.flatnonzero(states.rocks & (states.sign == direction))
-            some = mine[np.unique(np.linspace(0, mine.size - 1, min(LOOKS, mine.size)).astype(np.intp))]
-            found = self._margins(direction, states, some)
-            if found is None:
-                return None
-            open_ = np.flatnonzero(found[0] < -OPEN)
-            if not open_.size:
-                continue
-            k, name = int(open_[0]), found[1][int(open_[0])]
-            # Between the last moment looked at and this one it is looked for by halves.
-            low, high = (int(np.searchsorted(mine, some[max(k - 1, 0)])), int(np.searchsorted(mine, some[k])))
-            while high - low > 1:
-                middle = (low + high) // 2
-                closer = self._margins(direction, states, mine[middle : middle + 1])
-                if closer is not None and closer[0][0] < -OPEN:
-                    high, name = middle, closer[1][0]
-                else:
-                    low = middle
-            moments.append((float(states.time[mine[high]]), name))
-        return min(moments, default=(NONE, ""))
-
-    def _margins(self, direction: Direction, states: _States, part: Places) -> tuple[Reals, Sequence[str]] | None:
-        """How far the joints that stay closed are from opening."""
-        phi, rate, ground = states.phi[part], states.rate[part], states.ground[part]
-        turning = acceleration(self.mechanism, direction, phi, rate, ground)
-        return self.mechanism.margins(direction, phi, turning, rate, ground)
+        if history.check is None:
+            return asked
+        opens, where = history.check.parted, history.check.parted_joint
+        followed, known_to = history.check.count > 0, history.known_to
+        return replace(asked, opens=opens, opens_joint=where, followed=followed, known_to=known_to)
 
     def base_shear(self, history: History, motion: GroundMotion | None) -> Reals:
         """The horizontal force of the ground on the structure at each sample, to the right [N]; NaN at rest."""
@@ -239,7 +220,7 @@ class Contacts:
                 NONE, "", NONE, NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, "", None, time, most[DEMAND]
             )  # fmt: skip
         most[DEMAND, time > lost] = 0.0  # what is needed beyond that is of no motion that there is
-        peak = int(most[DEMAND].argmax())
+        peak = int(np.where(states.rocks, most[DEMAND], -1.0).argmax())
         needed = float(most[DEMAND, peak])
         starts, ends = _stretches(time, most[DEMAND], NEAR_PEAK * needed if friction is None else friction)
         if friction is None:
@@ -274,6 +255,9 @@ class Contacts:
         pulls = np.flatnonzero(pull >= 0)
         if pulls.size:
             moments.append((float(states.time[pulls[0]]), self._letter(states, joint, int(pulls[0]))))
+        if history.check is not None and history.check.reason == "weightless" and states.rocks.any():
+            last = int(np.flatnonzero(states.rocks)[-1])
+            moments.append((history.known_to, self._letter(states, joint, last)))
         for direction, first in _ended(history).items():
             found = self._impulses[direction]
             if found is not None and (thrown := found.normal[:, 0] < -IDLE * np.abs(found.force).max()).any():
@@ -342,7 +326,7 @@ def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None)
     rows[1][1, 1::2], rows[1][3, 1::2] = after, eta * impact[:, 2]
     if np.isfinite(history.uplift_time):
         push = _ground(np.array([history.uplift_time]), motion).real[0]
-        side = -np.sign(push) if mechanism.rocks_both_ways else float(mechanism.directions[0])
+        side = (-np.sign(push) or 1.0) if mechanism.rocks_both_ways else float(mechanism.directions[0])
         rest, lifts = [history.uplift_time, side, 0.0, 0.0, 0.0], [history.uplift_time, side, 0.0, 0.0, 1.0]
         rows.insert(0, np.array([rest, lifts]).T)
     table = np.concatenate(rows, axis=1)

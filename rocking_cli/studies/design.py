@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
+from rocking_cli.names import percent
 from rocking_cli.structure import Varied
 from rocking_cli.studies.metrics import Metric, Shaking, metric
+from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
 from rocking_cli.units import UnitError, read, split
 
@@ -59,6 +61,11 @@ class Aim:
 
     def __str__(self) -> str:
         return f"{self.metric.name} {self.op} {self.level:.6g}{f' {self.metric.unit}' if self.metric.unit else ''}"
+
+    @property
+    def wants_more(self) -> bool:
+        """Whether the metric must exceed the level."""
+        return self.op[0] == ">"
 
     def holds(self, value: float) -> bool:
         """Whether a value of the metric meets it; NaN does not."""
@@ -157,6 +164,8 @@ class Design:
         up to which it is. None if it is met nowhere, or everywhere, or at neither end.
     not_built : sequence of NotBuilt
         Where there is no such structure.
+    behind : sequence of (Neighbours or None)
+        The neighbours of the motion that governs at each value; None of a metric that needs no motions.
     """
 
     structure: str
@@ -170,6 +179,7 @@ class Design:
     monotone: bool
     value: float | None
     not_built: Sequence[NotBuilt] = ()
+    behind: Sequence[Neighbours | None] = ()
 
     @property
     def everywhere(self) -> bool:
@@ -224,6 +234,9 @@ def design(
     scan, of which one meets the requirement and the other does not. Between two that agree nothing is looked at: a
     metric that turns there may hide a range. Where a metric of histories turns over the scan, edges are its values and
     no closer: a root would be one of many.
+
+    An unknown outcome meets no requirement: it counts as overturning where less is required, and the metric does not
+    exist where more is.
     """
     if aim.metric.sited and (shaking is None or shaking.site is None):
         hint = "give the file of a site: `rocking new site` prints one"
@@ -238,9 +251,10 @@ def design(
         return _at(varied, value, aim, shaking)[0]
 
     values = np.linspace(*span, points)
-    found, reasons = np.full(points, nan), dict[int, str]()
+    found, reasons, behind = np.full(points, nan), dict[int, str](), list[Neighbours | None]()
     for k, value in enumerate(values.tolist()):
-        found[k], reason = _at(varied, value, aim, shaking)
+        found[k], near, reason = _at(varied, value, aim, shaking)
+        behind.append(near)
         if reason is not None:
             reasons[k] = reason
         if progress is not None:
@@ -263,22 +277,24 @@ def design(
     name = varied.mechanism.name or varied.mechanism.mechanism
     return Design(
         name, varied.field, varied.unit, aim, varied.value, values, found, holds, monotone, value,
-        _not_built(values, reasons),
+        _not_built(values, reasons), behind,
     )  # fmt: skip
 
 
-def _at(varied: Varied, value: float, aim: Aim, shaking: Shaking | None) -> tuple[float, str | None]:
-    """The metric at a value; or NaN, and why there is none."""
+def _at(varied: Varied, value: float, aim: Aim, shaking: Shaking | None) -> tuple[float, Neighbours | None, str | None]:
+    """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
     try:
         structure = Prepared(varied.at(value))
-        found = aim.metric.value(structure, shaking)
+        found, near = aim.metric.at(structure, shaking)
     except InputError as error:
-        return nan, "; ".join(str(Problem(each.message, field=each.field)) for each in error.problems)
+        return nan, None, "; ".join(str(Problem(each.message, field=each.field)) for each in error.problems)
     except (MechanismError, SolverError) as error:
-        return nan, str(error)
+        return nan, None, str(error)
     if isnan(found):
-        return nan, structure.why_no_block or f"{aim.metric.name} does not exist"
-    return found, None
+        return nan, None, structure.why_no_block or f"{aim.metric.name} does not exist"
+    if near is not None and near.unknown and aim.wants_more:
+        return nan, near, f"{percent(near.unknown)} of the neighbouring motions have an unknown outcome"
+    return found, near, None
 
 
 def _is_monotone(metric: Reals) -> bool:

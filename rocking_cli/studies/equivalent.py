@@ -14,6 +14,7 @@ from rocking_cli import names
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
+from rocking_cli.dynamics.holding import why_unknown
 from rocking_cli.dynamics.model import ModelName, build_model, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.prepared import with_restitution
@@ -99,13 +100,13 @@ class EquivalentResponses:
 
     @property
     def spread(self) -> float:
-        """Largest minus smallest phi/phi_cr; NaN if any structure overturns."""
-        peaks = [each.history.peak_ratio for each in self.members]
+        """Largest minus smallest phi/phi_cr; NaN if any structure overturns or has an unknown outcome."""
+        peaks = [nan if each.history.unknown else each.history.peak_ratio for each in self.members]
         return float(np.ptp(peaks))
 
     @property
     def relative_spread(self) -> float:
-        """The spread over the linear peak; NaN if anything overturns, or the linear block does not uplift."""
+        """The spread over the linear peak; NaN if there is no spread, or the linear block overturns or stays down."""
         return self.spread / self.alone.peak_ratio if self.alone.peak_ratio > 0 else nan
 
     @property
@@ -250,6 +251,17 @@ def judge(found: EquivalentResponses) -> list[str]:
     found : EquivalentResponses
         The responses.
     """
+    unknown = [each for each in found.members if each.history.unknown]
+    if unknown:
+        said = [
+            f"The outcome of {each.name} is {names.UNKNOWN} after {each.history.known_to:.4g} s, as "
+            f"{why_unknown(each.history)}."
+            for each in unknown
+        ]
+        known = tuple(each for each in found.members if not each.history.unknown)
+        if len(known) < 2:
+            return [*said, "Whether the structures are equivalently vulnerable to these pulses is not known."]
+        return [*said, f"What follows is about the other {len(known)}.", *judge(replace(found, members=known))]
     said = []
     fallen = [each for each in found.members if each.history.overturned]
     peaks = {each.name: each.history.peak_ratio for each in found.members if not each.history.overturned}

@@ -42,14 +42,14 @@ class Film:
 
     @cached_property
     def _moving(self) -> int:
-        """Samples of the history that have a rotation: all, or those before it is certain to overturn."""
+        """Samples of the history that have a rotation: all, or those before it overturns or is unknown."""
         return int(np.isfinite(self.history.phi).sum())
 
     @property
     def end(self) -> float:
         """When there is nothing more to see [s]."""
         last = float(self.history.time[self._moving - 1])
-        if self.history.overturned or isnan(self.history.uplift_time):
+        if self.history.overturned or self.history.unknown or isnan(self.history.uplift_time):
             return last
         return min(last, self.history.end_time + AFTER)
 
@@ -60,12 +60,19 @@ class Film:
         return 0.0 if isnan(first) else max(0.0, first - BEFORE)
 
     @property
+    def ending(self) -> str:
+        """Why it ends before the motion does, as a note; empty if the outcome is known."""
+        if not self.history.unknown:
+            return ""
+        return f"The film ends at {self.history.known_to:.4g} s, up to which the outcome is known."
+
+    @property
     def verdict(self) -> str:
         """What happens, in words."""
         return verdict({self.history.model: self.history})
 
     def rotation(self, time: Reals) -> Reals:
-        """Signed rotation at these times, shape (n,) [rad]; after overturning the last that was followed."""
+        """Signed rotation at these times, shape (n,) [rad]; after its end the last that was followed."""
         moving = slice(0, self._moving)
         return np.interp(time, self.history.time[moving], self.history.phi[moving])
 
@@ -93,6 +100,7 @@ class Film:
             "end": self.end,
             "start": self.start,
             "rotation": [float(f"{value:.5g}") for value in self.rotation(time).tolist()],
+            "ending": self.ending,
             "verdict": self.verdict,
             "low": [self.box[0].real, self.box[0].imag],
             "high": [self.box[1].real, self.box[1].imag],

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.model import Model
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import percent
-from rocking_cli.studies.neighbours import Around, follow, least_uplift
+from rocking_cli.studies.neighbours import Around, Draws, follow, least_uplift
 
 Reals = NDArray[np.float64]
 
@@ -39,31 +38,59 @@ class Margin:
     factors : ndarray, shape (n,)
         Ascending; 1, the motion itself, is one of them.
     overturned : ndarray, shape (n,)
-        The share that overturns next to each; of two polarities that of the worse.
+        The share of the neighbours of each that overturns; of two polarities that of the worse.
+    unknown : ndarray, shape (n,)
+        The share of unknown outcome beside it: at most both together overturn, under the worse polarity.
+    checked : bool
+        Whether the joints of the structure are known; if not, nothing is said to be unknown.
     """
 
     around: Around
     uplift: float | None
     factors: Reals
     overturned: Reals
+    unknown: Reals
+    checked: bool = True
+
+    @property
+    def at_most(self) -> Reals:
+        """The share that overturns if all of unknown outcome do, shape (n,)."""
+        return self.overturned + self.unknown
 
     @property
     def itself(self) -> float:
         """The share next to the motion itself, at a factor of 1."""
         return float(self.overturned[np.searchsorted(self.factors, 1.0)])
 
+    @property
+    def itself_at_most(self) -> float:
+        """The share next to the motion itself that overturns if all of unknown outcome do."""
+        return float(self.at_most[np.searchsorted(self.factors, 1.0)])
+
     def first(self, level: float) -> float | None:
-        """The least of the factors next to which this share overturns; None if there is none."""
-        reached = self.overturned >= level
+        """The least of the factors at which this share overturns; None if there is none."""
+        return self._first(self.overturned >= level)
+
+    def possible(self, level: float) -> float | None:
+        """The least of the factors at which this share overturns or is of unknown outcome; None if there is none."""
+        return self._first(self.at_most >= level)
+
+    def _first(self, reached: NDArray[np.bool_]) -> float | None:
         return float(self.factors[reached.argmax()]) if reached.any() else None
 
     def last_below(self, level: float) -> float | None:
-        """The largest of the factors next to which a smaller share overturns; None if there is none."""
-        below = np.flatnonzero(self.overturned < level)
-        return float(self.factors[below[-1]]) if below.size else None
+        """The largest of the factors at which a smaller share overturns; None if there is none."""
+        return self._last(self.overturned < level)
+
+    def last_possible_below(self, level: float) -> float | None:
+        """The largest of the factors at which a smaller share overturns or is of unknown outcome; None without one."""
+        return self._last(self.at_most < level)
+
+    def _last(self, below: NDArray[np.bool_]) -> float | None:
+        return float(self.factors[np.flatnonzero(below)[-1]]) if below.any() else None
 
     def islands(self, level: float) -> list[tuple[float, float]]:
-        """The runs of neighbouring factors next to which this share overturns: the first and the last of each."""
+        """The runs of neighbouring factors at which this share overturns: the first and the last of each."""
         edges = np.diff(np.concatenate([[False], self.overturned >= level, [False]]).astype(np.int8))
         starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
         return [(float(self.factors[i]), float(self.factors[j])) for i, j in zip(starts, ends, strict=True)]
@@ -106,27 +133,32 @@ def margin(
     SolverError
         If a motion cannot be followed.
     """
-    around = around or Around()
+    around = (around or Around()).of(model)
     if not around.count:
         raise InputError(Problem("neighbouring motions are needed: at least 1", field="neighbours"))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
         raise InputError("scale factors must be positive and in ascending order")
     factors = np.union1d(factors[np.abs(factors - 1) > SAME], 1.0)
     # The same neighbours at every factor: what differs between two factors is the factor.
-    scales, etas = np.multiply.outer(factors, around.factors()), around.etas(model)
-    shares = np.zeros(len(scales))
+    draws, overturned, at_most = around.drawn(model), np.zeros(factors.size), np.zeros(factors.size)
     for k, sign in enumerate(polarities):
-        # What falls each time cannot fall more often; a symmetric structure does the same under the motion reversed.
-        left = shares < (0.0 if k and model.symmetric else 1.0)
+        # What overturns each time cannot overturn more often; a symmetric structure has the same shares under the
+        # motion reversed.
+        left = overturned < (0.0 if k and model.symmetric else 1.0)
         if progress is not None:
             progress(int((~left).sum()) * around.count)
-        scale = scales[left]
-        runs = Runs.of(0, 0, scale=scale.ravel(), polarity=sign, eta=np.tile(etas, (len(scale), 1)))
-        found = follow([model], [motion], runs, threads=threads, progress=progress)
-        shares[left] = np.maximum(shares[left], found.overturned.reshape(scale.shape).mean(axis=1))
+        some = factors[left]
+        each = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
+        found = follow(
+            model, motion, each, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress
+        )
+        fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (found.overturned, found.unknown))
+        overturned[left] = np.maximum(overturned[left], fell)
+        at_most[left] = np.maximum(at_most[left], fell + doubtful)
+    at_most = np.maximum(at_most, overturned)
     uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
     least = min((each for each in uplifts if each is not None), default=None)
-    return Margin(around, least, factors, shares)
+    return Margin(around, least, factors, overturned, at_most - overturned, checked=model.joints is not None)
 
 
 def in_words(found: Margin, pga: float) -> str:
@@ -144,13 +176,16 @@ def in_words(found: Margin, pga: float) -> str:
         return f"{factor:.3g} ({what}{factor * pga:.3g} g)"
 
     low, high = found.factors[[0, -1]]
+    doubt = _doubt(found, at)
     reached = [(level, first) for level in LEVELS if (first := found.first(level)) is not None]
     if not reached:
         pgas = f"PGA from {low * pga:.3g} g to {high * pga:.3g} g"
-        return (
+        none = "certainly overturn" if doubt else "overturn"
+        said = (
             f"At no scale factor from {low:.2g} to {high:.2g} ({pgas}) do {percent(LEVELS[0])} or more of the "
-            "neighbouring motions overturn the structure."
+            f"neighbouring motions {none} the structure."
         )
+        return f"{said} {doubt}" if doubt else said
     (level, first), *others = reached
     parts = [
         f"{percent(level)} of the neighbouring motions first overturn the structure at a factor of {at(first, 'PGA ')}"
@@ -166,5 +201,23 @@ def in_words(found: Margin, pga: float) -> str:
         if least < level:
             factor = float(found.factors[above][found.overturned[above].argmin()])
             again = f"only {percent(least)} do" if least else "none does"
-            return f"{said}. A stronger motion is not always worse: at a factor of {at(factor)} {again}."
-    return f"{said}."
+            known = " for certain" if doubt else ""
+            said += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}{known}"
+            break
+    return f"{said}. {doubt}".rstrip()
+
+
+def _doubt(found: Margin, at: Callable[..., str]) -> str:
+    """A sentence on the factors from which outcomes are unknown; empty if all are known."""
+    if not found.unknown.any():
+        return ""
+    first = float(found.factors[(found.unknown > 0).argmax()])
+    levels = [(level, least) for level in LEVELS if (least := found.possible(level)) is not None]
+    said = (
+        f"From a factor of {at(first, 'PGA ')} on, the outcome of some neighbours is unknown, as joints open or slide "
+        "that the model keeps closed"
+    )
+    if not levels:
+        return f"{said}: there, the structure may overturn."
+    reach = ", ".join(f"{percent(level)} from {at(least)}" for level, least in levels)
+    return f"{said}: there, the structure may overturn. Counted as overturning, they make the shares reach {reach}."

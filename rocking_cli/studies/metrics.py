@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf, nan
+from math import nan
 
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
@@ -56,11 +56,12 @@ class Metric:
         Its unit; empty for a pure number.
     meaning : str
         What it is, in a few words.
-    value : callable
+    of_structure : callable, optional
         Gives it for a structure and what shakes it; NaN where there is none, and infinity beyond all numbers. Raises
         `InputError` or `MechanismError` where the structure has none.
-    shaken : bool
-        Whether it needs ground motions: then it is a share of histories, or a fractile, and moves by steps.
+    of_neighbours : callable, optional
+        Gives it for the neighbours of a motion instead: a share of histories, or a fractile, which moves by steps. An
+        unknown outcome counts as overturning in it.
     sited : bool
         Whether it needs a site.
     """
@@ -68,9 +69,28 @@ class Metric:
     name: str
     unit: str
     meaning: str
-    value: Callable[[Prepared, Shaking | None], float]
-    shaken: bool = False
+    of_structure: Callable[[Prepared, Shaking | None], float] | None = None
+    of_neighbours: Callable[[Neighbours], float] | None = None
     sited: bool = False
+
+    @property
+    def shaken(self) -> bool:
+        """Whether it needs ground motions."""
+        return self.of_neighbours is not None
+
+    def value(self, structure: Prepared, shaking: Shaking | None) -> float:
+        """Return the metric of a structure."""
+        return self.at(structure, shaking)[0]
+
+    def at(self, structure: Prepared, shaking: Shaking | None) -> tuple[float, Neighbours | None]:
+        """Return the metric of a structure, and the neighbours of the motion that governs if it needs motions."""
+        of = self.of_neighbours
+        if of is None:
+            assert self.of_structure is not None
+            return self.of_structure(structure, shaking), None
+        assert shaking is not None
+        worst = max(shaking.each(structure), key=lambda near: (of(near), near.at_most, near.overturned))
+        return of(worst), worst
 
 
 def _lambda(structure: Prepared, shaking: Shaking | None) -> float:
@@ -84,16 +104,6 @@ def _phi_cr(structure: Prepared, shaking: Shaking | None) -> float:
 
 def _p(structure: Prepared, shaking: Shaking | None) -> float:
     return structure.p if structure.why_no_block is None else nan
-
-
-def _peak_ratio(structure: Prepared, shaking: Shaking | None) -> float:
-    assert shaking is not None
-    return max((near.peak_ratio[1] for near in shaking.each(structure)), default=inf)
-
-
-def _overturned(structure: Prepared, shaking: Shaking | None) -> float:
-    assert shaking is not None
-    return max(near.overturned for near in shaking.each(structure))
 
 
 def _alpha0(structure: Prepared, shaking: Shaking | None) -> float:
@@ -118,8 +128,9 @@ METRICS: Mapping[str, Metric] = {
         Metric("phi_cr", "rad", "critical rotation, the smaller of both directions", _phi_cr),
         Metric("p", "rad/s", "frequency parameter of the equivalent block, the larger of both directions", _p),
         Metric("peak_ratio", "", "peak rotation over the critical one that half of the neighbours do not exceed",
-               _peak_ratio, shaken=True),
-        Metric("overturned", "", "share of the neighbours that overturn", _overturned, shaken=True),
+               of_neighbours=lambda near: near.peak_ratio[1]),
+        Metric("overturned", "", "share of the neighbours that overturn, or are of unknown outcome",
+               of_neighbours=lambda near: near.at_most),
         Metric("alpha0", "", "multiplier that starts the mechanism, by the code of `verify`, the smaller one", _alpha0),
         *(
             Metric(f"zeta_{method}", "", f"capacity over demand, by the {method} method of `verify`",

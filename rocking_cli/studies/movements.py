@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from math import nan
+from math import isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,11 +55,14 @@ class Movements:
         In the order of the file; of several that move alike, one.
     impact_velocity : float
         The largest velocity at which a foot lands [m/s]; 0 without an impact, NaN where the feet are not known.
+    known_to : float
+        Until when the history is known [s], and these values are the largest; NaN if all of it is.
     """
 
     points: Sequence[PointPeak]
     ties: Sequence[TiePeak]
     impact_velocity: float
+    known_to: float = nan
 
 
 @dataclass(frozen=True)
@@ -104,11 +107,13 @@ class Watched:
                 [PointPeak(name, spot.at, nan, nan) for name, spot in self.points.items()],
                 [self._tie(tie, before) for tie in self.ties],
                 self._impact_velocity(history),
+                history.known_to,
             )
         return Movements(
             [self._point(name, spot, reached) for name, spot in self.points.items()],
             [self._tie(tie, reached) for tie in self.ties],
             self._impact_velocity(history),
+            history.known_to,
         )
 
     def is_torn_apart(self, history: History) -> bool:
@@ -178,7 +183,7 @@ class Watched:
 
 
 def largest(every: Sequence[Movements]) -> Movements:
-    """The largest values of several histories of a structure; NaN where one of them has none."""
+    """The largest values of several histories of a structure, and until when all are known; NaN where one has none."""
     points = [
         replace(each[0], horizontal=_most(p.horizontal for p in each), vertical=_most(p.vertical for p in each))
         for each in zip(*(moved.points for moved in every), strict=True)
@@ -187,7 +192,8 @@ def largest(every: Sequence[Movements]) -> Movements:
         replace(each[0], force=_most(t.force for t in each), elongation=_most(t.elongation for t in each))
         for each in zip(*(moved.ties for moved in every), strict=True)
     ]
-    return Movements(points, ties, _most(moved.impact_velocity for moved in every))
+    known_to = [moved.known_to for moved in every if not isnan(moved.known_to)]
+    return Movements(points, ties, _most(moved.impact_velocity for moved in every), min(known_to, default=nan))
 
 
 def _most(values: Iterable[float]) -> float:

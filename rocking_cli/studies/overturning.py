@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from itertools import count
@@ -37,6 +37,7 @@ class Region(IntEnum):
     ROCKS = 1
     AFTER_IMPACT = 2
     WITHOUT_IMPACT = 3
+    UNKNOWN = 4
 
     @property
     def label(self) -> str:
@@ -46,7 +47,11 @@ class Region(IntEnum):
             names.ROCKS,
             f"{names.OVERTURNS} after impact",
             f"{names.OVERTURNS} without impact",
+            names.UNKNOWN,
         )[self]
+
+
+FALLS = Region.AFTER_IMPACT, Region.WITHOUT_IMPACT
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +96,7 @@ class OverturningMap:
         """The `Region` of each point, shape (m, n)."""
         stays = np.where(self.outcome.peak_ratio > 0, Region.ROCKS, Region.NO_UPLIFT)
         falls = np.where(self.outcome.impact_count == 0, Region.WITHOUT_IMPACT, Region.AFTER_IMPACT)
-        return np.where(self.outcome.overturned, falls, stays)
+        return np.where(self.outcome.overturned, falls, np.where(self.outcome.unknown, Region.UNKNOWN, stays))
 
     @property
     def shares(self) -> dict[Region, float]:
@@ -106,9 +111,9 @@ class OverturningMap:
 
     @property
     def safe_again(self) -> Reals:
-        """The largest a that does not overturn above one that does, for each column; NaN if there is none."""
+        """The largest a known not to overturn above one that does, for each column; NaN if there is none."""
         falls = self.outcome.overturned
-        above = np.maximum.accumulate(falls, axis=0) & ~falls
+        above = np.maximum.accumulate(falls, axis=0) & ~falls & ~self.outcome.unknown
         last = len(self.a) - 1 - above[::-1].argmax(axis=0)
         return np.where(above.any(axis=0), self.a[last], np.nan)
 
@@ -209,7 +214,9 @@ class Comparison:
     periods : ndarray, shape (n,)
         [s].
     least : ndarray, shape (k, n)
-        The least amplitude that overturns each structure [standard gravity]; NaN if it is above `top`.
+        The least amplitude known to overturn each structure [standard gravity]; NaN if there is none up to `top`.
+    possible : ndarray, shape (k, n)
+        The least amplitude that overturns it or whose outcome is unknown; `least` where no smaller one is unknown.
     top : float
         The largest amplitude tried [standard gravity].
     """
@@ -219,15 +226,28 @@ class Comparison:
     polarities: tuple[int, ...]
     periods: Reals
     least: Reals
+    possible: Reals
     top: float
 
     @property
+    def doubtful(self) -> NDArray[np.bool_]:
+        """Whether the least amplitude that overturns a structure is known only from `possible` on, shape (k, n)."""
+        doubtful: NDArray[np.bool_] = np.isfinite(self.possible) & ~(self.possible >= self.least)
+        return doubtful
+
+    @property
     def firsts(self) -> NDArray[np.bool_]:
-        """Whether a structure goes first at a period, shape (k, n): several whose least amplitudes are equal do so."""
-        least = np.where(np.isnan(self.least), np.inf, self.least)
-        lowest = least.min(axis=0)
-        first: NDArray[np.bool_] = np.isfinite(least) & (least <= lowest * (1 + TIE))
+        """Whether a structure is known to overturn first at a period, shape (k, n); several that are equal all do."""
+        least, possible = (np.where(np.isnan(each), np.inf, each) for each in (self.least, self.possible))
+        lowest = [np.delete(possible, k, axis=0).min(axis=0, initial=np.inf) for k in range(len(least))]
+        first: NDArray[np.bool_] = np.isfinite(least) & (least <= np.array(lowest) * (1 + TIE))
         return first
+
+    @property
+    def undecided(self) -> NDArray[np.bool_]:
+        """Whether it is unknown at a period which structure overturns first, or whether any does, shape (n,)."""
+        may, known = np.isfinite(self.possible), self.firsts
+        return np.array([each.any() and not sure.any() for each, sure in zip(may.T, known.T, strict=True)], np.bool_)
 
 
 def compare(
@@ -260,12 +280,14 @@ def compare(
     -----
     Amplitudes from uplift to the largest are tried, at equal ratios of a - 1; then as many just below the least that
     overturns, until nothing lower is found; the interval that is left is halved. An island of overturning narrower
-    than a step, 0.7 % of a - 1, may be missed.
+    than a step, 0.7 % of a - 1, may be missed. If joints may open, the same is done below the amplitude found for the
+    least that overturns or is of unknown outcome.
     """
     for each in structures:
         _check_range(each, periods, top * STANDARD_GRAVITY / each.unit)
-    least = np.array([_least(each, shape, periods, top, polarities, progress) for each in structures])
-    return Comparison(tuple(structures), shape, tuple(polarities), periods, least / STANDARD_GRAVITY, top)
+    found = [_least(each, shape, periods, top, polarities, progress) for each in structures]
+    least, possible = (np.array(each) / STANDARD_GRAVITY for each in zip(*found, strict=True))
+    return Comparison(tuple(structures), shape, tuple(polarities), periods, least, possible, top)
 
 
 def _least(
@@ -275,42 +297,83 @@ def _least(
     top: float,
     polarities: Sequence[int],
     progress: Progress | None,
-) -> Reals:
-    """The least amplitude that overturns a structure, for each period [m/s2]."""
+) -> tuple[Reals, Reals]:
+    """Return the least amplitude that overturns a structure, and that which does or may, for each period [m/s2]."""
     beyond = np.full(periods.size, top * STANDARD_GRAVITY / structure.unit - 1)  # a - 1 up to which to look
-    low, high = np.zeros(periods.size), np.full(periods.size, np.nan)
-    left = np.flatnonzero(beyond > 0)
-    for turn in count():
-        if not left.size:
-            break
-        start = (np.minimum(NEAREST, beyond[left] / BELOW) if turn == 0 else beyond[left] / BELOW)[:, None]
-        scan = start * (beyond[left, None] / start) ** np.linspace(0, 1, SCAN)
-        found = outcomes(
-            structure,
-            shape,
-            np.repeat(periods[left], SCAN),
-            (1 + scan.ravel()) * structure.unit,
-            polarities=polarities,
-            progress=progress if turn < PASSES else None,
+    search = _Search(structure, shape, periods, polarities, progress)
+    least = search.least(beyond, np.full(periods.size, np.nan), _overturns)
+    possible = least
+    if structure.may_open:
+        possible = search.least(np.fmin(least, beyond), least, _may_overturn)
+        possible = np.where(possible >= least * (1 - TIE), least, possible)
+    return (1 + least) * structure.unit, (1 + possible) * structure.unit
+
+
+def _overturns(found: Outcomes) -> NDArray[np.bool_]:
+    return found.overturned
+
+
+def _may_overturn(found: Outcomes) -> NDArray[np.bool_]:
+    return found.overturned | found.unknown
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """The search for least amplitudes of pulses on a structure."""
+
+    structure: PulsedModel
+    shape: Pulse
+    periods: Reals
+    polarities: Sequence[int]
+    progress: Progress | None
+
+    def least(self, beyond: Reals, high: Reals, counts: Callable[[Outcomes], NDArray[np.bool_]]) -> Reals:
+        """Return the least a - 1 of an outcome that counts, for each period; NaN if there is none.
+
+        It is sought up to `beyond`; `high` is an a - 1 that is known to count, equal to `beyond`, or NaN.
+        """
+        beyond, high, low = beyond.copy(), high.copy(), np.zeros(self.periods.size)
+        left = np.flatnonzero(beyond > 0)
+        for turn in count():
+            if not left.size:
+                break
+            start = (np.minimum(NEAREST, beyond[left] / BELOW) if turn == 0 else beyond[left] / BELOW)[:, None]
+            scan = start * (beyond[left, None] / start) ** np.linspace(0, 1, SCAN)
+            found = self._shaken(np.repeat(self.periods[left], SCAN), scan.ravel(), report=turn < PASSES)
+            falls = counts(found).reshape(scan.shape).copy()
+            falls[:, -1] |= np.isfinite(high[left])  # the least so far
+            some = falls.any(axis=1)
+            left, scan, first = left[some], scan[some], falls[some].argmax(axis=1)
+            each = np.arange(left.size)
+            low[left] = np.where(first > 0, scan[each, np.maximum(first - 1, 0)], 0.0)
+            high[left] = beyond[left] = scan[each, first]
+            left = left[first < SCAN - 1]
+        some = np.isfinite(high)
+        for _ in range(HALVINGS if some.any() else 0):
+            middle = (low + high) / 2
+            fell = np.zeros(self.periods.size, dtype=np.bool_)
+            fell[some] = counts(self._shaken(self.periods[some], middle[some]))
+            high, low = np.where(fell, middle, high), np.where(fell, low, middle)
+        return high
+
+    def _shaken(self, periods: Reals, above: Reals, *, report: bool = False) -> Outcomes:
+        """Shake the structure with pulses of these periods and a - 1."""
+        return outcomes(
+            self.structure,
+            self.shape,
+            periods,
+            (1 + above) * self.structure.unit,
+            polarities=self.polarities,
+            progress=self.progress if report else None,
         )
-        falls = found.overturned.reshape(scan.shape)
-        falls[:, -1] |= np.isfinite(high[left])  # the least so far
-        some = falls.any(axis=1)
-        left, scan, first = left[some], scan[some], falls[some].argmax(axis=1)
-        each = np.arange(left.size)
-        low[left] = np.where(first > 0, scan[each, np.maximum(first - 1, 0)], 0.0)
-        high[left] = beyond[left] = scan[each, first]
-        left = left[first < SCAN - 1]
-    some = np.isfinite(high)
-    for _ in range(HALVINGS if some.any() else 0):
-        middle = (low + high) / 2
-        fell = np.zeros(periods.size, dtype=np.bool_)
-        amplitudes = (1 + middle[some]) * structure.unit
-        fell[some] = outcomes(structure, shape, periods[some], amplitudes, polarities=polarities).overturned
-        high, low = np.where(fell, middle, high), np.where(fell, low, middle)
-    return (1 + high) * structure.unit
 
 
 def count_histories(structures: Sequence[PulsedModel], pulses: int, polarities: Sequence[int]) -> int:
     """How many histories `pulses` pulses on each structure take."""
     return pulses * sum(1 if each.symmetric else len(polarities) for each in structures)
+
+
+def count_scans(structures: Sequence[PulsedModel], periods: int, polarities: Sequence[int]) -> int:
+    """How many histories `compare` takes in most cases: two scans of each period for each search."""
+    scans = SCAN * PASSES * periods
+    return sum(count_histories([each], scans * (1 + each.may_open), polarities) for each in structures)

@@ -40,6 +40,8 @@ class Question:
         Also the response to the pulse in the record alone: its shape, or "best".
     around : Around
         The neighbours of every motion; a count of 0 for none.
+    release_is_angle : bool
+        Whether the release was given as an angle.
     """
 
     signs: tuple[int, ...]
@@ -48,6 +50,7 @@ class Question:
     rtol: float
     with_pulse: str | None = None
     around: Around = field(default_factory=Around)
+    release_is_angle: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +106,9 @@ def answer(structure: Prepared, names: Sequence[ModelName], given: Scaled | None
     runs = {sign: respond(motion) for sign, motion in under.items()}
     best = next((model for model in models if not model.is_linear), models[0])
     near = {
-        sign: neighbours(best, motion, asked.around, release=asked.release, rtol=asked.rtol)
+        sign: neighbours(
+            best, motion, asked.around, release=asked.release, release_is_angle=asked.release_is_angle, rtol=asked.rtol
+        )
         for sign, motion in under.items()
         if asked.around.count
     }

@@ -14,6 +14,7 @@ from rocking_cli.core import (
     NoEquivalentBlock,
     equivalent_block,
 )
+from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.model import Model, ModelName, build_model
 from rocking_cli.errors import InputError, MechanismError, Problem
 
@@ -90,7 +91,12 @@ class Sizes:
         raise InputError(message)
 
     def are_alike(self) -> bool:
-        """Whether every size rocks as this one, but for the time it takes: no load or mass is given that stays."""
+        """Whether every size rocks as this one, but for the time it takes: no load or mass is given that stays.
+
+        Nor a strength, against which the joints of a history are checked: the weight increases faster than it.
+        """
+        if self.model == "nonlinear" and isinstance(self.mechanism.strength, Strength):
+            return False
         own = _shape_of(self.equivalence(1.0), 1.0)
         for scales in TRIED:
             for scale in scales:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, inf, isclose, pi, sin
+from math import cos, inf, isclose, nan, pi, sin
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.prepared import Prepared, with_restitution
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
@@ -39,12 +41,20 @@ class Shape:
         alone decides.
     hung : bool
         Whether loads or ties are given, whose places alone grow with it.
+    bodies : int
+        Number of its bodies.
     """
 
     structure: PulsedModel
     slenderness: float | None = None
     own: Sizes | None = None
     hung: bool = False
+    bodies: int = 1
+
+    @property
+    def leaves_out_joints(self) -> bool:
+        """Whether it is an equivalent block of several bodies, whose joints are not checked."""
+        return self.structure.model.is_linear and self.bodies > 1
 
     @property
     def period(self) -> float:
@@ -87,7 +97,8 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, f
     found = pulsed_model(Prepared(mechanism, file), model, parse_shape("sine"), eta=eta)
     given = mechanism if eta is None else with_restitution(mechanism, eta)
     sizes = Sizes(given, model, found.direction)
-    return Shape(found, own=None if sizes.are_alike() else sizes, hung=bool(mechanism.attached))
+    own = None if sizes.are_alike() else sizes
+    return Shape(found, own=own, hung=bool(mechanism.attached), bodies=len(mechanism.bodies()))
 
 
 def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> Shape:
@@ -126,13 +137,27 @@ class Spectrum:
     scales : ndarray, shape (n,)
         Factors on every length, ascending; 1 is among them if it is a structure as given.
     peak_ratio : ndarray, shape (m, n)
-        Largest rotation over the critical one under each of m motions: 0 without uplift, inf if it overturns, NaN if
-        the motion could not be followed.
+        Largest rotation over the critical one under each of m motions: 0 without uplift, inf if it overturns or the
+        outcome is unknown, NaN if the motion could not be followed.
+    lower_bound : ndarray, shape (m, n), or nan
+        What the peak ratio is at least if the outcome is unknown, because a joint opens or slides that the model keeps
+        closed; NaN if the outcome is known.
     """
 
     shape: Shape
     scales: Reals
     peak_ratio: Reals
+    lower_bound: Reals | float = nan
+
+    @property
+    def unknown(self) -> NDArray[np.bool_]:
+        """Whether the outcome is unknown, shape (m, n)."""
+        return np.broadcast_to(~np.isnan(self.lower_bound), self.peak_ratio.shape)
+
+    @property
+    def checked(self) -> bool:
+        """Whether outcomes are checked against the joints of the structure."""
+        return self.shape.structure.checked
 
     @property
     def periods(self) -> Reals:
@@ -161,17 +186,35 @@ class Spectrum:
     @property
     def overturned(self) -> Integers:
         """How many of them overturn it, shape (n,)."""
-        counts: Integers = np.sum(np.isinf(self.peak_ratio), axis=0)
+        counts: Integers = np.sum(np.isinf(self.peak_ratio) & ~self.unknown, axis=0)
+        return counts
+
+    @property
+    def doubtful(self) -> Integers:
+        """How many of them have an unknown outcome, shape (n,)."""
+        counts: Integers = np.sum(self.unknown, axis=0)
         return counts
 
     @property
     def share(self) -> Reals:
         """The share of the motions followed that overturn it, shape (n,); NaN if there is none."""
-        return np.where(self.followed > 0, self.overturned / np.maximum(self.followed, 1), np.nan)
+        return self._share(self.overturned)
+
+    @property
+    def share_at_most(self) -> Reals:
+        """The share that overturns if all of unknown outcome do, shape (n,); NaN if there is none."""
+        return self._share(self.overturned + self.doubtful)
+
+    def _share(self, counts: Integers) -> Reals:
+        return np.where(self.followed > 0, counts / np.maximum(self.followed, 1), np.nan)
 
     def fractile(self, q: float) -> Reals:
-        """See `fractile`, shape (n,)."""
+        """See `fractile`, shape (n,); motions of unknown outcome count as overturning."""
         return fractile(self.peak_ratio, q)
+
+    def fractile_overturns(self, q: float) -> NDArray[np.bool_]:
+        """Whether a fractile overturns even if no motion of unknown outcome does, shape (n,)."""
+        return np.isinf(fractile(np.where(self.unknown, self.lower_bound, self.peak_ratio), q))
 
 
 def fractile(peaks: Reals, q: float) -> Reals:
@@ -244,8 +287,18 @@ def spectra(
     for shape in shapes:
         scales, signs = _scales(shape, periods), _signs(shape, polarities)
         follow = _of_one_shape if shape.own is None else _each_its_own
-        found.append(Spectrum(shape, scales, follow(shape, scales, motions, signs, threads, progress).max(axis=1)))
+        found.append(Spectrum(shape, scales, *_worst(follow(shape, scales, motions, signs, threads, progress))))
     return found
+
+
+def _worst(found: Outcomes) -> tuple[Reals, Reals]:
+    """Return the peak ratios by the worse polarity, those of axis 1, and their lower bounds where they are unknown."""
+    peak = np.where(found.overturned, inf, np.where(found.unknown, 0.0, found.peak_ratio))
+    peak = np.where(found.failed, nan, peak).max(axis=1)
+    unknown = found.unknown.any(axis=1) & np.isfinite(peak)
+    least = np.where(found.unknown, found.lower_bound, found.peak_ratio)
+    bound = np.max(least, axis=1, initial=0.0, where=~(found.overturned | found.failed))
+    return np.where(unknown, inf, peak), np.where(unknown, bound, nan)
 
 
 def _of_one_shape(
@@ -255,10 +308,11 @@ def _of_one_shape(
     signs: Sequence[int],
     threads: int | None,
     progress: Progress | None,
-) -> Reals:
-    """Peaks under every motion, polarity and scale: one model, whose motion at another size is that at another pace."""
+) -> Outcomes:
+    """Outcomes under every motion, polarity and scale: one model, whose motion at another size has another pace."""
     runs = Runs.every(1, len(motions), polarities=signs, sizes=scales.tolist())
-    return _peaks([shape.structure.model], motions, runs, threads, progress).reshape(-1, len(signs), scales.size)
+    found = _outcomes([shape.structure.model], motions, runs, threads, progress)
+    return found.by_field(lambda values: values.reshape(-1, len(signs), scales.size))
 
 
 def _each_its_own(
@@ -268,27 +322,29 @@ def _each_its_own(
     signs: Sequence[int],
     threads: int | None,
     progress: Progress | None,
-) -> Reals:
+) -> Outcomes:
     """Likewise, with a model for every scale."""
     assert shape.own is not None
     parts = []
     for start in range(0, scales.size, TOGETHER):
         models = [shape.own.build(scale) for scale in scales[start : start + TOGETHER].tolist()]
         runs = Runs.every(len(models), len(motions), polarities=signs)
-        peaks = _peaks(models, motions, runs, threads, progress).reshape(len(models), -1, len(signs))
-        parts.append(np.moveaxis(peaks, 0, -1))
-    return np.concatenate(parts, axis=-1)
+        parts.append((len(models), _outcomes(models, motions, runs, threads, progress)))
+    placed = [
+        found.by_field(lambda values, many=many: np.moveaxis(values.reshape(many, -1, len(signs)), 0, -1))
+        for many, found in parts
+    ]
+    return placed[0].by_field(lambda *values: np.concatenate(values, axis=-1), *placed[1:])
 
 
-def _peaks(
+def _outcomes(
     models: Sequence[Model],
     motions: Sequence[GroundMotion],
     runs: Runs,
     threads: int | None,
     progress: Progress | None,
-) -> Reals:
-    answer = respond_many(models, motions, runs, threads=threads, only_peaks=True, progress=progress)
-    return np.where(answer.failed, np.nan, np.where(answer.overturned, inf, answer.peak_ratio))
+) -> Outcomes:
+    return respond_many(models, motions, runs, threads=threads, only_peaks=True, progress=progress)
 
 
 def count_histories(shapes: Sequence[Shape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:

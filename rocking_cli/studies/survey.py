@@ -50,18 +50,27 @@ class Under:
     overturned : float
         The share of the motions that overturn it; of two polarities of a motion the worse.
     peak_ratio : float
-        The largest peak rotation over the critical one, of the motions under which it stays up; NaN if it stays up
-        under none.
+        The largest peak rotation over the critical one, of the motions under which it stays up for certain; NaN if it
+        does so under none.
     worst : str
-        The motion of that peak, or one that overturns it.
+        A motion that overturns it, else one of unknown outcome, else that of the peak.
     over : str
         What the peak is over: "phi_cr", or "limit" where a direction has no critical rotation.
+    unknown : float or None
+        The share of the motions that do not overturn it for certain, but have an unknown outcome; None if its joints
+        are not known, so that nothing was checked.
     """
 
     overturned: float
     peak_ratio: float
     worst: str
     over: str = "phi_cr"
+    unknown: float | None = 0.0
+
+    @property
+    def at_most(self) -> float:
+        """The share of the motions that overturn it if all of unknown outcome do."""
+        return self.overturned + (self.unknown or 0.0)
 
 
 @dataclass(frozen=True)
@@ -157,7 +166,7 @@ def _by_lambda(found: Surveyed) -> tuple[float, ...]:
 def _by_response(found: Surveyed) -> tuple[float, ...]:
     assert found.under is not None
     peak = found.under.peak_ratio
-    return (-found.under.overturned, -(inf if isnan(peak) else _rounded(peak)), _rounded(found.uplift))
+    return (-found.under.at_most, -(inf if isnan(peak) else _rounded(peak)), _rounded(found.uplift))
 
 
 def _by_ratio(found: Surveyed) -> tuple[float, ...]:
@@ -196,6 +205,7 @@ def survey(
     polarities: Sequence[int] = (1,),
     *,
     site: SiteFile | None = None,
+    opening: float | None = None,
     threads: int | None = None,
     processes: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -212,6 +222,8 @@ def survey(
         Of 1 and -1; with both, the worse counts.
     site : SiteFile, optional
         Where they stand: each is verified by its code.
+    opening : float, optional
+        Largest opening of a joint with which a history is known, over D_cr; without it that of each structure.
     threads : int, optional
         How many at a time; without it, one for each processor.
     processes : int, optional
@@ -223,18 +235,18 @@ def survey(
     Returns
     -------
     Survey
-        Ranked by uplift acceleration; with motions by the share that overturns, then by the largest peak, then by
-        uplift acceleration; with a site by the ratio of its code. Equal ones keep their order.
+        Ranked by uplift acceleration; with motions by the share that overturns or is of unknown outcome, then by the
+        largest peak, then by uplift acceleration; with a site by the ratio of its code. Equal ones keep their order.
     """
     found: list[Surveyed | Bad | None] = [None] * len(entries)
 
     def work(first: int, stop: int) -> None:
-        found[first:stop] = _part(entries, range(first, stop), motions, polarities, site)
+        found[first:stop] = _part(entries, range(first, stop), motions, polarities, site, opening)
 
     if processes is None:
         in_parts(work, len(entries), PART, threads, progress)
     else:
-        whole = partial(_places, entries, motions, polarities, site)
+        whole = partial(_places, entries, motions, polarities, site, opening)
         for first, part in in_processes(whole, len(entries), PART, processes):
             found[first : first + len(part)] = part
             if progress is not None:
@@ -249,11 +261,12 @@ def _places(
     motions: Sequence[GroundMotion],
     polarities: Sequence[int],
     site: SiteFile | None,
+    opening: float | None,
     first: int,
     stop: int,
 ) -> list[Surveyed | Bad | None]:
     """What is found of the structures from a number to before another, in any process."""
-    return _part(entries, range(first, stop), motions, polarities, site)
+    return _part(entries, range(first, stop), motions, polarities, site, opening)
 
 
 def _part(
@@ -262,6 +275,7 @@ def _part(
     motions: Sequence[GroundMotion],
     polarities: Sequence[int],
     site: SiteFile | None,
+    opening: float | None,
 ) -> list[Surveyed | Bad | None]:
     """What is found of some structures."""
     ready: dict[int, Prepared] = {}
@@ -270,7 +284,8 @@ def _part(
     for k, place in enumerate(places):
         entry = entries[place]
         try:
-            ready[k] = Prepared(entry.make())
+            made = entry.make()
+            ready[k] = Prepared(made if opening is None else made.model_copy(update={"opening": opening}))
             found[k] = _alone(place, entry, ready[k], site)
             if _may_lift(ready[k], motions):
                 models[k] = ready[k].model("nonlinear")
@@ -368,12 +383,14 @@ def _of_one(
         name = motions[int(record[int((outcomes.failed & own).argmax())])].name
         return SolverError(f"{model.structure}: its motion under {name} could not be simulated")
     fell = np.unique(record[own & outcomes.overturned])
-    stays = own & ~np.isin(record, fell)
+    doubtful = np.setdiff1d(record[own & outcomes.unknown], fell)
+    stays = own & ~np.isin(record, fell) & ~np.isin(record, doubtful)
     peaks = np.where(stays, outcomes.peak_ratio, -1.0)
     most = int(peaks.argmax())
-    worst = motions[int(fell[0]) if fell.size else int(record[most])].name
+    worst = motions[int([*fell, *doubtful, record[most]][0])].name
     over = "limit" if any(model.ends_at_limit) else "phi_cr"
-    return Under(fell.size / len(motions), float(peaks[most]) if stays.any() else nan, worst, over)
+    unknown = doubtful.size / len(motions) if model.joints is not None else None
+    return Under(fell.size / len(motions), float(peaks[most]) if stays.any() else nan, worst, over, unknown)
 
 
 def _with(one: Surveyed, under: Under | SolverError, entry: Entry) -> Surveyed | Bad:

@@ -75,6 +75,16 @@ class PulsedModel:
         return self.block.eta
 
     @property
+    def checked(self) -> bool:
+        """Whether outcomes are checked against the joints; an equivalent block has none."""
+        return self.model.is_linear or self.model.joints is not None
+
+    @property
+    def may_open(self) -> bool:
+        """Whether it has joints that could open or slide, so that outcomes may be unknown."""
+        return self.model.joints is not None and bool(self.model.joints.labels)
+
+    @property
     def symmetric(self) -> bool:
         """Whether both directions are alike, so that a reversed pulse does the same."""
         return self.equivalence.symmetric and self.model.one_sided is None
@@ -186,7 +196,8 @@ def outcomes(
     periods, amplitudes : ndarray, shape (n,)
         Of each pulse [s], [m/s2].
     polarities : sequence of int
-        Of 1 and -1; with both, the worse of the two counts: overturning, after fewer impacts, or the larger peak.
+        Of 1 and -1; with both, the worse of the two counts: overturning, after fewer impacts, then an unknown outcome,
+        then the larger peak. The lower bound of an unknown peak is then that of both.
     progress : callable, optional
         Called with the number of motions done since the last call.
 
@@ -208,7 +219,9 @@ def outcomes(
     found = follow(structure, shape, periods, amplitudes, first, progress)
     for polarity in others:
         other = follow(structure, shape, periods, amplitudes, polarity, progress)
+        bound = np.fmax(_known_peak(found), _known_peak(other))
         found = other.by_field(partial(np.where, _badness(other) > _badness(found)), found)
+        found = replace(found, lower_bound=np.where(found.unknown, bound, found.lower_bound))
     return found
 
 
@@ -250,5 +263,11 @@ def _check(structure: PulsedModel, failed: NDArray[np.bool_], periods: Reals, am
 
 
 def _badness(each: Outcomes) -> Reals:
-    """A number that grows from small peaks to overturning without impact."""
-    return np.where(each.overturned, 1e9 - each.impact_count, np.nan_to_num(each.peak_ratio))
+    """Return a number that increases from small peaks to unknown outcomes to overturning without impact."""
+    stands = np.where(each.unknown, 1e6 + np.nan_to_num(each.lower_bound), np.nan_to_num(each.peak_ratio))
+    return np.where(each.overturned, 1e9 - each.impact_count, stands)
+
+
+def _known_peak(each: Outcomes) -> Reals:
+    """Return what the peaks over phi_cr are at least."""
+    return np.where(each.unknown, each.lower_bound, each.peak_ratio)

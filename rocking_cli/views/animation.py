@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from rocking_cli.dynamics.holding import why_unknown
 from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbours
-from rocking_cli.views.response import ending, neighbours_data
+from rocking_cli.views.response import ending, known_data, neighbours_data, not_checked
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.view import View
+from rocking_cli.views.several import neighbours_cells
+from rocking_cli.views.view import ABSENT, Table, View, heading
 
 
 def view(
@@ -27,6 +30,7 @@ def view(
         "model": history.model,
         "outcome": ending(history),
         "peak_ratio": history.peak_ratio,
+        **known_data(history),
         "restitution": restitution_data(structure),
         "neighbours": neighbours_data(near) if near is not None else None,
         "verdict": film.verdict,
@@ -34,5 +38,21 @@ def view(
         "end": film.end,
         **file,
     }
-    said = [film.verdict, *([str(near)] if near is not None else []), restitution_used(structure)]
-    return View(data, said)
+    said = [film.verdict, film.ending, *([str(near)] if near is not None else []), restitution_used(structure)]
+    return View(data, [*filter(None, said), *not_checked([history])])
+
+
+def row(film: Film, near: Neighbours | None) -> list[str]:
+    """Return the row of one of several motions."""
+    run = film.history
+    fate = f"{UNKNOWN} after {run.known_to:.4g} s, as {why_unknown(run)}" if run.unknown else film.verdict
+    return [film.motion.name, fate, *neighbours_cells(near)[:2]]
+
+
+def several(structure: Prepared, film: Film, rows: Sequence[Sequence[str]]) -> View:
+    """Show what became of several motions, of which `film` is one, by their rows."""
+    heads = ["under", film.history.model, "neighbours\noverturn", "are\nunknown"]
+    if all(each[-1] in (ABSENT, percent(0)) for each in rows):
+        heads, rows = heads[:-1], [each[:-1] for each in rows]
+    table = Table(heading(structure.mechanism), heads, rows, numbers=range(2, len(heads)))
+    return View({}, [table, restitution_used(structure), *not_checked([film.history])])

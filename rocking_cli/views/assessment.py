@@ -40,6 +40,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
                 "pga": each.pga_of_ground,
                 **processing.data(each.motion),
                 "headline": said.headline,
+                "unknown": each.unknown,
                 "answers": {item.question: item.answer for item in said.answers},
                 "doubts": list(said.doubts),
                 **runs_data(

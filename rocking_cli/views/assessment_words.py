@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees, inf, isclose, isinf, isnan
+from math import degrees, isclose, isnan
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Statics
@@ -13,6 +13,7 @@ from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.restitution import why_none
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.holding import NOT_CHECKED, joints_in_words, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -21,6 +22,7 @@ from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.neighbours import governing, severity
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.restitution import restitution_source, restitution_used
+from rocking_cli.views.several import neighbours_cells
 
 MODELS: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear model",
@@ -74,14 +76,19 @@ def in_a_sentence(content: Assessment) -> str:
             "this report does not say whether an earthquake would overturn it."
         )
     falls = [each for each in content.results if _overturns(each)]
+    unknown = [each for each in content.results if each.unknown]
     doubtful = any(each.close for each in content.results)
     close = " The result is close: see below what could change it." if doubtful else ""
-    if any(not contact.holds for each in content.results for contact in each.contacts.values()):
+    contacts = [contact for each in content.results for contact in each.contacts.values()]
+    if any(not contact.holds and not contact.followed for contact in contacts):
         close += " But its joints do not hold: see below from which time the result is no longer valid."
     if falls:
         under = _listed([each.given.motion.name for each in falls])
         of = f" ({len(falls)} of {len(content.results)} ground motions)" if len(content.results) > 1 else ""
-        return f"{name} {names.OVERTURNS} under {under}{of}.{close}"
+        beside = f" Under {_named(unknown)} its outcome is {names.UNKNOWN}." if unknown else ""
+        return f"{name} {names.OVERTURNS} under {under}{of}.{beside}{close}"
+    if unknown:
+        return f"{_not_known(content, unknown)}{close}"
     moved = [each for each in content.results if _worst_ratio(each) > 0]
     if not moved:
         under = _listed([each.given.motion.name for each in content.results])
@@ -100,17 +107,47 @@ def in_a_sentence(content: Assessment) -> str:
     )
 
 
+def _not_known(content: Assessment, unknown: Sequence[MotionResult]) -> str:
+    """Return the answer of a report on a structure that overturns under no motion, but has unknown outcomes."""
+    if len(content.results) == 1:
+        run = unknown[0].histories["nonlinear"]
+        return (
+            f"The outcome of {content.name} under {_named(unknown)} is {names.UNKNOWN}: it is known up to "
+            f"{run.known_to:.4g} s only, then {why_unknown(run)}. The structure may overturn."
+        )
+    others = len(content.results) - len(unknown)
+    rest = f" It overturns under none of the {others} other{'s' if others > 1 else ''}." if others else ""
+    return (
+        f"The outcome of {content.name} is {names.UNKNOWN} under {_named(unknown)} ({len(unknown)} of "
+        f"{len(content.results)} ground motions), as joints open or slide that the model keeps closed: it may overturn."
+        f"{rest}"
+    )
+
+
+def _named(results: Sequence[MotionResult]) -> str:
+    return _listed([each.given.motion.name for each in results])
+
+
+def overview_columns(content: Assessment, over: str) -> list[str]:
+    """Return the headings of `overview`, with what a peak is divided by."""
+    unknown = ["neighbours of unknown outcome"] if _neighbours_unknown(content) else []
+    return ["ground motion", "PGA [g]", f"peak {over}", "neighbours that overturn", *unknown, "their median peak"]
+
+
 def overview(content: Assessment) -> list[list[str]]:
-    """A row for each motion: its name, PGA [g], the nonlinear peak, the share of its neighbours, and their median."""
+    """Return a row for each motion: name, PGA [g], nonlinear peak, shares of its neighbours, and their median."""
     rows = []
     for each in content.results:
         near, run = each.neighbours[each.polarity], each.histories["nonlinear"]
-        peaks = [inf if run.overturned else run.peak_ratio, near.peak_ratio[1]]
-        itself, median = (names.OVERTURNS if isinf(peak) else f"{peak:.3g}" for peak in peaks)
-        rows.append(
-            [each.given.motion.name, f"{each.pga_of_ground:.3g}", itself, names.percent(near.overturned), median]
-        )
+        itself = run.words if run.overturned or run.unknown else f"{run.peak_ratio:.3g}"
+        share, unknown, median = neighbours_cells(near)
+        shares = [share, unknown] if _neighbours_unknown(content) else [share]
+        rows.append([each.given.motion.name, f"{each.pga_of_ground:.3g}", itself, *shares, median])
     return rows
+
+
+def _neighbours_unknown(content: Assessment) -> bool:
+    return any(each.neighbours[each.polarity].unknown for each in content.results)
 
 
 def governs(content: Assessment) -> str:
@@ -177,12 +214,14 @@ def doubts(content: Assessment) -> list[str]:
             "The friction of crossing walls is assumed constant. Blocks that have slid by their overlap of "
             f"{1000 * content.mechanism.interlock.overlap:.0f} mm come apart; no result is valid beyond that."
         )
+    if any(each.histories["nonlinear"].check is None for each in content.results):
+        said.append(NOT_CHECKED)
     return said
 
 
 def _verdict(content: Assessment, result: MotionResult) -> Verdict:
     best = result.histories["nonlinear"]
-    headline = names.OVERTURNS if _overturns(result) else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
+    headline = best.words if best.overturned or best.unknown else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
     return Verdict(
         result.given.motion.name,
         f"{headline}{' (close)' if result.close else ''}",
@@ -199,8 +238,10 @@ def _verdict(content: Assessment, result: MotionResult) -> Verdict:
 
 def _joints(content: Assessment, result: MotionResult) -> tuple[Answer, ...]:
     """Answer whether the joints hold, in the polarity that governs; empty for a structure that does not rock."""
-    said = contact_words(result.contacts[result.polarity], content.mechanism)
-    return (Answer("Do its joints hold?", said),) if said else ()
+    run, contact = result.histories["nonlinear"], result.contacts[result.polarity]
+    said = [joints_in_words(run).replace("`", "") if run.check is not None else ""]
+    said.append(contact_words(contact, content.mechanism))
+    return (Answer("Do its joints hold?", " ".join(filter(None, said))),) if said[1] else ()
 
 
 def _uplift(content: Assessment, result: MotionResult) -> str:
@@ -219,7 +260,8 @@ def _uplift(content: Assessment, result: MotionResult) -> str:
         else f"this motion, of {pga:.3g} g, reaches it only in the other direction"
     )
     more = f" The motion would have to be {factor:.3g} times as strong to cause uplift." if factor is not None else ""
-    return f"No. {needed}{both}; {but}.{more}"
+    no = f"Not up to {best.known_to:.4g} s, beyond which it is unknown" if best.unknown else "No"
+    return f"{no}. {needed}{both}; {but}.{more}"
 
 
 def _overturning(result: MotionResult) -> str:
@@ -232,7 +274,9 @@ def _overturning(result: MotionResult) -> str:
 
 
 def _fate(run: History, *, capital: bool = False) -> str:
-    if run.overturned:
+    if run.unknown:
+        said = f"unknown beyond {run.known_to:.4g} s, when {why_unknown(run)}"
+    elif run.overturned:
         said = f"yes, it overturns, {SENSE[Direction(run.fell_to)]} at {run.overturning_time:.2f} s"
     elif run.lifted:
         said = f"no, it rocks to {_share(run.peak_ratio)} the {run.reference}"
@@ -251,9 +295,13 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
     if best.peak_ratio > 0:
         side = Direction.POSITIVE if best.furthest == best.peak_positive else Direction.NEGATIVE
         statics = content.structure.statics[0 if side > 0 else 1]
+        until = f" up to {best.known_to:.4g} s" if best.unknown else ""
         said.append(
-            f"Its largest rotation is {degrees(best.furthest):.3g}° {SENSE[side]}. {_what_that_is(best, statics)}"
+            f"Its largest rotation{until} is {degrees(best.furthest):.3g}° {SENSE[side]}. "
+            f"{_what_that_is(best, statics)}"
         )
+        if best.unknown:
+            said.append("It may rotate further afterwards.")
         if best.peak_ratio > 1:
             said.append("It exceeds this rotation and is brought back only by the subsequent ground motion.")
     said.append(str(result.neighbours[result.polarity]))
@@ -291,6 +339,11 @@ def _trusted(content: Assessment, result: MotionResult) -> str:
     if len(runs) == 1:
         return f"The nonlinear model; no other is available. {why_alone(content)}"
     best = runs["nonlinear"]
+    if best.unknown:
+        return (
+            f"The nonlinear model up to {best.known_to:.4g} s, and none beyond: the equivalent blocks have no joints, "
+            "and cannot tell the outcome."
+        )
     itself = "The nonlinear model simulates the structure without linearisation; its results are quoted here."
     called = {name: f"the {model}" for name, model in MODELS.items()}
     grades = {each.grade for each in agreements(runs).values()}
@@ -320,7 +373,13 @@ def why_alone(content: Assessment) -> str:
 def _doubts(result: MotionResult) -> list[str]:
     said = [f"{each.text[0].upper()}{each.text[1:]}." for each in result.doubts]
     contact = result.contacts.get(result.polarity)
-    if contact is not None and not contact.holds:
+    best = result.histories["nonlinear"]
+    if best.unknown:
+        said.append(
+            f"The outcome is unknown after {best.known_to:.4g} s (see Joints): the structure may overturn. "
+            "Describe the structure as a linkage that hinges at the joint that opens, or assume that it overturns."
+        )
+    elif contact is not None and not contact.stands:
         said.append("Its joints do not hold under this motion (see Joints): the result is not valid beyond that time.")
     if result.close:
         said.append("The result is close to the other outcome. Do not base a decision on this computation alone.")
@@ -341,7 +400,7 @@ def _overturns(result: MotionResult) -> bool:
 
 def _worst_ratio(result: MotionResult) -> float:
     best = result.histories["nonlinear"]
-    return 0.0 if best.overturned else best.peak_ratio
+    return 0.0 if best.overturned or best.unknown else best.peak_ratio
 
 
 def alone(result: MotionResult) -> str:
@@ -350,11 +409,13 @@ def alone(result: MotionResult) -> str:
     if ratio is None:
         return "No pulse was found in this motion."
     pulse = f"The {result.fits[0].pulse.title} of the table, without the rest of the motion,"
-    if isnan(ratio):
+    if isnan(ratio) and not result.alone_unknown:
         return f"{pulse} overturns the structure."
     if ratio == 0:
         return f"{pulse} does not cause uplift."
     of = result.histories["nonlinear"].reference
+    if result.alone_unknown:
+        return f"{pulse} has an unknown outcome, as a joint opens or slides that the model keeps closed."
     return f"{pulse} rocks the structure to {_share(ratio)} its {of}."
 
 

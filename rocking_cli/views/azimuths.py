@@ -6,7 +6,10 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rocking_cli import names
+from rocking_cli.dynamics.holding import NOT_CHECKED
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.io.tables import Columns
@@ -14,46 +17,67 @@ from rocking_cli.names import percent
 from rocking_cli.studies.azimuths import Around, sectors
 from rocking_cli.views.view import ABSENT, Table, View, heading
 
+Flags = NDArray[np.bool_]
+
 
 def view(structure: Prepared, found: Around, doubts: Iterable[str] = ()) -> View:
     """What a pair of components does in all directions."""
     one, other = found.names
-    heads = ["model", "directions\noverturn", "do not\nuplift", "largest peak\nof the others", "at\n[deg]"]
-    rows = [[name, *_cells(found, each)] for name, each in found.outcomes.items()]
+    unknown = any(each.unknown.any() for each in found.outcomes.values())
+    heads = ["model", "directions\noverturn", *(["are\nunknown"] if unknown else []), "do not\nuplift"]
+    heads += ["largest peak\nof the others", "at\n[deg]"]
+    rows = [[name, *_cells(found, each, unknown=unknown)] for name, each in found.outcomes.items()]
     said = (
         f"0 degrees is {one}, 90 degrees {other}; {found.azimuths.size} directions of the structure's plane, one every "
         f"{found.azimuths[1] - found.azimuths[0]:g} degrees. PGA {found.pga.min():.3g} to {found.pga.max():.3g} g, the "
         f"largest at {found.azimuths[found.pga.argmax()]:g} degrees."
     )
-    parts: list[Table | str] = [heading(structure.mechanism), said, Table("", heads, rows, numbers=(1, 2, 3, 4))]
+    parts: list[Table | str] = [
+        heading(structure.mechanism),
+        said,
+        Table("", heads, rows, numbers=range(1, len(heads))),
+    ]
     parts += [f"{name}: {in_words(found, each)}" for name, each in found.outcomes.items()]
+    parts += [] if found.checked else [f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"]
     return View(_data(structure, found), [*parts, *doubts])
 
 
 def in_words(found: Around, outcomes: Outcomes) -> str:
-    """Where a structure overturns, a sentence."""
-    falls = outcomes.overturned
-    if not falls.any():
-        return "it overturns in no direction."
-    if falls.all():
-        return "it overturns in every direction."
-    ranges = [f"{a:g}" if a == b else f"{a:g} to {b:g}" for a, b in sectors(found.azimuths, falls)]
-    return f"it overturns in {int(falls.sum())} of {falls.size} directions, at {', '.join(ranges)} degrees."
+    """Where a structure overturns, and where its outcome is unknown, in a sentence or two."""
+    falls, unknown = outcomes.overturned, outcomes.unknown
+    if not unknown.any():
+        return f"it overturns in {_where(found, falls)}."
+    doubt = f"its outcome is {names.UNKNOWN} in {_where(found, unknown)}, as joints open or slide there"
+    return f"it overturns in {_where(found, falls)}; {doubt}." if falls.any() else f"{doubt}."
+
+
+def _where(found: Around, flags: Flags) -> str:
+    """In how many directions something is so, and in which."""
+    if not flags.any():
+        return "no direction"
+    if flags.all():
+        return "every direction"
+    ranges = [f"{a:g}" if a == b else f"{a:g} to {b:g}" for a, b in sectors(found.azimuths, flags)]
+    return f"{int(flags.sum())} of {flags.size} directions, at {', '.join(ranges)} degrees"
 
 
 def columns(found: Around) -> Columns:
-    """A row for each direction; the peak ratio of a motion that overturns is absent."""
+    """A row for each direction; a motion that overturns has no peak, and one of unknown outcome that until then."""
     table: dict[str, Any] = {"azimuth [deg]": found.azimuths, "PGA [g]": found.pga}
     for name, each in found.outcomes.items():
         table |= {f"peak phi/phi_cr {name}": each.peak_ratio, f"overturns {name}": each.overturned.astype(int)}
+        if each.unknown.any():
+            table[f"overturns {name}"] = np.where(each.unknown, np.nan, each.overturned)
+            table |= {f"unknown {name}": each.unknown.astype(int), f"known to {name} [s]": each.known_to}
     return table
 
 
-def _cells(found: Around, each: Outcomes) -> list[str]:
-    standing = np.where(each.overturned, -1.0, each.peak_ratio)
+def _cells(found: Around, each: Outcomes, *, unknown: bool) -> list[str]:
+    standing = np.where(each.overturned | each.unknown, -1.0, each.peak_ratio)
     k = int(standing.argmax())
     peak = [f"{standing[k]:.4g}", f"{found.azimuths[k]:g}"] if standing[k] > 0 else [ABSENT, ABSENT]
-    return [percent(float(each.overturned.mean())), percent(float((~each.lifted).mean())), *peak]
+    flags = [each.overturned, *([each.unknown] if unknown else []), ~each.lifted]
+    return [*(percent(float(flag.mean())) for flag in flags), *peak]
 
 
 def _data(structure: Prepared, found: Around) -> dict[str, Any]:
@@ -67,9 +91,16 @@ def _data(structure: Prepared, found: Around) -> dict[str, Any]:
         "responses": {
             name: {
                 "peak_ratio": [None if np.isnan(peak) else peak for peak in each.peak_ratio.tolist()],
-                "overturned": each.overturned.tolist(),
+                "overturned": [
+                    None if unknown else fell
+                    for unknown, fell in zip(each.unknown.tolist(), each.overturned.tolist(), strict=True)
+                ],
+                "unknown": each.unknown.tolist() if found.checked or name != "nonlinear" else None,
+                "known_to": each.known_to.tolist(),
+                "peak_lower_bound": np.where(each.unknown, each.lower_bound, np.nan).tolist(),
                 "uplifts": each.lifted.tolist(),
                 "sectors_that_overturn": [list(pair) for pair in sectors(found.azimuths, each.overturned)],
+                "sectors_unknown": [list(pair) for pair in sectors(found.azimuths, each.unknown)],
                 "said": in_words(found, each),
             }
             for name, each in found.outcomes.items()

@@ -9,7 +9,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.studies.contact import NEAR_PEAK, NONE, Contact
 from rocking_cli.views.view import number
 
-BEYOND = "the result is not valid beyond that time"
+BEYOND = ": the result is not valid beyond that time"
 
 
 def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
@@ -61,20 +61,24 @@ def contact_row(found: Contact, mechanism: Mechanism) -> list[str]:
 
 
 def contact_words(found: Contact, mechanism: Mechanism) -> str:
-    """Return the demands as sentences; empty for a structure that does not rock."""
+    """Return the demands as sentences; empty for a structure that does not rock.
+
+    Whether a joint opens or slides so far that the result ends is said with the outcome, if the joints are checked.
+    """
     if isnan(found.friction_needed):
         return ""
-    said = [_friction(found)]
+    beyond = "" if found.followed else BEYOND
+    said = [_friction(found, beyond)]
     if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
         said.append(
             f"Impacts require a coefficient of friction of {number(found.impact_friction, 3)}, and much more with a "
             "lower restitution."
         )
     if not isnan(found.lost):
-        said.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s: {BEYOND}.")
+        said.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s{beyond}.")
     if found.opens is not None and not isnan(found.opens):
         said.append(
-            f"At {number(found.opens, 4)} s another joint would open, that between {found.opens_joint}: {BEYOND}."
+            f"At {number(found.opens, 4)} s another joint would open, that between {found.opens_joint}{beyond}."
         )
     if found.crushing is not None:
         at = f"{_where(found.crushing.joint)} at {number(found.crushing.time, 4)} s"
@@ -97,7 +101,7 @@ def contact_words(found: Contact, mechanism: Mechanism) -> str:
     return " ".join(said)
 
 
-def _friction(found: Contact) -> str:
+def _friction(found: Contact, beyond: str) -> str:
     needed, at = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
     where = _where(found.joint) if found.joint else "the structure"
     if found.friction is None:
@@ -108,7 +112,7 @@ def _friction(found: Contact) -> str:
         return f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}; {there} is available."
     there_first = f" at {_where(found.slides_joint)}" if found.slides_joint else ""
     return (
-        f"Sliding would start{there_first} at {number(found.slides, 4)} s: {BEYOND}. It would last at most "
+        f"Sliding would start{there_first} at {number(found.slides, 4)} s{beyond}. It would last at most "
         f"{number(found.duration, 2)} s at a time. {where[0].upper()}{where[1:]} requires a coefficient of friction "
         f"of up to {needed}, {at}; {there} is available."
     )

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from rocking_cli import names
+from rocking_cli.dynamics.holding import NOT_CHECKED
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.studies.design import Design
 from rocking_cli.studies.metrics import Shaking
+from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import one_line
 from rocking_cli.views.view import ABSENT, Table, View
 
@@ -36,7 +39,7 @@ def data(found: Design) -> dict[str, Any]:
         "holds": [list(each) for each in found.holds],
         "everywhere": found.everywhere,
         "monotone": found.monotone,
-        "scan": {"values": found.values.tolist(), "metric": found.metric.tolist()},
+        "scan": {"values": found.values.tolist(), "metric": found.metric.tolist(), **_unknown_data(found)},
         "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
         "verdict": answer(found),
     }
@@ -47,7 +50,20 @@ def columns(found: Design) -> Columns:
     unit = f" [{found.unit}]" if found.unit else ""
     of_metric = f" [{found.aim.metric.unit}]" if found.aim.metric.unit else ""
     met = ["yes" if each else "no" for each in found.met.tolist()]
-    return {f"{found.field}{unit}": found.values, f"{found.aim.metric.name}{of_metric}": found.metric, "holds": met}
+    table: dict[str, Any] = {f"{found.field}{unit}": found.values}
+    table |= {f"{found.aim.metric.name}{of_metric}": found.metric, "holds": met}
+    return table | {name: np.array(shares, dtype=np.float64) for name, shares in _unknown_data(found).items()}
+
+
+def _unknown_data(found: Design) -> dict[str, list[float | None]]:
+    """The share of unknown outcome at each value, for a metric that needs motions; None if nothing was checked."""
+    if not found.aim.metric.shaken:
+        return {}
+    return {"unknown": [near.unknown if near is not None else None for near in found.behind]}
+
+
+def _some_unknown(found: Design) -> bool:
+    return any(near is not None and near.unknown for near in found.behind)
 
 
 def scan(found: Design) -> Table:
@@ -55,11 +71,17 @@ def scan(found: Design) -> Table:
     unit, asked = f"\n[{found.unit}]" if found.unit else "", found.aim.metric
     of_metric = f"\n[{asked.unit}]" if asked.unit else ""
     shown = np.unique(np.linspace(0, len(found.values) - 1, min(ROWS, len(found.values))).round().astype(int))
-    rows = [
-        [_value(float(found.values[k])), _metric(found, float(found.metric[k])), "yes" if found.met[k] else "no"]
-        for k in shown.tolist()
-    ]
-    return Table("", [found.field + unit, asked.name + of_metric, "holds"], rows, numbers=(0, 1))
+    unknown = _some_unknown(found)
+    rows = []
+    for k in shown.tolist():
+        doubtful = [_doubtful(found.behind[k])] if unknown else []
+        rows.append([_value(float(found.values[k])), _metric(found, k), *doubtful, "yes" if found.met[k] else "no"])
+    heads = [found.field + unit, asked.name + of_metric, *(["unknown\noutcome"] if unknown else []), "holds"]
+    return Table("", heads, rows, numbers=range(len(heads) - 1))
+
+
+def _doubtful(near: Neighbours | None) -> str:
+    return ABSENT if near is None or near.unknown is None else percent(near.unknown)
 
 
 def answer(found: Design) -> str:
@@ -103,9 +125,28 @@ def doubts(found: Design, shaking: Shaking | None) -> list[str]:
             f"simulated, {shaking.around.words}. The metric is based on a share of them, which changes in steps of "
             f"{percent(1 / shaking.around.count)}."
         )
+        said += _not_known(found)
         if len(shaking.motions) > 1:
             said.append(f"At each value, the worst of {len(shaking.motions)} motions governs.")
     return said
+
+
+def _not_known(found: Design) -> Iterator[str]:
+    """Say at how many values outcomes are unknown, or that the joints are not checked."""
+    shares = [near.unknown for near in found.behind if near is not None]
+    some = [share for share in shares if share]
+    if some:
+        count = (
+            "so the requirement is not met there"
+            if found.aim.wants_more
+            else "they count as overturning, though they may stand"
+        )
+        yield (
+            f"At {len(some)} of the {len(found.values)} values, up to {percent(max(some))} of the neighbouring motions "
+            f"have an unknown outcome, as a joint opens or slides that the model keeps closed: {count}."
+        )
+    if None in shares:
+        yield f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
 
 
 def _nearest(found: Design) -> str:
@@ -114,7 +155,7 @@ def _nearest(found: Design) -> str:
     if not there.size:
         return f"{found.aim.metric.name} could not be computed at any of these values."
     best = there[(found.metric[there].argmin() if found.aim.op[0] == "<" else found.metric[there].argmax())]
-    value, place = _metric(found, float(found.metric[best])), _with_unit(found, found.values[best])
+    value, place = _metric(found, int(best)), _with_unit(found, found.values[best])
     return f"the {'smallest' if found.aim.op[0] == '<' else 'largest'} {found.aim.metric.name} is {value}, at {place}."
 
 
@@ -130,10 +171,13 @@ def _with_unit(found: Design, value: float) -> str:
     return f"{_value(float(value))}{f' {found.unit}' if found.unit else ''}"
 
 
-def _metric(found: Design, value: float) -> str:
-    """The metric as people read it: a share in per cent; where most of the neighbours overturn there is no peak."""
+def _metric(found: Design, k: int) -> str:
+    """Format the metric at a value tried: a share in %, and what most neighbours do if there is no median peak."""
+    value, near = float(found.metric[k]), found.behind[k]
     if np.isnan(value):
         return ABSENT
     if found.aim.metric.name == "overturned":
         return percent(value)
-    return "overturns" if np.isinf(value) else f"{value:.5g}"
+    if np.isinf(value):
+        return names.OVERTURNS if near is None or near.half_overturn else names.UNKNOWN
+    return f"{value:.5g}"

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.dynamics.outcome import OneOutcome
+from rocking_cli.names import UNKNOWN
 from rocking_cli.studies.equivalent import EquivalentResponses
+from rocking_cli.views.response import known_data
 from rocking_cli.views.view import Table, View
 
 
@@ -30,7 +33,8 @@ def view(found: EquivalentResponses, verdict: str) -> View:
                 "eta": each.eta,
                 "own_eta": each.own_eta,
                 "peak_ratio": each.history.peak_ratio,
-                "overturned": each.history.overturned,
+                "overturned": None if each.history.unknown else each.history.overturned,
+                **known_data(each.history),
             }
             for each in found.members
         ],
@@ -51,7 +55,8 @@ def view(found: EquivalentResponses, verdict: str) -> View:
     ]
     rows.append(["linear block", "", "", f"{found.members[0].eta:.4g}", _peak(found.alone)])
     heads = ["", "a_g [g]", "T [s]", "eta", "peak / phi_cr"]
-    return View(data, [Table(title(found), heads, rows, numbers=(1, 2, 3, 4)), verdict])
+    cautions = [unchecked(each.name) for each in found.members if each.history.check is None]
+    return View(data, [Table(title(found), heads, rows, numbers=(1, 2, 3, 4)), verdict, *cautions])
 
 
 def title(found: EquivalentResponses) -> str:
@@ -60,6 +65,8 @@ def title(found: EquivalentResponses) -> str:
 
 
 def _peak(outcome: OneOutcome) -> str:
+    if outcome.unknown:
+        return f"{UNKNOWN}, >= {outcome.lower_bound:.4g}"
     return f"{outcome.peak_ratio:.4g}" if outcome.peak_ratio > 0 else outcome.words
 
 

@@ -5,22 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from math import isinf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.studies.fragility.displacements import kept, metres
 from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
-    from rocking_cli.studies.fragility.assess import Bivariate, Fragility
+    from rocking_cli.studies.fragility.assess import Bivariate, Fragility, Outcomes
     from rocking_cli.studies.fragility.curves import Curve, Estimate, Surface
     from rocking_cli.studies.fragility.definition import Definition, Limit
     from rocking_cli.studies.fragility.hazard import Rate
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import Study
+
+Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
 
 
 def planned(study: Study, plan: Plan) -> View:
@@ -83,6 +86,7 @@ def view(
     failed: int,
     curves: Sequence[Fragility],
     surfaces: Sequence[Bivariate],
+    outcomes: Sequence[Outcomes] = (),
 ) -> View:
     """What was found: the curves and surfaces that were fitted to the runs of a store.
 
@@ -98,23 +102,28 @@ def view(
         Runs in the store, and those of them that could not be simulated.
     curves, surfaces : sequence
         What was fitted to them.
+    outcomes : sequence of Outcomes
+        How many runs of each structure are of unknown outcome.
     """
     name, confidence = store.fact("name"), definition.confidence
     bad = sum(each.reason is not None for each in plan.records)
     good = len(plan.records) - bad
     records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
     so_far = "" if finished == plan.total else f" of {plan.total:,}, so far"
+    doubtful = sum(each.unknown or 0 for each in outcomes)
+    of_them = f" ({doubtful:,} of {UNKNOWN} outcome)" if doubtful else ""
     parts: list[Table | str] = [
-        f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}, seed {definition.seed}"
+        f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}{of_them}, seed {definition.seed}"
     ]
     parts += sets_in_words(plan)
     for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):
         these = [each for each in curves if (each.structure, each.measure) == (structure, measure)]
-        parts += _curves(structure, measure, these, confidence)
+        parts += _curves(structure, measure, these, definition)
     for structure, measures in dict.fromkeys((each.structure, each.measures) for each in surfaces):
         those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
         parts += _surfaces(structure, measures, those, confidence)
     parts += [*without_block(plan), *out_of_reach(store, plan, definition)]
+    parts += (notes := [*_unknown_in_words(outcomes), *_unchecked_in_words(store, outcomes)])
     parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
@@ -126,6 +135,8 @@ def view(
         "runs": plan.total,
         "finished": finished,
         "failed": failed,
+        "outcomes": [{**asdict(each), "share": each.share} for each in outcomes],
+        "notes": notes,
         "left_out": left_out(plan),
         "without_block": without_block(plan),
         "out_of_reach": out_of_reach(store, plan, definition),
@@ -176,30 +187,32 @@ def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) ->
     ]
 
 
-def _curves(structure: str, measure: str, curves: Sequence[Fragility], confidence: float) -> Iterator[Table | str]:
+def _curves(structure: str, measure: str, curves: Sequence[Fragility], definition: Definition) -> Iterator[Table | str]:
     """The curves of a structure over one measure."""
-    interval = f"{100 * confidence:g} %"
-    width = "dispersion" if all(each.curve.scale is None for each in curves) else "dispersion\nor scale"
+    shown = list(edges(curves))
+    interval = f"{100 * definition.confidence:g} %"
+    width = "dispersion" if all(each.curve.scale is None for _, each in shown) else "dispersion\nor scale"
     columns = ["limit state", "curve", f"median\n{interval}", f"{width}\n{interval}", "fit p"]
-    rated = any(each.rate is not None for each in curves)
+    rated = any(each.rate is not None for _, each in shown)
     rows = [
         [
-            limit_name(each.limit),
+            name,
             each.curve.kind,
             _estimate(each.curve.median),
             _estimate(each.curve.dispersion or each.curve.scale),
             number(None if each.curve.goodness is None else each.curve.goodness.p_value, 2),
             *([number(None if each.rate is None else each.rate.rate, 3)] if rated else []),
         ]
-        for each in curves
+        for name, each in shown
     ]
     columns += ["rate\n[1/year]"] if rated else []
     yield ""
     yield Table(f"{structure}, over {label(measure)}", columns, rows, numbers=range(2, len(columns)))
-    for each in curves:
-        yield f"{limit_name(each.limit)}: {each.curve.why}.{_in_years(each.rate)}"
+    for name, each in shown:
+        yield f"{name}: {each.curve.why}.{_in_years(each.rate)}"
+    yield from _undecided(curves, capacities=definition.method == "ida")
     yield from _left_out(measure, curves[0].left_out)
-    yield from _warnings([each.curve for each in curves])
+    yield from _warnings([each.curve for _, each in shown])
 
 
 def _surfaces(
@@ -208,10 +221,8 @@ def _surfaces(
     """The surfaces of a structure over two measures."""
     one, other = measures
     interval = f"{100 * confidence:g} %"
-    rows = [
-        [limit_name(each.limit), *(_estimate(c) for c in each.surface.coefficients or (None, None, None))]
-        for each in surfaces
-    ]
+    shown = list(edges(surfaces))
+    rows = [[name, *(_estimate(c) for c in each.surface.coefficients or (None, None, None))] for name, each in shown]
     yield ""
     yield Table(
         f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))",
@@ -219,10 +230,79 @@ def _surfaces(
         rows,
         numbers=(1, 2, 3),
     )
-    for each in surfaces:
-        yield f"{limit_name(each.limit)}: {each.surface.why}."
+    for name, each in shown:
+        yield f"{name}: {each.surface.why}."
+    yield from _undecided(surfaces, capacities=False)
     yield from _left_out(" or ".join(measures), surfaces[0].left_out)
-    yield from _warnings([each.surface for each in surfaces])
+    yield from _warnings([each.surface for _, each in shown])
+
+
+def edges(found: Sequence[Fitted]) -> Iterator[tuple[str, Fitted]]:
+    """Yield all fits with their names: of a band both edges."""
+    for each in found:
+        name = limit_name(each.limit)
+        if each.is_band and each.lower is not None:
+            yield f"{name}, upper", each
+            yield f"{name}, lower", each.lower
+        else:
+            yield name, each
+
+
+def _undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> Iterator[str]:
+    """Say of how many runs, or capacities, it is not known whether they exceed a limit state, and how they count."""
+    for each in found:
+        if not each.unknown:
+            continue
+        share = f"({percent(each.share or 0.0)})"
+        many = each.unknown != 1
+        if capacities:
+            said = f"{each.unknown:,} of {each.total:,} capacities {share} {'are' if many else 'is'} {UNKNOWN}"
+        else:
+            does = "exceed" if many else "exceeds"
+            said = f"whether {each.unknown:,} of {each.total:,} runs {share} {does} the limit is {UNKNOWN}"
+        counted = f"{'these count' if many else 'this one counts'} as exceeding"
+        how = (
+            "the result is the band between the two curves, down to 0 without a lower one" if each.is_band else counted
+        )
+        yield f"{limit_name(each.limit)}: {said}; {how}."
+    if any(each.is_band for each in found):
+        yield (
+            f"An upper curve counts runs of {UNKNOWN} outcome as exceeding the limit, a lower one as not exceeding it. "
+            f"A lower curve may be flat or missing just because more outcomes are {UNKNOWN} at higher intensities; "
+            "this does not mean that stronger motions are safer."
+        )
+
+
+def _unknown_in_words(outcomes: Sequence[Outcomes]) -> list[str]:
+    """A sentence on each structure with runs of unknown outcome."""
+    return [
+        f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) {_are(each.unknown)} "
+        f"of {UNKNOWN} outcome, because a joint opens or slides that the model keeps closed. They are known to exceed "
+        "a limit only if they exceed it before the first joint opens or slides; until more is known, use the upper "
+        "curves."
+        for each in outcomes
+        if each.unknown
+    ]
+
+
+def _are(number: int) -> str:
+    return "are" if number != 1 else "is"
+
+
+def _unchecked_in_words(store: Store, outcomes: Sequence[Outcomes]) -> list[str]:
+    """Say for which structures no joint was checked; empty if for none."""
+    unchecked = [each.structure for each in outcomes if not each.checked]
+    if not unchecked:
+        return []
+    if not store.with_joints:
+        return [
+            "Caution: an earlier version wrote this store and did not check the joints: run the study again from "
+            "scratch to check them."
+        ]
+    return [
+        f"Caution: the joints of {' and '.join(unchecked)} are not checked: the mechanism does not say which of them "
+        "stay closed."
+    ]
 
 
 def _left_out(measure: str, runs: int) -> Iterator[str]:
@@ -262,11 +342,23 @@ def _estimate(estimate: Estimate | None) -> str:
 
 
 def _curve_data(found: Fragility) -> dict[str, Any]:
-    curve = found.curve
     return {
         "structure": found.structure,
         "limit_state": found.limit,
         "measure": found.measure,
+        **_fit_data(found),
+        "left_out": found.left_out,
+        "unknown": found.unknown,
+        "unknown_share": found.share,
+        "band": found.is_band,
+        "lower": None if found.lower is None else _fit_data(found.lower),
+    }
+
+
+def _fit_data(found: Fragility) -> dict[str, Any]:
+    """Return what was fitted, apart from what it is of."""
+    curve = found.curve
+    return {
         "kind": curve.kind,
         "why": curve.why,
         **{
@@ -278,7 +370,6 @@ def _curve_data(found: Fragility) -> dict[str, Any]:
         "aic": curve.aic,
         "runs": curve.runs,
         "exceedances": curve.exceedances,
-        "left_out": found.left_out,
         "distinct_records": curve.records,
         "warning": curve.warning or None,
         "annual_rate": None if found.rate is None else asdict(found.rate),
@@ -286,11 +377,23 @@ def _curve_data(found: Fragility) -> dict[str, Any]:
 
 
 def _surface_data(found: Bivariate) -> dict[str, Any]:
-    surface = found.surface
     return {
         "structure": found.structure,
         "limit_state": found.limit,
         "measures": list(found.measures),
+        **_plane_data(found),
+        "left_out": found.left_out,
+        "unknown": found.unknown,
+        "unknown_share": found.share,
+        "band": found.is_band,
+        "lower": None if found.lower is None else _plane_data(found.lower),
+    }
+
+
+def _plane_data(found: Bivariate) -> dict[str, Any]:
+    """Return what was fitted over two measures, apart from what it is of."""
+    surface = found.surface
+    return {
         "kind": surface.kind,
         "why": surface.why,
         "coefficients": [asdict(each) for each in surface.coefficients or []],
@@ -298,7 +401,6 @@ def _surface_data(found: Bivariate) -> dict[str, Any]:
         "p_values": surface.p_values,
         "runs": surface.runs,
         "exceedances": surface.exceedances,
-        "left_out": found.left_out,
         "distinct_records": surface.records,
         "warning": surface.warning or None,
     }

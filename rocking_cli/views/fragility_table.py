@@ -10,11 +10,15 @@ from numpy.typing import NDArray
 
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.assess import Fragility
+from rocking_cli.studies.fragility.curves import Curve
 
 POINTS = 101  # of a curve
 WIDEST = 30.0  # ratio of the least and the largest intensity from which on steps are of equal ratio
 WORDS = ("structure", "limit_state", "measure", "unit", "kind")
 NUMBERS = ("median", "dispersion", "scale", "x", "probability", "low", "high")
+OTHER = tuple(f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high"))
+"""Columns of the fit in which runs of unknown outcome do not exceed, beside those of that in which they do."""
+COLUMNS = (*NUMBERS, "unknown", *OTHER)
 
 
 def blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[object] | NDArray[Any]]]:
@@ -23,20 +27,31 @@ def blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[object
     Yields
     ------
     mapping of str to sequence
-        The columns; `dispersion` is of lognormal curves, `scale` of logistic ones, each NaN for the others.
+        The columns; `dispersion` is of lognormal curves, `scale` of logistic ones, each NaN for the others. `unknown`
+        is the share of runs of which it is not known whether they exceed, NaN if nothing was checked: they exceed in
+        the curve itself, and do not in that whose columns begin with `lower_`.
     """
-    drawn = [each for each in curves if each.curve.kind != "none"]
+    drawn = [each for each in curves if _is_drawn(each)]
     if not drawn:
-        yield {**{name: np.array([], dtype=str) for name in WORDS}, **{name: np.array([]) for name in NUMBERS}}
+        yield {**{name: np.array([], dtype=str) for name in WORDS}, **{name: np.array([]) for name in COLUMNS}}
     for each in drawn:
-        curve = each.curve
-        x = _intensities(each)
-        low, high = curve.band(x)
-        words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, curve.kind)
-        found = [curve.median, curve.dispersion, curve.scale]
-        same = [np.full(x.size, np.nan if one is None else one.value) for one in found]
-        columns = zip(NUMBERS, [*same, x, curve.probability(x), low, high], strict=True)
+        x, share = _intensities(each), each.share
+        words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, each.curve.kind)
+        unknown = np.full(x.size, np.nan if share is None else share)
+        one, other = (_fit(found.curve, x) for found in (each, each.lower or each))
+        numbers = [*one[:3], x, *one[3:], unknown, *other]
+        columns = zip(COLUMNS, numbers, strict=True)
         yield {**{name: [word] * x.size for name, word in zip(WORDS, words, strict=True)}, **dict(columns)}
+
+
+def _is_drawn(found: Fragility) -> bool:
+    return found.curve.kind != "none" or (found.lower is not None and found.lower.curve.kind != "none")
+
+
+def _fit(curve: Curve, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """Return median, dispersion, scale, probability and its band at intensities; NaN where there is none."""
+    same = [np.nan if one is None else one.value for one in (curve.median, curve.dispersion, curve.scale)]
+    return [*(np.full(x.size, value) for value in same), curve.probability(x), *curve.band(x)]
 
 
 def _intensities(found: Fragility) -> NDArray[np.float64]:
@@ -44,5 +59,7 @@ def _intensities(found: Fragility) -> NDArray[np.float64]:
     least, most = float(found.seen.x.min()), float(found.seen.x.max())
     between = np.geomspace if most > WIDEST * least else np.linspace
     x: NDArray[np.float64] = between(least, most, POINTS)
-    step = found.curve.step
-    return x if step is None else np.union1d(x, [step.low, step.value, step.high])
+    for curve in (found.curve, (found.lower or found).curve):
+        if curve.step is not None:
+            x = np.union1d(x, [curve.step.low, curve.step.value, curve.step.high])
+    return x

@@ -56,7 +56,7 @@ def blocks(
     Yields
     ------
     dict of str to ndarray
-        NaN after overturning.
+        NaN after overturning, and where the motion is not known.
     """
     names = _names(histories, motion)
     runs = list(histories.values())
@@ -68,13 +68,11 @@ def blocks(
         if motion is not None and motion.vertical is not None:
             columns.append(_at(longest.time[part], motion.vertical) / STANDARD_GRAVITY)
         for run in runs:
-            # A motion that has come to rest before the longest one stays there.
-            after = np.nan if run.overturned else 0.0
-            columns += [_padded(values, part, after) for values in (run.phi, run.rate, run.ratio)]
+            columns += [_padded(values, part, _after(run)) for values in (run.phi, run.rate, run.ratio)]
         found = dict(zip(names, columns, strict=True))
         if watched is not None:
             for name, run in histories.items():
-                phi = _padded(run.phi, part, np.nan if run.overturned else 0.0)
+                phi = _padded(run.phi, part, _after(run))
                 found |= {f"{name} {what}": values for what, values in watched.columns(phi)}
         found |= {f"{name} base shear [N]": _padded(values, part, np.nan) for name, values in base_shear.items()}
         yield found
@@ -84,6 +82,11 @@ def _at(time: Reals, motion: GroundMotion) -> Reals:
     """A component at other times than its own samples; zero after its last."""
     own = np.arange(motion.npts) * motion.dt
     return np.interp(time, own, motion.acceleration, right=0.0)
+
+
+def _after(run: History) -> float:
+    """Return what follows a history: one that has come to rest before the longest one stays there."""
+    return np.nan if run.overturned or run.unknown else 0.0
 
 
 def _padded(values: Reals, part: slice, after: float) -> Reals:

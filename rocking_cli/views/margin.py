@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Mechanism
+from rocking_cli.dynamics.holding import NOT_CHECKED
 from rocking_cli.names import percent
 from rocking_cli.studies.margin import LEVELS, Margin, in_words
 from rocking_cli.studies.neighbours import Around
@@ -23,19 +24,10 @@ class Row(NamedTuple):
 
 def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around) -> View:
     """The margins of a structure under some motions."""
+    around = rows[0].margin.around if rows else around  # with the deviations of the structure
     heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
     heads += [f"{percent(level)}\nfrom" for level in LEVELS] + [f"below\n{percent(level)} to" for level in LEVELS]
-    cells = [
-        [
-            row.name,
-            f"{row.pga:.3g}",
-            number(row.margin.uplift, 3),
-            percent(row.margin.itself),
-            *(number(row.margin.first(level), 3) for level in LEVELS),
-            *(_last(row.margin, level) for level in LEVELS),
-        ]
-        for row in rows
-    ]
+    cells = [cell for row in rows for cell in _cells(row)]
     either = {
         "1": "the motion as given",
         "-1": "the motion reversed",
@@ -51,16 +43,50 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
         "% of them overturn it, and 'below ... to' the largest factor at which fewer do; a plus marks the largest "
         "factor tried.",
         Table("", heads, cells, numbers=range(1, len(heads))),
+        *_doubtful(rows),
     ]
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
     parts += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
+    if not all(row.margin.checked for row in rows):
+        parts.append(f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}")
     return View(_data(mechanism, rows, polarity, around), parts)
 
 
-def _last(found: Margin, level: float) -> str:
+def _cells(row: Row) -> Iterator[list[str]]:
+    """The row of a motion and, if some outcomes are unknown, another one in which these count as overturning."""
+    found = row.margin
+    yield [
+        row.name,
+        f"{row.pga:.3g}",
+        number(found.uplift, 3),
+        percent(found.itself),
+        *(number(found.first(level), 3) for level in LEVELS),
+        *(_last(found, found.last_below(level)) for level in LEVELS),
+    ]
+    if found.unknown.any():
+        yield [
+            "  or unknown",
+            "",
+            "",
+            percent(found.itself_at_most),
+            *(number(found.possible(level), 3) for level in LEVELS),
+            *(_last(found, found.last_possible_below(level)) for level in LEVELS),
+        ]
+
+
+def _last(found: Margin, factor: float | None) -> str:
     """Format the last factor at which fewer overturn; a plus marks the largest factor tried."""
-    last = found.last_below(level)
-    return f"{number(last, 3)}{'+' if last == found.factors[-1] else ''}"
+    return f"{number(factor, 3)}{'+' if factor == found.factors[-1] else ''}"
+
+
+def _doubtful(rows: Sequence[Row]) -> Iterator[str]:
+    """Say how to read the rows of unknown outcomes, if there are any."""
+    if any(row.margin.unknown.any() for row in rows):
+        yield (
+            "Rows 'or unknown' count neighbours of unknown outcome as overturning: each factor and share lies between "
+            "the two rows. For a safe assessment, use the row 'or unknown'; the row above it alone is no proof that "
+            "the structure stands."
+        )
 
 
 def _data(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around) -> dict[str, Any]:
@@ -68,7 +94,12 @@ def _data(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Arou
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "model": "nonlinear",
         "polarity": polarity,
-        "neighbours": {"count": around.count, "amplitude": around.amplitude, "restitution": around.restitution},
+        "neighbours": {
+            "count": around.count,
+            "amplitude": around.amplitude,
+            "restitution": around.restitution,
+            "slenderness": around.slenderness,
+        },
         "motions": [
             {
                 "name": row.name,
@@ -83,16 +114,19 @@ def _data(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Arou
 
 
 def margin_data(found: Margin) -> dict[str, Any]:
-    """A margin: the shares, and where they pass each level."""
+    """A margin: the shares, and where they pass each level, also if all of unknown outcome overturn."""
     return {
         "uplift": found.uplift,
         "overturned": found.itself,
         "factors": found.factors.tolist(),
         "shares": found.overturned.tolist(),
+        "unknown": found.unknown.tolist() if found.checked else None,
         "levels": {
             f"{100 * level:g}": {
                 "first": found.first(level),
                 "last_below": found.last_below(level),
+                "first_or_unknown": found.possible(level),
+                "last_below_or_unknown": found.last_possible_below(level),
                 "islands": found.islands(level),
             }
             for level in LEVELS

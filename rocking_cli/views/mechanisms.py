@@ -14,6 +14,7 @@ from rocking_cli.core.interlock import Interlock
 from rocking_cli.core.loads import Load
 from rocking_cli.core.strength import Strength
 from rocking_cli.core.ties import Face, Place, Tie
+from rocking_cli.core.uncertainty import Uncertainty
 from rocking_cli.core.verdict import Verdict
 from rocking_cli.units import units_of
 from rocking_cli.views.view import ABSENT, Table, View
@@ -45,8 +46,8 @@ def installed(found: Sequence[Installed]) -> View:
         [
             Table("Mechanisms", ["mechanism", "description", "package"], cells),
             "`rocking mechanisms NAME` lists the fields of a mechanism and `rocking new NAME` prints a file to start "
-            "from. Loads, ties and supports can be added to any mechanism: see `rocking mechanisms loads`, `ties`, "
-            "`interlock`, `crushing`.",
+            "from. Loads, ties, supports, strengths and uncertainties can be added to any mechanism: see `rocking "
+            "mechanisms loads`, `ties`, `interlock`, `crushing`, `strength`, `uncertainty`.",
         ],
     )
 
@@ -80,12 +81,13 @@ PARTS: dict[str, tuple[str, dict[str, type[BaseModel]]]] = {
     "crushing": ("the strength of pivots, `crushing` of single bodies and walls", {"": Crushing}),
     "interlock": ("the friction of crossing walls, `interlock` of any mechanism", {"": Interlock}),
     "strength": ("the strength of contacts, `strength` of any mechanism", {"": Strength}),
+    "uncertainty": ("how well a structure is known, `uncertainty` of any mechanism", {"": Uncertainty}),
 }
-"""Attachments available for every mechanism, by field."""
+"""Additions available for every mechanism, by field."""
 
 
 def part(name: str) -> View:
-    """Show the fields of an attachment, one of `PARTS`."""
+    """Show the fields of an addition to any mechanism, one of `PARTS`."""
     title, models = PARTS[name]
     tables: list[Table | str] = []
     data: dict[str, Any] = {"part": name, "title": title, "fields": {}}

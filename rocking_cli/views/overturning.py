@@ -9,15 +9,19 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.core import Mechanism
+from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.names import OVERTURNS
-from rocking_cli.studies.overturning import Comparison, OverturningMap, Region
+from rocking_cli.names import OVERTURNS, UNKNOWN
+from rocking_cli.studies.overturning import FALLS, Comparison, OverturningMap, Region
 from rocking_cli.studies.under_pulses import PulsedModel, Reals
 from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 9  # of a table: the curves themselves are in --out and --json
 FROM_KINEMATICS = " (from kinematics, not measured)"
-FALLS = Region.AFTER_IMPACT, Region.WITHOUT_IMPACT
+NO_JOINTS = (
+    "The equivalent block has no joints, so whether those of the structure stay closed is not checked here: the real "
+    "outcome may differ. Next: choose the nonlinear model, which checks them."
+)
 
 
 def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionless: bool) -> View:
@@ -34,17 +38,27 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
     """
     unit = 1.0 if dimensionless else found.accelerations[0] / found.a[0]
     across = found.omega if dimensionless else found.periods
-    curves = [unit * curve for curve in (found.least(*FALLS), found.least(Region.WITHOUT_IMPACT), found.safe_again)]
+    doubtful = found.least(Region.UNKNOWN)
+    curves = [found.least(*FALLS), found.least(Region.WITHOUT_IMPACT), found.safe_again]
+    some_unknown = not np.isnan(doubtful).all()
     what, amplitude = ("omega", "a") if dimensionless else ("T [s]", "a_g [g]")
-    rows = [[f"{across[k]:.3g}", *(_cell(curve[k]) for curve in curves)] for k in _some(across.size)]
     heads = [what, "overturns\nfrom", "without\nimpact from", "survives\nagain at"]
+    if some_unknown:
+        curves.append(doubtful)
+        heads.append("unknown\nfrom")
+    rows = [[f"{across[k]:.3g}", *(_cell(unit * curve[k]) for curve in curves)] for k in _some(across.size)]
     source = "" if found.structure.eta_given else FROM_KINEMATICS
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     parts: list[Table | str] = [
         f"{map_title(found)}{source}: amplitudes {amplitude} against {what}",
-        Table("", heads, rows, numbers=range(1, 4)),
+        Table("", heads, rows, numbers=range(1, len(heads))),
         f"Shares of the pulses on the map: {shares}.",
     ]
+    if some_unknown:
+        parts.append(
+            "The outcome is unknown where a joint opens or slides so far that the model no longer holds: the structure "
+            "may stand or overturn there. Next: `rocking respond` with such a pulse names the joint and the time."
+        )
     if not (found.outcome.peak_ratio != 0).any():
         parts.append(
             f"No pulse on the map causes uplift: the largest has a = {found.a.max():.4g}, and uplift requires a > 1."
@@ -56,6 +70,8 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
             "Stronger is not always worse: 'survives again at' is the largest amplitude that does not overturn the "
             "structure although a smaller one does."
         )
+    if mechanism is not None:
+        parts += _joints([found.structure], [mechanism])
     return View(_map_data(found, mechanism, dimensionless=dimensionless), parts)
 
 
@@ -87,11 +103,17 @@ def map_table(found: OverturningMap, mechanism: Mechanism | None) -> dict[str, S
         }
     outcome = found.outcome
     before = zip(outcome.overturned.ravel().tolist(), outcome.impact_count.ravel().tolist(), strict=True)
-    return result | {
+    result |= {
         "outcome": [Region(region).label for region in found.regions.ravel().tolist()],
-        "peak phi/phi_cr": outcome.peak_ratio.ravel().tolist(),
+        "peak phi/phi_cr": np.where(outcome.unknown, np.nan, outcome.peak_ratio).ravel().tolist(),
         "impacts before overturning": [count if falls else "" for falls, count in before],
     }
+    if found.structure.may_open:
+        result |= {
+            "known to [s]": outcome.known_to.ravel().tolist(),
+            "peak phi/phi_cr, at least": np.where(outcome.unknown, outcome.lower_bound, np.nan).ravel().tolist(),
+        }
+    return result
 
 
 def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionless: bool) -> dict[str, Any]:
@@ -104,7 +126,10 @@ def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionle
         "eta": shaken.eta,
         "polarity": _polarity(found),
         "dimensionless": dimensionless,
-        "shares": {region.name.lower(): share for region, share in found.shares.items()},
+        "shares": {
+            region.name.lower(): share if shaken.checked or region is not Region.UNKNOWN else None
+            for region, share in found.shares.items()
+        },
         "omega": found.omega.tolist(),
         "period": found.periods.tolist() if here else None,
         "a": found.a.tolist(),
@@ -113,6 +138,7 @@ def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionle
             "overturning": numbers(found.least(*FALLS)),
             "after_impact": numbers(found.least(Region.AFTER_IMPACT)),
             "without_impact": numbers(found.least(Region.WITHOUT_IMPACT)),
+            "overturning_or_unknown": numbers(found.least(*FALLS, Region.UNKNOWN)) if shaken.checked else None,
         },
         "largest_safe_a_above": numbers(found.safe_again),
     }
@@ -147,7 +173,11 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
     """The least amplitudes that overturn each of several structures, and which of them overturns first."""
     firsts = _firsts(found)
     rows = [
-        [f"{found.periods[k]:.3g}", *(_cell(least[k]) for least in found.least), _goes_first(firsts[k])]
+        [
+            f"{found.periods[k]:.3g}",
+            *(_span(*ends) for ends in zip(found.possible[:, k], found.least[:, k], strict=True)),
+            UNKNOWN if found.undecided[k] else _goes_first(firsts[k]),
+        ]
         for k in _some(found.periods.size)
     ]
     heads = [each.name.replace(" ", "\n") for each in found.structures]
@@ -156,17 +186,26 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
         Table("", ["T [s]", *heads, "overturns first"], rows, numbers=range(1, len(heads) + 1)),
     ]
     counts = Counter(tuple(together) for together in firsts if together)
-    if counts:
-        said = ", ".join(
-            f"{_together(tied)} at {100 * counts[tied] / len(firsts):.0f} %"
-            for tied in sorted(counts, key=lambda tied: len(tied) > 1)
+    shares = [
+        f"{_together(tied)} at {100 * counts[tied] / len(firsts):.0f} %"
+        for tied in sorted(counts, key=lambda tied: len(tied) > 1)
+    ]
+    if found.undecided.any():
+        shares.append(f"{UNKNOWN} at {100 * found.undecided.mean():.0f} %")
+    if shares:
+        parts.append(f"Overturned by the smallest amplitude: {', '.join(shares)} of the periods.")
+    if found.doubtful.any():
+        parts.append(
+            "Two numbers: the smallest amplitude whose outcome is unknown, as a joint opens or slides so far that the "
+            "model no longer holds, and the smallest that is known to overturn the structure. Overturning starts "
+            "between the two; after >=, it starts at no smaller amplitude, if at all."
         )
-        parts.append(f"Overturned by the smallest amplitude: {said} of the periods.")
-    if np.isnan(found.least).any():
+    if np.isnan(found.possible).any():
         parts.append(f"{ABSENT}: no amplitude up to {found.top:.4g} g {OVERTURNS} the structure.")
     low = [each.name for each in found.structures if found.top * STANDARD_GRAVITY <= each.unit]
     if low:
         parts.append(f"{found.top:.4g} g, the largest amplitude tried, does not uplift {', '.join(low)}.")
+    parts += _joints(found.structures, mechanisms)
     return View(_comparison_data(found, mechanisms), parts)
 
 
@@ -185,13 +224,18 @@ def _firsts(found: Comparison) -> list[list[str]]:
 
 def comparison_table(found: Comparison) -> dict[str, Sequence[object]]:
     """The columns of the curves, a row for each period."""
-    curves = {f"{each.name} [g]": least.tolist() for each, least in zip(found.structures, found.least, strict=True)}
+    curves: dict[str, Sequence[object]] = {"period [s]": found.periods.tolist()}
+    for each, least, possible in zip(found.structures, found.least, found.possible, strict=True):
+        curves[f"{each.name} [g]"] = least.tolist()
+        if each.may_open:
+            curves[f"{each.name}, overturns or unknown [g]"] = possible.tolist()
     firsts = [f"tie: {', '.join(names)}" if len(names) > 1 else "".join(names) for names in _firsts(found)]
-    return {"period [s]": found.periods.tolist(), **curves, "first": firsts}
+    undecided = zip(firsts, found.undecided.tolist(), strict=True)
+    return curves | {"first": [UNKNOWN if open_ else first for first, open_ in undecided]}
 
 
 def _comparison_data(found: Comparison, mechanisms: Sequence[Mechanism]) -> dict[str, Any]:
-    each = zip(found.structures, mechanisms, found.least, strict=True)
+    each = zip(found.structures, mechanisms, found.least, found.possible, strict=True)
     return {
         "pulse": found.shape.name,
         "model": found.structures[0].model.name,
@@ -199,12 +243,35 @@ def _comparison_data(found: Comparison, mechanisms: Sequence[Mechanism]) -> dict
         "largest_tried": found.top,
         "period": found.periods.tolist(),
         "structures": [
-            {**_structure(shaken, mechanism), "eta": shaken.eta, "least": numbers(least)}
-            for shaken, mechanism, least in each
+            {
+                **_structure(shaken, mechanism),
+                "eta": shaken.eta,
+                "least": numbers(least),
+                "least_or_unknown": numbers(possible) if shaken.checked else None,
+            }
+            for shaken, mechanism, least, possible in each
         ],
         "first": [names[0] if len(names) == 1 else None for names in _firsts(found)],
         "tied": [names if len(names) > 1 else None for names in _firsts(found)],
+        "undecided": found.undecided.tolist(),
     }
+
+
+def _joints(structures: Sequence[PulsedModel], mechanisms: Sequence[Mechanism]) -> list[str]:
+    """Say what is not checked of the joints of structures; nothing if all of them are."""
+    linear, several = structures[0].model.is_linear, len(structures) > 1
+    left_out = linear and any(len(each.bodies()) > 1 for each in mechanisms)
+    return [
+        *([NO_JOINTS] if left_out else []),
+        *(unchecked(each.name if several else "") for each in structures if not each.checked),
+    ]
+
+
+def _span(possible: float, least: float) -> str:
+    """Format the least amplitude that overturns: a number, the two between which it lies, or a lower bound."""
+    if possible != possible or possible >= least:
+        return _cell(least)
+    return f">= {_cell(possible)}" if least != least else f"{_cell(possible)} to {_cell(least)}"
 
 
 def _together(names: Sequence[str]) -> str:

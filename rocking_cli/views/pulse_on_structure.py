@@ -10,6 +10,8 @@ from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
 from rocking_cli.dynamics.exact import ExactResponse
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.holding import NO_JOINTS, joints_in_words
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
@@ -19,7 +21,7 @@ from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
-from rocking_cli.views.response import pulse_data
+from rocking_cli.views.response import known_data, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import Table, View, heading, in_degrees, number
 
@@ -77,14 +79,15 @@ def view(
         parts += _closed_parts(closed, first)
     else:
         parts.append(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1).")
-    return View(data, [*parts, restitution_used(structure)])
+    runs = [found for each in answers.values() for found in map(outcome, each.values()) if isinstance(found, History)]
+    return View(data, [*parts, restitution_used(structure), *not_checked(runs)])
 
 
 def _data(answer: Answer, answers: Mapping[str, Answer]) -> dict[str, Any]:
     found = outcome(answer)
     return {
         "exact": isinstance(answer, ExactResponse),
-        "overturned": found.overturned,
+        "overturned": None if found.unknown else found.overturned,
         "overturning_direction": Direction(found.fell_to).label if found.overturned else None,
         "overturning_time": found.overturning_time,
         "impacts_before_overturning": impacts_before(found),
@@ -97,14 +100,16 @@ def _data(answer: Answer, answers: Mapping[str, Answer]) -> dict[str, Any]:
         "first_rebound": found.first_rebound if isinstance(found, ExactResponse) else None,
         "samples_per_period": answer.per_period if isinstance(answer, SampledHistory) else None,
         "over_nonlinear": _over_nonlinear(answer, answers),
+        **known_data(found),
     }
 
 
 def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
-    """The peak of a linear model over that of the nonlinear one; NaN where either has none."""
-    best = answers["nonlinear"]
-    peak = outcome(best).peak_ratio
-    return outcome(answer).peak_ratio / peak if answer is not best and peak > 0 else nan
+    """The peak of a linear model over that of the nonlinear one; NaN if either does not exist or is unknown."""
+    best = outcome(answers["nonlinear"])
+    if outcome(answer) is best or best.unknown or not best.peak_ratio > 0:
+        return nan
+    return outcome(answer).peak_ratio / best.peak_ratio
 
 
 def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
@@ -123,18 +128,26 @@ def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
         ["first impact", *(number(each.first_impact, 5) for each in found), "s"],
         ["overturning time", *(number(each.overturning_time, 5) for each in found), "s"],
     ]
+    if any(each.unknown for each in found):
+        rows.insert(2, ["known to", *(number(each.known_to, 5) for each in found), "s"])
+        least = (each.lower_bound if each.unknown else nan for each in found)
+        rows.insert(5, ["peak rotation / phi_cr, at least", *(number(each, 5) for each in least), ""])
     return Table(title, ["", *answers, "unit"], rows, numbers=range(1, len(found) + 1))
 
 
 def _ends(found: OneOutcome) -> str:
     """How it ends; of one that is left rocking, that it rocks."""
-    said = names.outcome(uplifts=found.lifted, overturned=found.overturned)
+    said = names.outcome(uplifts=found.lifted, overturned=found.overturned, unknown=found.unknown)
     return f"{said}\n{after_impacts(found)}" if found.overturned else said
 
 
 def _verdict(answers: Mapping[str, Answer]) -> str:
     """What the nonlinear history says, and how the linear ones compare."""
     nonlinear = outcome(answers["nonlinear"])
+    assert isinstance(nonlinear, History)
+    joints = joints_in_words(nonlinear) if nonlinear.check is not None or nonlinear.unknown else ""
+    if nonlinear.unknown:
+        return f"The structure has an {names.UNKNOWN} outcome. {joints} {NO_JOINTS}"
     if not nonlinear.lifted:
         return f"The structure {names.NO_UPLIFT}."
     if nonlinear.overturned:
@@ -142,6 +155,7 @@ def _verdict(answers: Mapping[str, Answer]) -> str:
         said = f"The structure {names.OVERTURNS} {sense}, {after_impacts(nonlinear)}."
     else:
         said = f"The structure {names.ROCKS} to {nonlinear.peak_ratio:.4g} of its critical rotation."
+    said += f" {joints}".rstrip()
     for name in KAPPAS:
         linear, over = outcome(answers[name]), _over_nonlinear(answers[name], answers)
         if over >= 0:

@@ -75,5 +75,6 @@ def _data(ranking: Ranking) -> dict[str, Any]:
         ],
         "alike": dict(ranking.alike),
         "left_out": dict(ranking.left_out),
+        "unknown": ranking.unknown,
         "verdict": judge(ranking),
     }

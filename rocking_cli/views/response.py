@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
-from math import isinf
+from math import isinf, nan
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.holding import unchecked, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.prepared import Prepared
@@ -142,14 +144,21 @@ def neighbours_data(near: Neighbours) -> dict[str, Any]:
         "count": near.around.count,
         "amplitude": near.around.amplitude,
         "restitution": near.around.restitution,
+        "slenderness": near.around.slenderness,
         "overturned": near.overturned,
+        "unknown": near.unknown,
         "peak_ratio": {f"{100 * share:.0f}": None if isinf(peak) else peak for share, peak in peaks},
         "sensitive": near.sensitive,
     }
 
 
 def agreement_data(histories: Histories) -> dict[str, Any]:
-    """How the motions of the equivalent blocks compare with the nonlinear one; empty without that."""
+    """How the motions of the equivalent blocks compare with the nonlinear one; empty without that.
+
+    Where the outcome of that is unknown there is nothing to compare with, and each is null.
+    """
+    if "nonlinear" in histories and histories["nonlinear"].unknown:
+        return {name: None for name in histories if name != "nonlinear"}
     return {
         name: {
             "grade": found.grade.key,
@@ -177,7 +186,29 @@ def models_used(models: Iterable[ModelName]) -> Iterator[str]:
 
 def ending(outcome: OneOutcome) -> str:
     """How a motion ended, as programs read it."""
+    if outcome.unknown:
+        return names.UNKNOWN
     return "overturned" if outcome.overturned else "still_rocking" if outcome.still_rocking else "at_rest"
+
+
+def known_data(outcome: OneOutcome) -> dict[str, Any]:
+    """Until when a motion is known, and why no further; that of an equivalent block always is."""
+    history = outcome if isinstance(outcome, History) else None
+    checked = history is None or history.model != "nonlinear" or history.check is not None
+    return {
+        "unknown": outcome.unknown if outcome.unknown or checked else None,
+        "known_to": outcome.known_to if outcome.unknown else None,
+        "known_to_reason": None if history is None else why_unknown(history),
+        "peak_lower_bound": outcome.lower_bound if outcome.unknown else None,
+        "opening": outcome.opening,
+    }
+
+
+def not_checked(histories: Iterable[History]) -> list[str]:
+    """A caution if the joints of a nonlinear history are not checked; else nothing."""
+    if all(each.model != "nonlinear" or each.check is not None for each in histories):
+        return []
+    return [unchecked()]
 
 
 def _history_data(history: History, shown: Shown) -> dict[str, Any]:
@@ -185,7 +216,7 @@ def _history_data(history: History, shown: Shown) -> dict[str, Any]:
         "peak_positive": history.peak_positive,
         "peak_negative": history.peak_negative,
         "peak_ratio": history.peak_ratio,
-        "overturned": history.overturned,
+        "overturned": None if history.unknown else history.overturned,
         "overturning_time": history.overturning_time,
         "overturning_direction": Direction(history.fell_to).label if history.overturned else None,
         "uplift_time": history.uplift_time,
@@ -193,6 +224,7 @@ def _history_data(history: History, shown: Shown) -> dict[str, Any]:
         "outcome": ending(history),
         "contact_lost": history.contact_lost,
         "ratio_of": "limit" if any(history.ends_at_limit) else "phi_cr",
+        **known_data(history),
     }
     if shown.watched is not None:
         found |= _movements_data(shown.watched.peaks(history))
@@ -276,6 +308,7 @@ def view(
     if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in _apart(shown, found.runs)]
+    caution += not_checked(first.values())
     joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
     said = [*parts, *joints, *models_used(first), restitution_used(structure), *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
@@ -329,6 +362,9 @@ def _table(title: str, histories: Histories, shown: Shown, polarity: int) -> Tab
         ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
         ["impacts", *(str(run.impact_count) for run in runs), ""],
     ]
+    if any(run.unknown for run in runs):
+        rows.insert(1, ["known to", *(number(run.known_to, 5) for run in runs), "s"])
+        rows.insert(3, [f"peak / {over}, at least", *(number(_bound(run), 5) for run in runs), ""])
     if shown.watched is not None:
         rows += _movement_rows([shown.watched.peaks(run) for run in runs])
     if polarity in shown.contacts and shown.mechanism is not None:
@@ -336,6 +372,10 @@ def _table(title: str, histories: Histories, shown: Shown, polarity: int) -> Tab
         shear = number(shown.contacts[polarity].base_shear / per, 4)
         rows.append(["base shear", *(shear if run.model == "nonlinear" else ABSENT for run in runs), unit])
     return Table(title, ["", *(run.model for run in runs), "unit"], rows, numbers=range(1, len(runs) + 1))
+
+
+def _bound(run: History) -> float:
+    return run.lower_bound if run.unknown else nan
 
 
 def _movement_rows(moved: Sequence[Movements]) -> list[list[str]]:
@@ -368,6 +408,11 @@ def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> st
     """A sentence on how much of the response to a record is that to its pulse, called so, by the best model."""
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     whole, alone = histories[model], to_pulse[model]
+    if whole.unknown or alone.unknown:
+        what = "record" if whole.unknown else called
+        return (
+            f"By the {model} model, how much the {called} causes is not known: the outcome under the {what} is unknown."
+        )
     if whole.overturned or alone.overturned or (whole.peak_ratio and not alone.peak_ratio):
         return f"By the {model} model, it {whole.words} under the record; under the {called} alone it {alone.words}."
     if not whole.peak_ratio:

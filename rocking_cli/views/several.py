@@ -7,6 +7,7 @@ from math import isinf
 
 from rocking_cli import names
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.holding import NOT_CHECKED, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -39,7 +40,9 @@ class Several:
         self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
         self._rows: list[list[str]] = []
         self._worst: dict[str, Severity] = {}
-        self._fallen = 0
+        self._fallen = self._unknown = 0
+        self._checked, self._doubtful = True, False
+        self._until: dict[str, str] = {}
         self._around: Around | None = None
         self._mechanism = structure.mechanism
         self._contacts: dict[str, Contact] = {}
@@ -52,42 +55,70 @@ class Several:
         for sign, histories in found.runs.items():
             reversed_ = ", reversed" if sign < 0 and len(found.runs) > 1 else ""
             near = found.neighbours.get(sign)
-            self._row(f"{found.given.motion.name}{reversed_}", pga, histories, near)
-            severities.append(severity(histories[self._best], near))
+            name = f"{found.given.motion.name}{reversed_}"
+            self._row(name, pga, histories, near)
+            run = histories[self._best]
+            self._doubtful |= near is not None and bool(near.unknown)
+            if run.unknown:
+                self._until[name] = f"the outcome is known up to {run.known_to:.4g} s only: then {why_unknown(run)}."
+            severities.append(severity(run, near))
+            self._checked &= run.model != "nonlinear" or run.check is not None
             self._around = near.around if near is not None else None
             if sign in found.contacts:
-                self._contacts[f"{found.given.motion.name}{reversed_}"] = found.contacts[sign]
+                self._contacts[name] = found.contacts[sign]
         if found.fit is not None and found.to_pulse is not None:
             own = found.fit.pulse
             self._row(f"  its {own.name} pulse alone", f"{own.amplitude / STANDARD_GRAVITY:.4g}", found.to_pulse, None)
         self._worst[found.given.motion.name] = max(severities)
-        self._fallen += any(histories[self._best].overturned for histories in found.runs.values())
+        runs = [histories[self._best] for histories in found.runs.values()]
+        fallen = any(run.overturned for run in runs)
+        self._fallen += fallen
+        self._unknown += not fallen and any(run.unknown for run in runs)
 
     def _row(self, what: str, pga: str, histories: Histories, near: Neighbours | None) -> None:
-        around = [percent(near.overturned), _peak(near.peak_ratio[1])] if near is not None else [ABSENT] * 2
-        self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models), *around])
+        self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models), *neighbours_cells(near)])
 
     def parts(self) -> Iterator[Table | str]:
         """The table, how many motions overturn it, and which governs."""
         heads = [f"peak phi/{self._over}\nunder", "PGA\n[g]", *self._models]
         rows = self._rows
-        if self._around is not None:
-            heads += ["neighbours\noverturn", "their\nmedian"]
+        if self._around is None:
+            rows = [row[:-3] for row in rows]
+        elif self._doubtful:
+            heads += ["neighbours\noverturn", "are\nunknown", "their\nmedian"]
         else:
-            rows = [row[:-2] for row in rows]
+            heads += ["neighbours\noverturn", "their\nmedian"]
+            rows = [[*row[:-2], row[-1]] for row in rows]
         yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
-        fallen = f"{self._fallen} of {len(self._worst)} motions overturn it" if self._fallen else ""
-        yield f"By the {self._best} model, {fallen or f'none of {len(self._worst)} motions overturns it'}."
+        yield f"By the {self._best} model, {self._outcomes()}."
         if self._around is not None:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {self._around.words}."
         yield governing(self._worst)
         yield from self._joints()
         yield from models_used(self._models)
         yield self._restitution
+        if not self._checked:
+            yield f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
+
+    def _outcomes(self) -> str:
+        """How many motions overturn it, and under how many the outcome is unknown."""
+        count = len(self._worst)
+        if self._fallen:
+            said = f"{self._fallen} of {count} motions overturn it"
+            return f"{said}, and the outcome under {self._unknown} is {names.UNKNOWN}" if self._unknown else said
+        if not self._unknown:
+            return f"none of {count} motions overturns it"
+        said = f"the outcome under {self._unknown} of {count} motions is {names.UNKNOWN}"
+        return said if self._unknown == count else f"{said}, and none of the others overturns it"
 
     def _joints(self) -> Iterator[str]:
-        """Yield the contact demands under which the joints do not hold, else those of the most demanding motion."""
-        fail = {name: found for name, found in self._contacts.items() if not found.holds}
+        """Yield until when motions are known, and the contact demands under which the joints do not hold.
+
+        If the joints hold under all motions, yield the demands of the most demanding one.
+        """
+        for name, until in self._until.items():
+            yield f"{name}: {until}"
+        fail = {name: found for name, found in self._contacts.items() if not found.stands}
         asks = {name: found for name, found in self._contacts.items() if found.friction_needed >= 0}
         if not fail and asks:
             most = max(asks, key=lambda name: asks[name].friction_needed)
@@ -96,12 +127,19 @@ class Several:
             yield f"{name}: {contact_words(found, self._mechanism).removeprefix('Contact: ')}"
 
 
-def _peak(ratio: float) -> str:
-    return names.OVERTURNS if isinf(ratio) else f"{ratio:.3g}"
+def neighbours_cells(near: Neighbours | None) -> list[str]:
+    """Return the shares of the neighbours of a motion that overturn and are of unknown outcome, and the median peak."""
+    if near is None:
+        return [ABSENT] * 3
+    none = names.OVERTURNS if near.half_overturn else names.UNKNOWN
+    peak = none if isinf(near.peak_ratio[1]) else f"{near.peak_ratio[1]:.3g}"
+    return [percent(near.overturned), ABSENT if near.unknown is None else percent(near.unknown), peak]
 
 
 def _fate(history: History) -> str:
-    """A cell: the peak, or that it overturns or does not uplift."""
+    """Return a cell with the peak, or that it overturns, does not uplift, or is of unknown outcome."""
+    if history.unknown:
+        return names.UNKNOWN
     if history.overturned:
         return "overturns"
     return f"{history.peak_ratio:.4g}" if history.lifted else "no uplift"

@@ -9,17 +9,19 @@ from typing import Any
 
 import numpy as np
 
+from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.excitation.scaled import Scaled
-from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS
+from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Integers, Reals
 from rocking_cli.views import processing
-from rocking_cli.views.overturning import FROM_KINEMATICS, numbers
+from rocking_cli.views.overturning import FROM_KINEMATICS, NO_JOINTS, numbers
 from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
 HUNG = "All lengths are scaled, including the positions of loads and ties; their masses, stiffness and forces are not."
 LISTED = 3  # histories that could not be simulated
+BECAUSE = "a joint opens or slides so far that the model no longer holds"
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +57,10 @@ def view(results: Results) -> View:
         )
     if any(each.shape.hung for each in results.spectra):
         said.append(HUNG)
+    if any(each.unknown.any() for each in results.spectra):
+        more = "; its peak is at least the number after >=." if results.one else ". Fractiles count it as overturning."
+        said.append(f"The outcome is {UNKNOWN} if {BECAUSE}{more}")
+    said += _joints(results)
     return View(lambda: _all(results), [*parts, *said])
 
 
@@ -70,6 +76,15 @@ def _all(results: Results) -> dict[str, Any]:
         ],
         "spectra": [_data(results, each) for each in results.spectra],
     }
+
+
+def _joints(results: Results) -> list[str]:
+    """Say what is not checked of the joints of the structures; nothing if all of them are."""
+    said = [NO_JOINTS] if any(each.shape.leaves_out_joints for each in results.spectra) else []
+    several = len(results.spectra) > 1
+    return said + [
+        unchecked(each.shape.structure.name if several else "") for each in results.spectra if not each.checked
+    ]
 
 
 def title(results: Results) -> str:
@@ -96,6 +111,7 @@ def lost(results: Results) -> str:
 def table(results: Results) -> dict[str, Sequence[object]]:
     """The columns of the curves, a row for each shape and size."""
     columns: dict[str, list[object]] = {}
+    doubtful = any(each.shape.structure.may_open for each in results.spectra)
 
     def add(heading: str, values: Sequence[object]) -> None:
         columns.setdefault(heading, []).extend(values)
@@ -112,10 +128,17 @@ def table(results: Results) -> dict[str, Sequence[object]]:
         if not results.one:
             add("motions", each.followed.tolist())
             add("overturned share", each.share.tolist())
+            if doubtful:
+                add("unknown share", (each.share_at_most - each.share).tolist())
             for q in results.fractiles:
                 add(f"{q:g}-fractile of peak phi/phi_cr", each.fractile(q).tolist())
-        for peaks, under in zip(each.peak_ratio, results.motions, strict=True):
-            add(f"peak phi/phi_cr under {under.motion.name}", peaks.tolist())
+        for peaks, unknown, under in zip(each.peak_ratio, each.unknown, results.motions, strict=True):
+            known = [UNKNOWN if hidden else peak for peak, hidden in zip(peaks.tolist(), unknown.tolist(), strict=True)]
+            add(f"peak phi/phi_cr under {under.motion.name}", known)
+        if doubtful:
+            bounds = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)
+            for bound, under in zip(bounds, results.motions, strict=True):
+                add(f"peak phi/phi_cr under {under.motion.name}, at least", bound.tolist())
     return columns  # type: ignore[return-value]
 
 
@@ -137,9 +160,17 @@ def _data(results: Results, each: Spectrum) -> dict[str, Any]:
         "given": each.given,
         "motions": each.followed.tolist(),
         "overturned": each.overturned.tolist(),
+        "unknown": each.doubtful.tolist() if each.checked else None,
         "peaks": [_finite(each.fractile(q)) for q in results.fractiles],
         "every_peak": [_finite(peaks) for peaks in each.peak_ratio],
-        "every_overturned": np.isinf(each.peak_ratio).tolist(),
+        "every_overturned": [
+            [None if hidden else peak == np.inf for peak, hidden in zip(*row, strict=True)]
+            for row in zip(each.peak_ratio.tolist(), each.unknown.tolist(), strict=True)
+        ],
+        "every_unknown": each.unknown.tolist() if each.checked else None,
+        "every_peak_lower_bound": [
+            numbers(bounds) for bounds in np.broadcast_to(each.lower_bound, each.peak_ratio.shape)
+        ],
         "verdict": _verdict(results, each),
     }
 
@@ -148,10 +179,22 @@ def _finite(values: Reals) -> list[float | None]:
     return numbers(np.where(np.isfinite(values), values, np.nan))
 
 
-def _peak(value: float) -> str:
+def _peak(value: float, least: float = np.nan) -> str:
+    """Format a peak; `least` is its lower bound if the outcome is unknown."""
+    if least == least:
+        return f"{UNKNOWN}, >= {least:.3g}"
     if value != value:
         return ABSENT
     return OVERTURNS if np.isinf(value) else f"{value:.3g}"
+
+
+def _fractile(each: Spectrum, q: float) -> list[str]:
+    """Format a fractile at each size: unknown if it depends on motions of unknown outcome whether it overturns."""
+    certain = each.fractile_overturns(q)
+    return [
+        UNKNOWN if np.isinf(value) and not falls else _peak(value)
+        for value, falls in zip(each.fractile(q), certain, strict=True)
+    ]
 
 
 def _curve(results: Results, each: Spectrum) -> Iterator[Table | str]:
@@ -166,12 +209,16 @@ def _curve(results: Results, each: Spectrum) -> Iterator[Table | str]:
         columns[1][each.given] = "as given"
     if results.one:
         heads.append("peak\nphi/phi_cr")
-        columns.append([_peak(value) for value in each.peak_ratio[0]])
+        least = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)[0]
+        columns.append([_peak(*both) for both in zip(each.peak_ratio[0], least, strict=True)])
     else:
         heads += ["median" if q == 0.5 else f"{100 * q:g} %" for q in results.fractiles]
-        columns += [[_peak(value) for value in each.fractile(q)] for q in results.fractiles]
+        columns += [_fractile(each, q) for q in results.fractiles]
         heads.append("overturned")
         columns.append([f"{value} of {of}" for value, of in zip(each.overturned, each.followed, strict=True)])
+        if each.unknown.any():
+            heads.append(UNKNOWN)
+            columns.append([str(value) for value in each.doubtful])
     rows = [[column[k] for column in columns] for k in shown]
     side = "" if structure.symmetric else f" ({structure.direction.label})"
     yield (
@@ -181,8 +228,8 @@ def _curve(results: Results, each: Spectrum) -> Iterator[Table | str]:
     if each.shape.own is not None:
         ends = (f"at {each.uplifts[k]:.4g} g at scale {each.scales[k]:.3g}" for k in (0, -1))
         yield (
-            "Masses or loads that do not scale with the structure change how it rocks, so every size was built and "
-            f"simulated separately. Uplift is {' and '.join(ends)}."
+            "Masses, loads or a strength that do not scale with the structure change its response, so every size was "
+            f"built and simulated separately. Uplift is {' and '.join(ends)}."
         )
     if not results.one:
         yield "Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak."
@@ -209,19 +256,26 @@ def _verdict(results: Results, each: Spectrum) -> str:
 
 def _itself(results: Results, each: Spectrum) -> str:
     assert each.given is not None
-    peaks = each.peak_ratio[:, each.given]
+    peaks, unknown = each.peak_ratio[:, each.given], each.unknown[:, each.given]
+    if results.one and unknown[0]:
+        return f"its outcome is {UNKNOWN}"
     if results.one:
         if np.isnan(peaks[0]):
             return "its motion could not be simulated"
         if np.isinf(peaks[0]):
             return f"it {OVERTURNS}"
         return f"it {ROCKS} to {peaks[0]:.3g} of phi_cr" if peaks[0] else f"it {NO_UPLIFT}"
-    falls, count = np.flatnonzero(np.isinf(peaks)), np.count_nonzero(~np.isnan(peaks))
+    falls, count = np.flatnonzero(np.isinf(peaks) & ~unknown), np.count_nonzero(~np.isnan(peaks))
     if not count:
         return "no motion could be simulated"
     names = shorten(", ".join(results.motions[k].motion.name for k in falls.tolist()), 90, placeholder=" ...")
     median = float(each.fractile(0.5)[each.given])
     said = f"{falls.size} of {count} motions overturn it ({names})" if falls.size else f"none of {count} overturns it"
+    if unknown.any():
+        some = f"{falls.size} of {count} motions are known to overturn it ({names})" if falls.size else (
+            f"none of {count} motions is known to overturn it"
+        )  # fmt: skip
+        said = f"{some}, the outcome of {np.count_nonzero(unknown)} is {UNKNOWN}"
     return said if np.isinf(median) else f"{said}, and its median peak is {median:.3g} of phi_cr"
 
 
@@ -230,11 +284,15 @@ def _side(results: Results, each: Spectrum, what: str, part: slice) -> str:
     falls, of, scales = each.overturned[part], each.followed[part], each.scales[part]
     if not falls.size:
         return ""
+    doubtful = each.doubtful[part]
     end = f"down to scale {scales[0]:.3g}" if what == "smaller" else f"up to scale {scales[-1]:.3g}"
+    called = [f"scale {scale:.3g}" for scale in scales]
+    if doubtful.any():
+        return f"Of the {what} sizes {end}, {_doubt(results, falls, doubtful, of, called)}."
     if not falls.any():
         return f"No {what} size {end} overturns."
     if not results.one:
-        return f"Of the {what} sizes {end}, {_most(falls, of, [f'scale {scale:.3g}' for scale in scales])}."
+        return f"Of the {what} sizes {end}, {_most(falls, of, called)}."
     if (falls == of).all():
         return f"Every {what} size {end} overturns."
     least, largest = scales[falls > 0][[0, -1]]
@@ -246,6 +304,8 @@ def _blocks(results: Results, each: Spectrum) -> str:
     """Which sizes of blocks overturn."""
     falls, of = each.overturned, each.followed
     names = [f"{period:.3g} s (R = {R:.3g} m)" for period, R in zip(each.periods, each.scales, strict=True)]
+    if each.doubtful.any():
+        return f"{_doubt(results, falls, each.doubtful, of, names)}."
     if not falls.any():
         return f"no size up to {names[-1]} overturns."
     if not results.one:
@@ -261,3 +321,19 @@ def _most(falls: Integers, of: Integers, names: Sequence[str]) -> str:
     if last == len(names) - 1:
         return said
     return f"{said}, and none {'overturns a larger size' if worst == last else f'does above {names[last]}'}"
+
+
+def _doubt(results: Results, falls: Integers, doubtful: Integers, of: Integers, names: Sequence[str]) -> str:
+    """Say how many sizes, or motions at the worst size, are known to overturn, and how many may."""
+    places = np.flatnonzero(doubtful)
+    where = f"at {names[places[0]]}" if places.size == 1 else f"between {names[places[0]]} and {names[places[-1]]}"
+    if results.one:
+        some = f"{falls.sum()} of {of.sum()} are known to overturn" if falls.any() else "none is known to overturn"
+        return f"{some}, and the outcome of {doubtful.sum()} is {UNKNOWN}, {where}"
+    most = falls + doubtful
+    worst = int(np.argmax(most / np.maximum(of, 1)))
+    return (
+        f"{_most(falls, of, names) if falls.any() else 'none is known to overturn'}; the outcome of some motions is "
+        f"{UNKNOWN} {where}, and counting these as overturning, at most {most[worst]} of {of[worst]} motions overturn "
+        f"any one size, at {names[worst]}"
+    )

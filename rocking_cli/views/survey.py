@@ -24,7 +24,7 @@ RANKED = {
     "ratio": "by the ratio of capacity to demand under the code of the site; structures with ratios below 1 fail",
     "response": (
         "by the share of motions that overturn them, then by the largest peak under the others, then by uplift "
-        "acceleration"
+        "acceleration; an unknown outcome counts as overturning"
     ),
 }
 
@@ -55,6 +55,7 @@ def _row(rank: int, each: Surveyed) -> dict[str, Any]:
     if each.under is not None:
         shaken = {
             "overturned": each.under.overturned,
+            "unknown": each.under.unknown,
             "peak_ratio": each.under.peak_ratio,
             "peak_over": each.under.over,
             "worst": each.under.worst,
@@ -99,7 +100,7 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_sprea
     for key, value in rows[0].items():
         head = f"{key} [{UNITS[key]}]" if key in UNITS else key
         cells = [row[key] for row in rows]
-        if isinstance(value, float):
+        if isinstance(value, float) or key == "unknown":
             made[head] = np.array(cells, dtype=np.float64)
         elif isinstance(value, int):
             made[head] = cells
@@ -109,19 +110,27 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_sprea
     return made
 
 
+def has_unknown(found: Survey) -> bool:
+    """Whether the outcome of any structure is unknown under any motion."""
+    return any(each.under is not None and each.under.unknown for each in found.rows)
+
+
 def headings(found: Survey) -> list[str]:
     """Return the headings of the columns of `cells`."""
-    shaken = ["overturn\nit", "largest\npeak"] if found.motions else []
+    shaken = ["overturn\nit", *(["unknown"] if has_unknown(found) else []), "largest\npeak"] if found.motions else []
     ratio = ["ratio"] if found.by == "ratio" else []
     return ["rank", "name", "mechanism", *ratio, *shaken, "lambda", "p\n[rad/s]", "phi_cr\n[rad]", "kappa2", "eta"]
 
 
-def cells(rank: int, each: Surveyed, longest: int | None = NAME) -> list[str]:
-    """A structure as people read it."""
+def cells(rank: int, each: Surveyed, longest: int | None = NAME, *, unknown: bool = False) -> list[str]:
+    """A structure as people read it, with the share of unknown outcomes if requested."""
     name = one_line(each.name)
     shaken = []
     if each.under is not None:
-        shaken = [percent(each.under.overturned), _peak(each)]
+        doubtful = each.under.unknown
+        shaken = [percent(each.under.overturned)]
+        shaken += [ABSENT if doubtful is None else percent(doubtful)] if unknown else []
+        shaken.append(_peak(each))
     numbers = (each.lambda_, each.p, each.phi_cr, each.kappa2, each.eta)
     return [
         str(rank),
@@ -142,7 +151,8 @@ def _peak(each: Surveyed) -> str:
 def table(found: Survey, top: int) -> Table:
     """The first rows."""
     heads = headings(found)
-    rows = [cells(rank, each) for rank, each in enumerate(found.rows[:top], 1)]
+    unknown = has_unknown(found)
+    rows = [cells(rank, each, unknown=unknown) for rank, each in enumerate(found.rows[:top], 1)]
     return Table(title(found), heads, rows, numbers=[0, *range(3, len(heads))])
 
 
@@ -161,14 +171,15 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
     if found.motions:
         under = [each.under for each in rows if each.under is not None]
         falls = sum(each.overturned > 0 for each in under)
-        lifts = sum(each.overturned > 0 or each.peak_ratio > 0 for each in under)
+        lifts = sum(each.at_most > 0 or each.peak_ratio > 0 for each in under)
         motions = f"the {len(found.motions)} motions" if len(found.motions) > 1 else found.motions[0]
         said.append(
-            f"Under {motions}, by the nonlinear model, {lifts:,} of {many:,} uplift and {falls:,} overturn. The peak "
-            "is the largest rotation over the critical rotation among the motions that do not overturn the "
-            "structure. One time history is one sample: use `rocking respond` and `rocking margin` to see how close "
-            "the result is."
+            f"Under {motions}, by the nonlinear model, {lifts:,} of {many:,} uplift and {falls:,} are known "
+            "to overturn. The peak is the largest rotation over the critical rotation among the motions that do not "
+            "overturn the structure. One time history is one sample: use `rocking respond` and "
+            "`rocking margin` to see how close the result is."
         )
+        said += _not_known(rows)
     without = [each for each in rows if each.no_block is not None]
     if without:
         said.append(
@@ -176,6 +187,20 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
             "the reason."
         )
     return said
+
+
+def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:
+    """Say which structures have unknown outcomes, and of which the joints are not checked."""
+    doubtful = [each for each in rows if each.under is not None and each.under.unknown]
+    if doubtful:
+        yield (
+            f"{_named(doubtful)}: the outcome under at least one motion is unknown, as a joint opens or slides that "
+            "the model keeps closed: it may overturn. The peak leaves such motions out. Next: `rocking respond` names "
+            "the joint and the time."
+        )
+    unchecked = [each for each in rows if each.under is not None and each.under.unknown is None]
+    if unchecked:
+        yield f"Caution: the joints of {_named(unchecked)} are not checked: it is not known which of them stay closed."
 
 
 def _named(rows: Sequence[Surveyed], most: int = 3) -> str:

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from math import isclose
 from typing import Any
 
-from rocking_cli.studies.verification.results import Dynamic, Method, State, Verification, Verified
+from rocking_cli import names
+from rocking_cli.studies.verification.results import Dynamic, Method, RecordPeak, State, Verification, Verified
 from rocking_cli.studies.verification.ties import carried, elastic
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views import verification_words as words
@@ -157,11 +158,14 @@ def _years(method: Method) -> str:
 
 
 def _records(found: Dynamic) -> Table:
-    rows = [[each.name, *(_peak(d, found) for d in (each.with_confidence, each.without))] for each in found.records]
+    rows = [[each.name, *(_peak(each, found, confident) for confident in (True, False))] for each in found.records]
     return Table("Time histories: largest d [m]", ["record", "with FC", "without"], rows, numbers=(1, 2))
 
 
-def _peak(d: float | None, found: Dynamic) -> str:
+def _peak(record: RecordPeak, found: Dynamic, confident: bool) -> str:
+    d, known_to = record.peak(confident=confident), record.known_to(confident=confident)
+    if known_to is not None:
+        return f"{names.UNKNOWN} after {known_to:.4g} s"
     if d is None:
         return "overturns"
     return f"{d:.4g}{' past d0*' if d >= found.d0 else ''}"
@@ -219,12 +223,19 @@ def _histories(found: Dynamic) -> dict[str, Any]:
         return {
             "mean": found.mean(confident=confident),
             "past_d0": found.passed(confident=confident),
+            "unknown": found.unknown(confident=confident) if found.checked else None,
             "holds": {state: found.holds(state, confident=confident) for state in found.allowed},
         }
 
     return {
         "records": [
-            {"name": each.name, "d_with_FC": each.with_confidence, "d_without_FC": each.without}
+            {
+                "name": each.name,
+                "d_with_FC": each.with_confidence,
+                "d_without_FC": each.without,
+                "known_to_with_FC": each.known_to_with_confidence,
+                "known_to_without_FC": each.known_to_without,
+            }
             for each in found.records
         ],
         "wanted": found.enough,
@@ -240,5 +251,5 @@ def table(found: Verification) -> dict[str, Sequence[Any]]:
         for direction, each in found.directions.items()
         for key, method in each.methods.items()
     ]
-    names = ["direction", "method", "a_g [g]", "asked [g]", "zeta_E", "TR [years]", "governs"]
-    return {name: [row[k] for row in rows] for k, name in enumerate(names)}
+    heads = ["direction", "method", "a_g [g]", "asked [g]", "zeta_E", "TR [years]", "governs"]
+    return {name: [row[k] for row in rows] for k, name in enumerate(heads)}

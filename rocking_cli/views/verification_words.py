@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from rocking_cli.dynamics.holding import NOT_CHECKED
 from rocking_cli.studies.verification.results import Dynamic, Verification, Verified
 from rocking_cli.studies.verification.working import Working
 
@@ -96,6 +97,8 @@ def of_histories(found: Dynamic, FC: float) -> Iterator[str]:
         ]
         if changed:
             yield f"The confidence factor FC changes the verdict at {' and '.join(changed)}."
+    if not found.checked:
+        yield f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
     count = len(found.records)
     if count < found.enough:
         yield (
@@ -106,12 +109,19 @@ def of_histories(found: Dynamic, FC: float) -> Iterator[str]:
 
 def _of_some(found: Dynamic, *, confident: bool) -> str:
     passed, mean = found.passed(confident=confident), found.mean(confident=confident)
+    unknown = found.unknown(confident=confident)
     start = ORDINAL[confident]
     if passed or mean is None:
-        return (
-            f"{start}: not satisfied. {', '.join(passed)} {'takes' if len(passed) == 1 else 'take'} the structure "
-            "past d0*."
-        )
+        said = f"{start}: not satisfied."
+        if passed:
+            said += f" {', '.join(passed)} {'takes' if len(passed) == 1 else 'take'} the structure past d0*."
+        if unknown:
+            said += (
+                f" The outcome under {', '.join(unknown)} is unknown, as a joint opens or slides that the model keeps "
+                "closed: the record proves neither that the structure stands nor that it falls, and an unknown "
+                f"outcome does not pass, at {' and '.join(found.allowed)}."
+            )
+        return said
     held = [
         f"{'within' if found.holds(state, confident=confident) else 'beyond'} d_{state} = {allowed:.4g} m"
         for state, allowed in found.allowed.items()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,14 +18,64 @@ from rocking_cli.studies.fragility.curves import (
 )
 from rocking_cli.studies.fragility.definition import Definition, Limit
 from rocking_cli.studies.fragility.hazard import HazardCurve, Rate, annual_rate
-from rocking_cli.studies.fragility.likelihood import Integers, Reals
+from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.tally import Cells, Counted, Tally, count, intensities
 
+MOST_UNKNOWN = 0.02  # share of runs of which it is not known whether they exceed, up to which one curve is enough
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """How many runs of a structure are of unknown outcome.
+
+    Parameters
+    ----------
+    structure : str
+        Which.
+    runs : int
+        How many runs can be used.
+    unknown : int or None
+        How many of them; None if its joints are not known, so that nothing was checked.
+    checked : bool
+        Whether the joints are known in all runs.
+    """
+
+    structure: str
+    runs: int
+    unknown: int | None
+    checked: bool
+
+    @property
+    def share(self) -> float | None:
+        """Share of the runs."""
+        return None if self.unknown is None else self.unknown / self.runs
+
+
+class _FittedTwice:
+    """A fit in which runs exceed if it is not known whether they do, with one in which they do not."""
+
+    unknown: int | None
+
+    @property
+    def total(self) -> int:
+        """How many runs, or capacities, were fitted."""
+        raise NotImplementedError
+
+    @property
+    def share(self) -> float | None:
+        """Share of the runs of which it is not known whether they exceed; None if nothing was checked."""
+        return None if self.unknown is None else self.unknown / max(self.total, 1)
+
+    @property
+    def is_band(self) -> bool:
+        """Whether these are so many that the result is the band between both fits, and neither alone."""
+        return self.share is not None and self.share > MOST_UNKNOWN
+
 
 @dataclass(frozen=True, eq=False)
-class Fragility:
+class Fragility(_FittedTwice):
     """How likely one structure is to exceed one limit state, over one measure.
 
     Parameters
@@ -42,6 +92,11 @@ class Fragility:
         How often it is exceeded a year, where the hazard is known.
     left_out : int
         Runs whose intensity is not above zero, or not known, and which no curve over its logarithm can hold.
+    unknown : int or None
+        Runs, or in incremental dynamic analysis capacities, of which it is not known whether or where they exceed: here
+        they do. None if the joints of the structure are not known, so that nothing was checked.
+    lower : Fragility or None
+        The same as if they did not; None if there are none.
     """
 
     structure: str
@@ -51,10 +106,17 @@ class Fragility:
     curve: Curve
     rate: Rate | None
     left_out: int = 0
+    unknown: int | None = 0
+    lower: Fragility | None = None
+
+    @property
+    def total(self) -> int:
+        """How many runs, or capacities, were fitted."""
+        return self.curve.runs
 
 
 @dataclass(frozen=True, eq=False)
-class Bivariate:
+class Bivariate(_FittedTwice):
     """How likely one structure is to exceed one limit state, over two measures; the fields as of `Fragility`.
 
     Runs are counted in cells: `runs` and `exceeding` are how many there are and how many exceed at `x1` and `x2`.
@@ -69,6 +131,13 @@ class Bivariate:
     exceeding: Integers
     surface: Surface
     left_out: int = 0
+    unknown: int | None = 0
+    lower: Bivariate | None = None
+
+    @property
+    def total(self) -> int:
+        """How many runs were fitted."""
+        return self.surface.runs
 
 
 def structures(plan: Plan) -> list[str]:
@@ -127,38 +196,77 @@ def fitted(
     return lines, planes
 
 
+def outcomes(found: Mapping[str, Tally]) -> list[Outcomes]:
+    """How many runs of each structure are of unknown outcome; of structures without runs nothing."""
+    return [
+        Outcomes(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked)
+        for name, tally in found.items()
+        if tally.runs.any()
+    ]
+
+
 def curves(
     tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None
 ) -> Iterator[Fragility]:  # fmt: skip
     """The fragility curves of a structure: each limit state over each measure that is above zero in any run."""
-    confidence = definition.confidence
     for measure in definition.fitted_measures:
         cells = tally.over(measure)
         x = cells.intensities(measure)
-        there = x > 0  # not of those that are not known, either
-        if not there.any():
+        if not (x > 0).any():  # or not known, either
             continue
-        x, runs = x[there], cells.runs[there]
-        record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
-        level = cells.level[there] if tally.decided_by_level(measure) else None
         for limit in definition.limit_states:
-            exceeding = cells.exceeding(limit) if tally.ladders is None else cells.of(tally.ladders.above(limit))
-            seen = Observations.of(x, exceeding[there], record, level=level, runs=runs, weight=weight)
-            if tally.ladders is None:
-                curve = fit_curve(seen, confidence=confidence)
-            elif parse_measure(measure).power == 0:
-                why = f"{measure} is the same at every level, so that no record has a capacity in it"
-                curve = Curve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
-            else:
-                tried = np.unique(x) if level is not None else None
-                lower, upper, of = _capacities(tally, measure, limit, cells)
-                curve = fit_capacities(
-                    lower, upper, tally.one(of), levels=tried, confidence=confidence, weight=tally.weight(of)
-                )
-            rate = None
-            if hazard is not None and curve.kind != "none" and definition.hazard_measure == measure:
-                rate = annual_rate(curve, hazard)
-            yield Fragility(structure, limit, measure, seen, curve, rate, int(cells.runs[~there].sum()))
+            upper = _curve(cells, x, structure, measure, limit, definition, hazard)
+            runs = tally.ladders is None
+            unknown = _undecided_runs(cells, limit, x > 0) if runs else _undecided_ladders(tally, limit)
+            if unknown:
+                assert tally.lower is not None
+                known = replace(cells, tally=tally.lower)
+                lower = _curve(known, x, structure, measure, limit, definition, hazard)
+                upper = replace(upper, unknown=unknown, lower=lower)
+            yield upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
+
+
+def _curve(
+    cells: Cells, x: Reals, structure: str, measure: str, limit: Limit, definition: Definition,
+    hazard: HazardCurve | None,
+) -> Fragility:  # fmt: skip
+    """The curve of one limit state over one measure, of which the intensities of the cells are given."""
+    tally, confidence, there = cells.tally, definition.confidence, x > 0
+    level = cells.level[there] if tally.decided_by_level(measure) else None
+    record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+    exceeding = cells.exceeding(limit) if tally.ladders is None else cells.of(tally.ladders.above(limit))
+    seen = Observations.of(x[there], exceeding[there], record, level=level, runs=cells.runs[there], weight=weight)
+    if tally.ladders is None:
+        curve = fit_curve(seen, confidence=confidence)
+    elif parse_measure(measure).power == 0:
+        why = f"{measure} is the same at every level, so that no record has a capacity in it"
+        curve = Curve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
+    else:
+        tried = np.unique(x[there]) if level is not None else None
+        lower, upper, of = _capacities(tally, measure, limit, cells)
+        curve = fit_capacities(
+            lower, upper, tally.one(of), levels=tried, confidence=confidence, weight=tally.weight(of)
+        )
+    rate = None
+    if hazard is not None and curve.kind != "none" and definition.hazard_measure == measure:
+        rate = annual_rate(curve, hazard)
+    return Fragility(structure, limit, measure, seen, curve, rate, int(cells.runs[~there].sum()))
+
+
+def _undecided_runs(cells: Cells, limit: Limit, there: Bools) -> int:
+    """How many runs in some cells are not known to exceed, nor not to."""
+    if cells.tally.lower is None:
+        return 0
+    known = replace(cells, tally=cells.tally.lower)
+    return int((cells.exceeding(limit) - known.exceeding(limit))[there].sum())
+
+
+def _undecided_ladders(tally: Tally, limit: Limit) -> int:
+    """How many ladders are not known to exceed first at one level."""
+    if tally.lower is None:
+        return 0
+    assert tally.ladders is not None and tally.lower.ladders is not None
+    return int((tally.ladders.first[limit] != tally.lower.ladders.first[limit]).sum())
 
 
 def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple[Reals, Reals, Integers]:
@@ -182,14 +290,27 @@ def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple
 
 def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[Bivariate]:
     """The fragility surfaces of a structure."""
-    for one, other in definition.bivariate:
-        cells = tally.over(one, other)
-        x1, x2 = cells.intensities(one), cells.intensities(other)
-        there = (x1 > 0) & (x2 > 0)
-        x1, x2, runs = x1[there], x2[there], cells.runs[there]
-        record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+    for measures in definition.bivariate:
+        cells = tally.over(*measures)
+        one, other = (cells.intensities(measure) for measure in measures)
+        there = (one > 0) & (other > 0)
         for limit in definition.limit_states if there.any() else []:
-            exceeding = cells.exceeding(limit)[there]
-            surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
-            left_out = int(cells.runs[~there].sum())
-            yield Bivariate(structure, limit, (one, other), x1, x2, runs, exceeding, surface, left_out)
+            upper = _surface(cells, one, other, structure, (measures[0], measures[1]), limit, definition)
+            unknown = _undecided_runs(cells, limit, there)
+            if unknown:
+                assert tally.lower is not None
+                known = replace(cells, tally=tally.lower)
+                lower = _surface(known, one, other, structure, upper.measures, limit, definition)
+                upper = replace(upper, unknown=unknown, lower=lower)
+            yield upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
+
+
+def _surface(
+    cells: Cells, x1: Reals, x2: Reals, structure: str, measures: tuple[str, str], limit: Limit, definition: Definition
+) -> Bivariate:  # fmt: skip
+    """The surface of one limit state over two measures, of which the intensities of the cells are given."""
+    there = (x1 > 0) & (x2 > 0)
+    x1, x2, runs, exceeding = x1[there], x2[there], cells.runs[there], cells.exceeding(limit)[there]
+    record, weight = cells.tally.one(cells.record[there]), cells.tally.weight(cells.record[there])
+    surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
+    return Bivariate(structure, limit, measures, x1, x2, runs, exceeding, surface, int(cells.runs[~there].sum()))

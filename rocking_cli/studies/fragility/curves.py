@@ -21,8 +21,8 @@ LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
 REJECTED = 0.05  # p-value below which a curve is rejected
 LIKELIER = 1e-6  # of a log-likelihood: less is rounding
 _DECREASING = (
-    "no increasing curve exists: fewer runs exceed the limit at higher intensities, so this measure does not predict "
-    "exceedance"
+    "no increasing curve exists: fewer runs count as exceeding the limit at higher intensities, so no curve fits this "
+    "measure"
 )
 TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
 

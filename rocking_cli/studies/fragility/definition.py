@@ -257,6 +257,9 @@ class Definition(Sampling, Common):
         None, min_length=1, description="restitutions, instead of the structures' own"
     )
     model: ModelName = Field("nonlinear", description="equation of motion")
+    opening: float | None = Field(
+        None, ge=0, le=1, description="largest opening of a joint over D_cr, instead of the structures' own"
+    )
     limit_states: list[Limit] = Field([UPLIFT, OVERTURNING], min_length=1, description="what is asked of the motions")
     measures: list[Measure] | None = Field(None, min_length=1, description="intensities that curves are fitted over")
     bivariate: list[Annotated[list[Measure], Field(min_length=2, max_length=2), AfterValidator(_pair)]] = Field(

@@ -17,6 +17,7 @@ import numpy as np
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.studies.fragility.assess import Fragility
 from rocking_cli.studies.fragility.curves import REJECTED
 from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
@@ -155,6 +156,11 @@ def _why_not(found: Fragility) -> str:
         return f"all curves over {found.measure}: OpenQuake has no such intensity measure"
     if found.limit == SLIDING:
         return f"{of}: sliding is not a step on the way to overturning, and OpenQuake orders limit states by severity"
+    if found.is_band:
+        return (
+            f"{of}: {percent(found.share or 0.0)} of the runs are of {UNKNOWN} outcome: the result is a band, and "
+            "OpenQuake accepts only curves"
+        )
     if found.curve.kind == "none":
         return f"{of}: no curve exists: {found.curve.why}"
     if found.curve.kind != "lognormal":
@@ -232,8 +238,13 @@ def _doubts(functions: Sequence[Function]) -> Iterable[str]:
         first = function.curves[0]
         if function.name != first.structure:
             yield f"{first.structure} over {first.measure} is called {function.name} there"
+        if first.unknown is None:
+            yield f"{first.structure}: its joints are not checked"
         for each in function.curves:
             goodness = each.curve.goodness
+            if each.unknown:
+                runs = f"{each.unknown} of {each.total} runs ({percent(each.share or 0.0)})"
+                yield f"{_name(each)}: {runs} of {UNKNOWN} outcome are counted as exceeding"
             if each.curve.unbounded:
                 yield f"{_name(each)}: the data do not bound its median"
             if goodness is not None and goodness.p_value is not None and goodness.p_value < REJECTED:

@@ -1,7 +1,7 @@
 """How far structures rock at an intensity: quantiles of the peak rotation over the runs that are observed there.
 
 Runs that do not uplift and runs that overturn are kept apart, as neither has a peak of rocking; beside it all runs are
-ranked, without uplift as zero and overturned as beyond every number.
+ranked, without uplift as zero and overturned as beyond every number. Runs of unknown outcome count as overturned there.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rocking_cli.studies.fragility.definition import Definition
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.tally import Tally, endings_of, samples_of
+from rocking_cli.studies.fragility.tally import UNSEEN, Tally, endings_of, samples_of
 
 Reals = NDArray[np.float64]
 SHARES = (0.16, 0.5, 0.84)
@@ -41,7 +41,11 @@ class Group:
     rocking : tuple of float
         Peak phi/phi_cr that 16, 50 and 84 % of those that rock and stand do not exceed; NaN where there is none.
     every : tuple of float
-        The same of all runs: 0 without uplift, infinite where it overturns.
+        The same of all runs: 0 without uplift, infinite where it overturns or the outcome is unknown.
+    unknown : int
+        How many of the runs are of unknown outcome.
+    doubtful : tuple of bool
+        Whether each of `every` is the peak of such a run: all that overturn are beyond it.
     """
 
     x: float
@@ -53,6 +57,8 @@ class Group:
     overturned: int
     rocking: tuple[float, ...]
     every: tuple[float, ...]
+    unknown: int = 0
+    doubtful: tuple[bool, ...] = (False,) * len(SHARES)
 
 
 @dataclass(frozen=True)
@@ -73,6 +79,11 @@ class Quantiles:
     measure: str
     stripes: bool
     groups: Sequence[Group]
+
+    @property
+    def unknown(self) -> int:
+        """How many runs are of unknown outcome."""
+        return sum(each.unknown for each in self.groups)
 
 
 def all_quantiles(store: Store, plan: Plan, definition: Definition) -> Iterator[Quantiles]:
@@ -125,7 +136,8 @@ def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str])
 
 def _group(peaks: Reals, x: Reals, mean: float, records: int) -> Group:
     ranked = np.sort(peaks[~np.isnan(peaks)])
-    rocking = ranked[(ranked > 0) & np.isfinite(ranked)]
+    rocking = ranked[(ranked > 0) & (ranked < UNSEEN)]
+    every = _not_exceeded(ranked)
     low, high = float(x.min()), float(x.max())
     return Group(
         min(max(mean, low), high),  # rounding aside it is between them
@@ -136,7 +148,9 @@ def _group(peaks: Reals, x: Reals, mean: float, records: int) -> Group:
         int((ranked == 0).sum()),
         int(np.isinf(ranked).sum()),
         _not_exceeded(rocking),
-        _not_exceeded(ranked),
+        tuple(np.inf if value == UNSEEN else value for value in every),
+        int((ranked == UNSEEN).sum()),
+        tuple(value == UNSEEN for value in every),
     )
 
 

@@ -7,20 +7,20 @@ ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.names import UNKNOWN
 from rocking_cli.processing.intensity import RunMeasure, all_measures, parse_measure
-from rocking_cli.studies.fragility.assess import counted, curves
-from rocking_cli.studies.fragility.curves import Curve
+from rocking_cli.studies.fragility.assess import Fragility, counted, curves
 from rocking_cli.studies.fragility.definition import Definition, Limit
 from rocking_cli.studies.fragility.intensity import PGA, PGV
 from rocking_cli.studies.fragility.measuring import ORIGIN, V_IMP
 from rocking_cli.studies.fragility.plan import Plan
-from rocking_cli.studies.fragility.store import Store
+from rocking_cli.studies.fragility.store import STANDS, Store
 from rocking_cli.studies.fragility.tally import samples_of
 
 Reals = NDArray[np.float64]
@@ -51,7 +51,7 @@ class Ranked:
         Of what the residuals, averaged for each record, are tested against: the p-value of their slope over it. NaN if
         that cannot be told.
     dispersions : dict of limit state to float
-        Of the fragility curve of each limit state over the measure; NaN where it is not lognormal.
+        Of the fragility curve of each limit state over the measure; NaN where it is not lognormal, or is a band.
     """
 
     measure: str
@@ -90,6 +90,8 @@ class Ranking:
         Measures that are a constant times another one in every run, and that one.
     left_out : dict of str to str
         Measures that cannot be ranked, and why.
+    unknown : int or None
+        Runs of unknown outcome, which are left out; None if the joints of the structure are not known.
     """
 
     structure: str
@@ -97,6 +99,7 @@ class Ranking:
     against: tuple[str, ...]
     alike: Mapping[str, str]
     left_out: Mapping[str, str]
+    unknown: int | None = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,8 +192,9 @@ def rank(
     found = []
     for structure, tally in counted(store, plan, asked, progress).items():
         if tally.runs.any():
-            fitted = {(each.measure, each.limit): each.curve for each in curves(tally, structure, asked, None)}
-            found.append(_rank(store, plan, structure, names, fitted, against))
+            fitted = {(each.measure, each.limit): each for each in curves(tally, structure, asked, None)}
+            ranking = _rank(store, plan, structure, names, fitted, against)
+            found.append(replace(ranking, unknown=tally.unknown_if_checked))
     return found
 
 
@@ -199,7 +203,7 @@ def _rank(
     plan: Plan,
     structure: str,
     names: Sequence[str],
-    fitted: Mapping[tuple[str, Limit], Curve],
+    fitted: Mapping[tuple[str, Limit], Fragility],
     against: Mapping[str, Reals],
 ) -> Ranking:
     """The ranking of one structure."""
@@ -226,7 +230,7 @@ def _rank(
             left_out[name] = "the same in all runs that rock and stand, or these are fewer than three"
             continue
         logs[name] = log if there.all() else np.zeros(0)
-        limits = {limit: _dispersion(curve) for (measure, limit), curve in fitted.items() if measure == name}
+        limits = {limit: _dispersion(each) for (measure, limit), each in fitted.items() if measure == name}
         ranked.append(Ranked(name, *served, limits))
     order = sorted(ranked, key=lambda each: each.efficiency)
     return Ranking(structure, tuple(order), tuple(against), alike, left_out)
@@ -267,7 +271,7 @@ def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
     each = len(plan.records) * plan.block
     ids, peaks = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
     for found in store.endings(samples.start * each, samples.stop * each):
-        rocks = found.uplifts & (found.peak_ratio > 0)  # NaN of those that overturn, or cannot be followed
+        rocks = found.uplifts & (found.outcome == STANDS) & (found.peak_ratio > 0)
         ids.append(found.id[rocks])
         peaks.append(np.log(found.peak_ratio[rocks]))
     return np.concatenate(ids), np.concatenate(peaks)
@@ -277,21 +281,30 @@ def _constant(values: Reals) -> bool:
     return bool(np.ptp(values) <= SAME)
 
 
-def _dispersion(curve: Curve) -> float:
-    return curve.dispersion.value if curve.dispersion is not None else nan
+def _dispersion(found: Fragility) -> float:
+    spread = None if found.is_band else found.curve.dispersion
+    return spread.value if spread is not None else nan
 
 
 def judge(ranking: Ranking) -> list[str]:
     """What a ranking says, in sentences: of these runs and records, and of no others."""
     if not ranking.measures:
-        return [f"{ranking.structure}: no measure can be ranked: fewer than three runs rock and stand."]
+        none = f"{ranking.structure}: no measure can be ranked: fewer than three runs rock and stand."
+        return [none, *_left_out(ranking)]
     best = ranking.measures[0]
     of = f"{best.runs:,} runs of {best.records} record{'s' * (best.records != 1)} that rock and stand"
     first = (
         f"Of {len(ranking.measures)} measures {best.measure} is the most efficient over the {of}: "
         f"ln(phi/phi_cr) scatters by {best.efficiency:.2g} about its line."
     )
-    return [first, *_of_trends(ranking), "Other records may give another order."]
+    return [first, *_left_out(ranking), *_of_trends(ranking), "Other records may give another order."]
+
+
+def _left_out(ranking: Ranking) -> list[str]:
+    if not ranking.unknown:
+        return []
+    runs = f"{ranking.unknown:,} run{'s' * (ranking.unknown != 1)}"
+    return [f"{runs} of {UNKNOWN} outcome {'are' if ranking.unknown != 1 else 'is'} left out."]
 
 
 def _of_trends(ranking: Ranking) -> list[str]:

@@ -33,6 +33,7 @@ from rocking_cli.studies.fragility.store_file import (
     CHECKED,
     MARK,
     VERSION,
+    WITHOUT_JOINTS,
     WITHOUT_MEASURED,
     WITHOUT_SLIDING,
     damaged,
@@ -52,12 +53,13 @@ Integers = NDArray[np.int64]
 
 PATIENCE = 1.0  # s between transactions: what is finished in between is run again after a crash
 READ = 100_000  # runs read at a time
-STANDS, FAILED = 0, 2  # outcomes; 1 and -1 for overturning in the positive and the negative direction
-OUTCOMES = (STANDS, FAILED, 1, -1)
+STANDS, FAILED, UNKNOWN = 0, 2, 3  # outcomes; 1 and -1: overturns in the positive or the negative direction
+OUTCOMES = (STANDS, FAILED, UNKNOWN, 1, -1)
 SEAL = "seal"  # the name in the table `study` of the checksum of all but the runs
-UNKNOWN = ("unit", "value_error")  # problems of a definition with a measure or level that is unknown here
+OF_MEASURES = ("unit", "value_error")  # problems of a definition with a measure or level that is unknown here
 NAMED = 5  # damaged runs named one by one
 SLIDE = "slide_time"  # the column of runs that only studies of sliding have
+JOINTS = ("known_to", "lower_bound", "opening")  # the columns of runs that stores of earlier versions do not have
 
 TABLES = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -74,7 +76,7 @@ CREATE TABLE level (id INTEGER PRIMARY KEY, value REAL NOT NULL);
 CREATE TABLE polarity (id INTEGER PRIMARY KEY, value INTEGER NOT NULL);
 CREATE TABLE run (
     id INTEGER PRIMARY KEY, scale REAL NOT NULL, eta REAL, outcome INTEGER NOT NULL,
-    peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL{slides},
+    peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL{columns},
     checksum INTEGER NOT NULL
 );
 """
@@ -88,10 +90,10 @@ VIEW = """
 CREATE VIEW runs AS SELECT
     run.id, sample.structure, sample.number AS sample, record.name AS record, level.value AS level,
     polarity.value AS polarity, run.eta, run.scale, run.scale * record.pga AS pga, run.scale * record.pgv AS pgv,
-    CASE WHEN run.outcome = 2 THEN 'failed' WHEN run.outcome != 0 THEN 'overturns'
+    CASE WHEN run.outcome = 2 THEN 'failed' WHEN run.outcome = 3 THEN 'unknown' WHEN run.outcome != 0 THEN 'overturns'
         WHEN run.uplift_time IS NULL THEN 'does not uplift' ELSE 'rocks' END AS outcome,
     CASE WHEN run.outcome IN (1, -1) THEN run.outcome ELSE 0 END AS fell_to,
-    run.peak_ratio, run.peak_positive, run.peak_negative, run.uplift_time, run.overturning_time{slides}
+    run.peak_ratio, run.peak_positive, run.peak_negative, run.uplift_time, run.overturning_time{columns}
 FROM run
 JOIN sample ON sample.id = run.id / {sample}
 JOIN record ON record.id = run.id / {record} % {records}
@@ -116,13 +118,22 @@ class Rows:
     eta : ndarray
         Restitution; NaN for the structure's own.
     outcome : ndarray of int
-        `STANDS`, `FAILED`, or the sign of the direction to which it overturned.
+        `STANDS`, `FAILED`, `UNKNOWN`, or the sign of the direction to which it overturned.
     peak_ratio : ndarray
-        Largest rotation over the critical one; NaN if it overturned.
+        Largest rotation over the critical one; NaN if it overturned. Of a run of unknown outcome this, and all else,
+        is until `known_to`.
     peak_positive, peak_negative : ndarray
         Largest rotation in either direction [rad]; NaN in that in which it overturned.
     uplift_time, overturning_time : ndarray
         When it first uplifted, and when it passed the critical rotation for good [s]; NaN if never.
+    known_to : ndarray, optional
+        Until when a run of unknown outcome is known [s]; NaN for the others. None in stores of earlier versions, whose
+        runs were not checked.
+    lower_bound : ndarray, optional
+        Of unknown outcome: largest rotation over the critical one until the first joint would not bear; NaN for the
+        others.
+    opening : ndarray, optional
+        Largest opening or slip of a joint over D_cr, as far as the run was simulated; NaN if its joints are not known.
     slide_time : ndarray, optional
         When a joint first needed more friction than there is [s]; NaN if never. None where no run was checked for it.
     """
@@ -136,6 +147,9 @@ class Rows:
     peak_negative: Reals
     uplift_time: Reals
     overturning_time: Reals
+    known_to: Reals | None = None
+    lower_bound: Reals | None = None
+    opening: Reals | None = None
     slide_time: Reals | None = None
 
     def __len__(self) -> int:
@@ -148,12 +162,12 @@ class Rows:
 
     def select(self, which: NDArray[np.bool_]) -> Rows:
         """Some of them."""
-        return Rows(*(getattr(self, name)[which] for name in self.columns))
+        return Rows(**{name: getattr(self, name)[which] for name in self.columns})
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The names of those that are there."""
-        return COLUMNS if self.slide_time is None else (*COLUMNS, SLIDE)
+        return tuple(each.name for each in fields(self) if getattr(self, each.name) is not None)
 
     def checksums(self, salt: int) -> Integers:
         """CRC-32 of each: of its columns as doubles, the lowest byte first, begun with that of the study."""
@@ -171,7 +185,7 @@ COLUMNS = tuple(each.name for each in fields(Rows) if each.name != SLIDE)
 class Endings:
     """What fragility asks of finished runs, one a place: columns of `Rows`, and whether they uplift and slide.
 
-    The largest rotations, shape (n, 2), stand as a pair, positive and negative.
+    The largest rotations, shape (n, 2), stand as a pair, positive and negative. `checked` is whether their joints were.
     """
 
     id: Integers
@@ -180,6 +194,18 @@ class Endings:
     peaks: Reals
     uplifts: NDArray[np.bool_]
     slides: NDArray[np.bool_]
+    lower_bound: Reals
+    checked: NDArray[np.bool_]
+
+    @property
+    def overturned(self) -> NDArray[np.bool_]:
+        """Whether it is known to overturn."""
+        return np.asarray(np.abs(self.outcome) == 1)
+
+    @property
+    def unknown(self) -> NDArray[np.bool_]:
+        """Whether its outcome is unknown."""
+        return np.asarray(self.outcome == UNKNOWN)
 
     def select(self, which: NDArray[np.bool_]) -> Endings:
         """Some of them."""
@@ -204,6 +230,8 @@ class Store:
         Whether pages of the file are damaged, so that runs may be missing.
     checked : bool
         Whether its runs have checksums: those of the first versions have none.
+    with_joints : bool
+        Whether its runs say until when they are known: those of earlier versions do not.
     columns : tuple of str
         Those of its runs.
     """
@@ -213,6 +241,7 @@ class Store:
         self.damaged: list[int] = []
         self.unreadable = False
         self.checked = True
+        self.with_joints = True
         self.columns = COLUMNS
         self._connection = connection
         self._replaced: sqlite3.Connection | None = None  # the store whose place this one takes as it begins
@@ -330,9 +359,11 @@ class Store:
             self._say(f"{self.path}: {each}")
         old = Store(self.path, self._connection)
         old.checked, old.columns, old._salt = self.checked, self.columns, self._salt
+        with_joints = self.with_joints
 
         def fill(connection: sqlite3.Connection) -> None:
             new = Store(self.path, connection)
+            new.with_joints = with_joints
             new._fill(plan, facts)
             for rows in old._blocks(0, plan.size):
                 new._insert_runs(rows)
@@ -388,9 +419,10 @@ class Store:
         self._name_who_is_at_work()
 
     def _fill(self, plan: Plan, facts: Mapping[str, Any]) -> None:
-        self.columns = _columns(facts["description"])
+        self.columns = _columns(facts["description"], with_joints=self.with_joints)
         slides = SLIDE in self.columns
-        for statement in TABLES.format(slides=f", {SLIDE} REAL" if slides else "").split(";"):
+        more = [name for name in self.columns if name in (*JOINTS, SLIDE)]
+        for statement in TABLES.format(columns="".join(f", {name} REAL" for name in more)).split(";"):
             self._connection.execute(statement)
         levels, polarities = plan.shape[3:]
         self._connection.execute(
@@ -401,11 +433,12 @@ class Store:
                 level=polarities,
                 levels=levels,
                 polarities=polarities,
-                slides=f", run.{SLIDE}" if slides else "",
+                columns="".join(f", run.{name}" for name in more),
             )
         )
         self._connection.execute(f"PRAGMA application_id = {MARK}")
-        self._connection.execute(f"PRAGMA user_version = {WITHOUT_MEASURED if slides else WITHOUT_SLIDING}")
+        version = VERSION if self.with_joints else WITHOUT_MEASURED if slides else WITHOUT_SLIDING
+        self._connection.execute(f"PRAGMA user_version = {version}")
         self._insert("sample", [_as_row(each) for each in plan.trials])
         self._insert("record", [tuple(asdict(each).values()) for each in plan.records])
         self._insert("eta", [(None if eta != eta else eta,) for eta in plan.etas])
@@ -423,7 +456,9 @@ class Store:
             self._connection.execute("DELETE FROM measured")
         else:
             self._connection.execute(MEASURED)
-            self._connection.execute(f"PRAGMA user_version = {VERSION}")  # earlier programs would not know it
+            _, version = header(self._connection)
+            # Earlier programs would not know the table.
+            self._connection.execute(f"PRAGMA user_version = {max(version, WITHOUT_JOINTS)}")
         self._connection.executemany(
             "INSERT INTO measured (measure, sample, record, level, value) VALUES (?, ?, ?, ?, ?)", measured.values()
         )
@@ -472,9 +507,10 @@ class Store:
             self._connection.execute("BEGIN")  # at one moment: somebody may be at work
         try:
             _, version = header(self._connection)
-            self.checked = version >= CHECKED
             names = {row[1] for row in self._connection.execute("PRAGMA table_info(run)")}
-            if ("checksum" in names) != self.checked or not names.issuperset(COLUMNS):
+            self.checked, self.with_joints = version >= CHECKED, version > WITHOUT_JOINTS or names.issuperset(JOINTS)
+            usual = _columns({}, with_joints=self.with_joints)
+            if ("checksum" in names) != self.checked or not names.issuperset(usual):
                 raise damaged(self.path, "its tables are not those of a store")
             if self.checked:
                 found = self._connection.execute("SELECT value FROM study WHERE key = ?", (SEAL,)).fetchone()
@@ -482,7 +518,7 @@ class Store:
                     raise damaged(self.path, "the description of the study does not match its checksum")
             try:
                 self._salt = _salt(self.facts()["hash"])
-                self.columns = _columns(self.fact("description"))
+                self.columns = _columns(self.fact("description"), with_joints=self.with_joints)
                 self._check_definition()
                 plan = self.plan()
             except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError) as error:
@@ -500,7 +536,7 @@ class Store:
         try:
             Definition.model_validate(self.fact("definition"))
         except ValidationError as error:
-            if not self.checked or any(each["type"] not in UNKNOWN for each in error.errors(include_url=False)):
+            if not self.checked or any(each["type"] not in OF_MEASURES for each in error.errors(include_url=False)):
                 raise
 
     def _check_pages(self) -> None:
@@ -608,7 +644,7 @@ class Store:
     def runs(self, first: int, stop: int) -> Rows:
         """The finished runs with numbers from `first` to before `stop`, without those that are damaged."""
         blocks = list(self._blocks(first, stop)) or [_rows([], self.columns)]
-        return Rows(*(np.concatenate([getattr(each, name) for each in blocks]) for name in self.columns))
+        return Rows(**{name: np.concatenate([getattr(each, name) for each in blocks]) for name in self.columns})
 
     def endings(
         self, first: int, stop: int, counted: Callable[[int], None] = lambda numbers: None
@@ -622,11 +658,8 @@ class Store:
         counted : callable, optional
             Called with how many numbers have been looked at since the last call.
         """
-        slides = SLIDE in self.columns
-        names = (
-            "id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time",
-            *([SLIDE] if slides else []),
-        )  # fmt: skip
+        more = [name for name in ("lower_bound", "opening", SLIDE) if name in self.columns]
+        names = ("id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time", *more)
         query = f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?"
         for start in range(first, stop, READ):
             end = min(start + READ, stop)
@@ -636,9 +669,12 @@ class Store:
             else:  # all have been checked against their checksums
                 found = self._connection.execute(query, (start, end)).fetchall()
                 table = np.array(found, dtype=np.float64).reshape(-1, len(names)).T
-            whole, happens = table[:2].astype(np.int64), np.isfinite(table[5:])
-            slide = happens[1] if slides else np.zeros(happens.shape[1], dtype=bool)
-            yield Endings(whole[0], whole[1], table[2], table[3:5].T, happens[0], slide)
+            absent = np.full(table.shape[1], np.nan)
+            bound, opening, slide = (
+                table[names.index(name)] if name in names else absent for name in ("lower_bound", "opening", SLIDE)
+            )
+            whole, happens = table[:2].astype(np.int64), [np.isfinite(each) for each in (table[5], slide, opening)]
+            yield Endings(whole[0], whole[1], table[2], table[3:5].T, happens[0], happens[1], bound, happens[2])
             counted(end - start)
 
     def _blocks(self, first: int, stop: int) -> Iterator[Rows]:
@@ -675,9 +711,10 @@ def _nothing() -> sqlite3.Connection:
     return sqlite3.connect(":memory:", isolation_level=None)
 
 
-def _columns(description: Mapping[str, Any]) -> tuple[str, ...]:
+def _columns(description: Mapping[str, Any], *, with_joints: bool) -> tuple[str, ...]:
     """The columns of the runs of a study."""
-    return (*COLUMNS, SLIDE) if SLIDING in description else COLUMNS
+    usual = COLUMNS if with_joints else tuple(name for name in COLUMNS if name not in JOINTS)
+    return (*usual, SLIDE) if SLIDING in description else usual
 
 
 def _rows(table: Any, names: tuple[str, ...]) -> Rows:

@@ -177,7 +177,8 @@ def load_study(path: str | Path) -> Study:
     path = Path(path)
     document, definition = read_definition(path)
     entries = usable_entries(document, "structures", StructureEntry)
-    structures = [_structure(document, ("structures", k), path.parent, entry) for k, entry in entries]
+    opening = definition.opening if definition is not None else None
+    structures = [_structure(document, ("structures", k), path.parent, entry, opening) for k, entry in entries]
     common = usable_part(Common, {key: document.data[key] for key in Common.model_fields if key in document.data})
     sources = [
         source
@@ -203,7 +204,9 @@ def load_study(path: str | Path) -> Study:
     return Study(definition.name or one_line(path.stem), definition, known, tuple(samples), tuple(sources), hazard)
 
 
-def _structure(document: Document, place: Place, folder: Path, entry: StructureEntry) -> Mechanism | None:
+def _structure(
+    document: Document, place: Place, folder: Path, entry: StructureEntry, opening: float | None
+) -> Mechanism | None:  # fmt: skip
     file = folder / entry.file
     try:
         structure = load_structure(file)
@@ -218,7 +221,9 @@ def _structure(document: Document, place: Place, folder: Path, entry: StructureE
         if name not in known:
             what = f"is not a number among the fields of {structure.mechanism}"
             document.problems.append(document.at((*place, "vary", name), what, did_you_mean(name, known), key=True))
-    return structure.model_copy(update={"name": entry.name}) if entry.name else structure
+    own = {"name": entry.name, "opening": opening}
+    changes = {key: value for key, value in own.items() if value is not None}
+    return structure.model_copy(update=changes) if changes else structure
 
 
 def _of_file(document: Document, place: Place, name: str, file: Path, error: InputError) -> list[Problem]:

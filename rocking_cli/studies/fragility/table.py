@@ -10,9 +10,13 @@ import numpy as np
 from rocking_cli import names
 from rocking_cli.studies.fragility.intensity import ALWAYS, label
 from rocking_cli.studies.fragility.plan import Plan
-from rocking_cli.studies.fragility.store import FAILED, STANDS, Rows, Store
+from rocking_cli.studies.fragility.store import FAILED, SLIDE, STANDS, UNKNOWN, Rows, Store
 
 ROWS = 100_000  # runs of a block
+HEADINGS = {
+    "known_to": "known to [s]", "lower_bound": "phi/phi_cr at least", "opening": "opening/D_cr", SLIDE: "sliding [s]",
+}  # fmt: skip
+"""Headings of the columns that not every store has."""
 
 
 def blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterator[Mapping[str, Sequence[object]]]:
@@ -59,7 +63,7 @@ def _columns(plan: Plan, rows: Rows, measures: Sequence[str]) -> dict[str, Seque
         "phi negative [rad]": rows.peak_negative.tolist(),
         "uplift [s]": rows.uplift_time.tolist(),
         "overturning [s]": rows.overturning_time.tolist(),
-        **({"sliding [s]": rows.slide_time.tolist()} if rows.slide_time is not None else {}),
+        **{HEADINGS[name]: getattr(rows, name).tolist() for name in rows.columns if name in HEADINGS},
     }
 
 
@@ -67,4 +71,4 @@ def _outcome(code: int, uplift_time: float | None) -> str:
     if code == FAILED:
         return "failed"
     lifts = uplift_time is not None and not isnan(uplift_time)
-    return names.outcome(uplifts=lifts, overturned=code != STANDS)
+    return names.outcome(uplifts=lifts, overturned=code != STANDS, unknown=code == UNKNOWN)

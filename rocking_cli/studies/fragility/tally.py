@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,9 @@ from rocking_cli.studies.fragility.store import FAILED, STANDS, Endings, Store
 from rocking_cli.studies.fragility.study import RESTITUTION
 
 Places = NDArray[np.int32]
+UNSEEN = float(np.finfo(np.float64).max)
+"""The peak of a run of unknown outcome: more than any that was seen, less than that of one that overturns."""
+ROUNDING = 1e-9  # of a rotation
 Counted = Callable[[int], None]
 """Called with how many numbers of runs have been looked at since the last call."""
 
@@ -34,9 +38,15 @@ class Tally:
     runs : ndarray of int, shape (s, records, levels)
         How many can be used, of each sample; of all together (s is 1) where the measures do not tell them apart.
     exceeding : dict of limit state to ndarray of int, shape (s, records, levels)
-        How many of them exceed.
+        How many of them exceed, if all do of which it is not known.
     ladders : Ladders or None
         Where each ladder of levels first exceeds; of incremental dynamic analysis.
+    unknown : int
+        How many runs are of unknown outcome.
+    checked : bool
+        Whether the joints of all runs are known; if not, none is said to be unknown for what they do.
+    lower : Tally or None
+        The same runs, of which only those exceed that are known to; None if no outcome is unknown.
     """
 
     plan: Plan
@@ -44,6 +54,14 @@ class Tally:
     runs: Integers
     exceeding: dict[Limit, Integers]
     ladders: Ladders | None
+    unknown: int = 0
+    checked: bool = True
+    lower: Tally | None = None
+
+    @property
+    def unknown_if_checked(self) -> int | None:
+        """How many runs are of unknown outcome; None if that is none, and not all joints are known."""
+        return self.unknown if self.unknown or self.checked else None
 
     def one(self, record: Integers) -> Integers:
         """The record that each is one with: the same may be in the sets of several levels."""
@@ -185,13 +203,16 @@ def count(
     """
     samples = samples_of(plan, structure)
     reach = {limit: table[samples.start : samples.stop] for limit, table in kept(store.fact, limits).items()}
+    trials = plan.trials[samples.start : samples.stop]
+    phi_cr = np.array([(each.phi_cr_positive, each.phi_cr_negative) for each in trials])
     _, records, etas, levels, polarities = plan.shape
     apart = any(_differs_between_samples(plan, samples, measure) for measure in measures)
     shape = (len(samples) if apart else 1, records, levels)
-    runs, exceeding = np.zeros(shape, dtype=np.int64), {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
+    runs, unknown = np.zeros(shape, dtype=np.int64), 0
     there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
     rungs = (len(samples), records, etas, polarities)
-    first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in limits if ladders}
+    upper, lower = _Counts(limits, shape, rungs if ladders else None, levels), None
+    checked = True
     each = records * plan.block
     start = samples.start * each
     for found in store.endings(start, samples.stop * each, counted):
@@ -199,44 +220,113 @@ def count(
         sample, record, eta, level, polarity = plan.places(found.id)
         sample = sample - samples.start
         cell = np.ravel_multi_index((sample if apart else np.zeros_like(sample), record, level), shape)
+        ladder = np.ravel_multi_index((sample, record, eta, polarity), rungs)
         _add(runs, cell)
         if ladders:
             there.ravel()[found.id - start] = True
-            ladder = np.ravel_multi_index((sample, record, eta, polarity), rungs)
+        checked &= bool(found.checked.all())
+        doubtful = int(found.unknown.sum())
+        unknown += doubtful
+        if doubtful and lower is None:  # so far the two are the same
+            lower = deepcopy(upper)
         for limit in limits:
-            beyond = exceeds(found, limit, reach[limit][sample] if limit in reach else None)
-            _add(exceeding[limit], cell[beyond])
-            if ladders:
-                np.minimum.at(first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
-    return Tally(plan, samples, runs, exceeding, Ladders(first, there) if ladders else None)
+            rotations = reach[limit][sample] if limit in reach else None
+            upper.add(limit, exceeds(found, limit, rotations), cell, ladder, level)
+            if lower is not None:
+                known = known_to_exceed(found, limit, rotations, phi_cr[sample])
+                lower.add(limit, known, cell, ladder, level)
+
+    def tally(counts: _Counts, of_known: Tally | None) -> Tally:
+        found = Ladders(counts.first, there) if ladders else None
+        return Tally(plan, samples, runs, counts.exceeding, found, unknown, checked, of_known)
+
+    checked |= store.fact("description")["model"] != "nonlinear"  # of an equivalent block there are no joints
+    return tally(upper, tally(lower, None) if lower is not None else None)
+
+
+class _Counts:
+    """How many runs exceed, and where ladders first do, while they are counted; see `Tally` and `Ladders`."""
+
+    def __init__(
+        self, limits: Sequence[Limit], shape: tuple[int, ...], rungs: tuple[int, ...] | None, levels: int
+    ) -> None:
+        self.exceeding = {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
+        self.first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in limits if rungs is not None}
+
+    def add(self, limit: Limit, beyond: Bools, cell: Integers, ladder: Integers, level: Integers) -> None:
+        """Count the runs of a block that exceed a limit state."""
+        _add(self.exceeding[limit], cell[beyond])
+        if self.first:
+            np.minimum.at(self.first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
 
 
 def exceeds(found: Endings, limit: Limit, reach: Reals | None = None) -> Bools:
-    """Which runs exceed a limit state; of a displacement `reach` has the rotations of each run, shape (n, 2)."""
-    overturned: Bools = found.outcome != STANDS
+    """Return which runs exceed a limit state, or may: of unknown outcome, all that are not known to.
+
+    Parameters
+    ----------
+    found : Endings
+        n runs.
+    limit : limit state
+        Which.
+    reach : ndarray, shape (n, 2), optional
+        Of a displacement, the rotations of each run [rad].
+    """
+    return np.asarray(found.unknown | _exceeds(found, limit, reach, found.peak_ratio))
+
+
+def known_to_exceed(found: Endings, limit: Limit, reach: Reals | None, phi_cr: Reals) -> Bools:
+    """Return which runs are known to exceed a limit state: of unknown outcome, by what was seen of them.
+
+    That is uplift, a first slip, or the peak until the first joint would not bear.
+
+    Parameters
+    ----------
+    found, limit, reach
+        See `exceeds`.
+    phi_cr : ndarray, shape (n, 2)
+        Critical rotations of each run [rad].
+    """
+    known = _exceeds(found, limit, reach, np.where(found.unknown, found.lower_bound, found.peak_ratio))
+    if reach is None:
+        return known
+    # The bound is of one direction, which must have come as far later on, too.
+    bound = found.lower_bound[:, None] * phi_cr
+    with np.errstate(invalid="ignore"):
+        could = found.peaks >= bound * (1 - ROUNDING)
+        surely = (bound > reach) | ~could
+    return np.asarray(np.where(found.unknown, could.any(axis=1) & surely.all(axis=1), known))
+
+
+def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) -> Bools:
+    """Whether runs exceed a limit state, by their peaks over phi_cr if it is a ratio."""
     if limit == SLIDING:
         return found.slides
+    overturned = found.overturned
     if reach is not None:
         return np.asarray(overturned | (found.peaks > reach).any(axis=1))  # NaN, where it overturned, exceeds nothing
     if isinstance(limit, str):
         return overturned if limit == OVERTURNING else found.uplifts
     with np.errstate(invalid="ignore"):
-        beyond: Bools = overturned | (found.peak_ratio > limit)
-    return beyond
+        return np.asarray(overturned | (ratio > limit))
 
 
 def peaks(store: Store, plan: Plan, structure: str) -> Reals:
-    """Peak phi/phi_cr of each ladder that is complete, shape (m, levels); NaN where it overturns."""
+    """Peak phi/phi_cr of each ladder that is complete, shape (m, levels); NaN where it overturns.
+
+    Infinite where the outcome is unknown.
+    """
     table = endings_of(store, plan, structure)
     ladders = np.moveaxis(table, 3, -1).reshape(-1, table.shape[3])
     complete = ladders[~np.isnan(ladders).any(axis=1)]
-    return np.where(np.isinf(complete), np.nan, complete)
+    return np.where(np.isinf(complete), np.nan, np.where(complete == UNSEEN, np.inf, complete))
 
 
 def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
     """How the runs of a structure end, shape (samples, records, etas, levels, polarities).
 
-    The peak phi/phi_cr; 0 without uplift, infinite where it overturns, NaN where no run is that could be followed.
+    The peak phi/phi_cr; 0 without uplift, infinite where it overturns, `UNSEEN` where the outcome is unknown, NaN where
+    no run is that could be followed.
     """
     samples = samples_of(plan, structure)
     table = np.full((len(samples), *plan.shape[1:]), np.nan)
@@ -244,7 +334,8 @@ def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
     for found in store.endings(start, start + table.size):
         found = found.select(found.outcome != FAILED)
         rocks = np.where(found.uplifts, np.maximum(found.peak_ratio, np.finfo(np.float64).tiny), 0.0)
-        table.ravel()[found.id - start] = np.where(found.outcome == STANDS, rocks, np.inf)
+        ends = np.where(found.unknown, UNSEEN, np.inf)
+        table.ravel()[found.id - start] = np.where(found.outcome == STANDS, rocks, ends)
     return table
 
 

@@ -20,7 +20,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.sources import KeptMotions
-from rocking_cli.studies.fragility.store import FAILED, Rows
+from rocking_cli.studies.fragility.store import FAILED, UNKNOWN, Rows
 from rocking_cli.studies.fragility.study import Sample
 
 Integers = NDArray[np.int64]
@@ -66,16 +66,20 @@ def carry_out(unit: Unit) -> Rows:
     def known(values: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.where(found.failed, np.nan, values)
 
+    outcome = np.where(found.unknown, UNKNOWN, found.fell_to)
     return Rows(
         id=unit.id,
         scale=unit.runs.scale,
         eta=unit.runs.eta,
-        outcome=np.where(found.failed, FAILED, found.fell_to).astype(np.int64),
+        outcome=np.where(found.failed, FAILED, outcome).astype(np.int64),
         peak_ratio=known(found.peak_ratio),
         peak_positive=known(found.peak_positive),
         peak_negative=known(found.peak_negative),
         uplift_time=known(found.uplift_time),
         overturning_time=known(found.overturning_time),
+        known_to=known(found.known_to),
+        lower_bound=known(np.where(found.unknown, found.lower_bound, np.nan)),
+        opening=known(found.opening),
         slide_time=slides,
     )
 
@@ -97,7 +101,7 @@ def _slide_times(unit: Unit, found: Outcomes) -> tuple[NDArray[np.float64], NDAr
         except SolverError:
             lost[k] = True
         else:
-            times[k] = checks[model, own].check(history, motion, closed=False).slides
+            times[k] = checks[model, own].check(history, motion).slides
     return times, lost
 
 

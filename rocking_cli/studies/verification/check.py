@@ -113,6 +113,7 @@ def with_histories(
                 each.d0,
                 {state: at.d for state, at in each.states.items()},
                 enough,
+                checked=model.joints is not None,
             ),
         )
         for direction, each in found.directions.items()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import isnan, sqrt
+from math import sqrt
 
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History, follow
@@ -31,6 +31,8 @@ def peaks(
 ) -> dict[Direction, RecordPeak]:
     """The largest displacement in each direction under one record, the worse of several polarities.
 
+    The outcome is unknown where that of any polarity is, unless another one overturns the structure in this direction.
+
     Parameters
     ----------
     model : Model
@@ -51,19 +53,27 @@ def peaks(
     own = [follow(model, each) for each in under]
     factors = {curve.confidence for curve in curves.values()}
     weaker = {FC: own if FC == 1 else [follow(model, with_confidence(each, FC)) for each in under] for FC in factors}
-    return {
-        direction: RecordPeak(
-            motion.name, _largest(curve, direction, weaker[curve.confidence]), _largest(curve, direction, own)
-        )
-        for direction, curve in curves.items()
-    }
+    found = {}
+    for direction, curve in curves.items():
+        d, known_to = _largest(curve, direction, own)
+        d_FC, known_to_FC = _largest(curve, direction, weaker[curve.confidence])
+        slow = None if known_to_FC is None else sqrt(curve.confidence) * known_to_FC
+        found[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to)
+    return found
 
 
-def _largest(curve: ExactCurve, direction: Direction, histories: Sequence[History]) -> float | None:
-    """The largest d of several histories in a direction [m]; None if one overturned that way."""
-    found = [history.peak_positive if direction > 0 else history.peak_negative for history in histories]
-    if any(isnan(phi) for phi in found):
-        return None
-    phi = max(found)
+def _largest(
+    curve: ExactCurve, direction: Direction, histories: Sequence[History]
+) -> tuple[float | None, float | None]:
+    """The largest d of several histories in a direction [m], and until when they are known [s] if one is unknown.
+
+    No d if one overturned that way, or is unknown.
+    """
+    if any(history.overturned and history.fell_to == direction for history in histories):
+        return None, None
+    unknown = [history.known_to for history in histories if history.unknown]
+    if unknown:
+        return None, min(unknown)
+    phi = max(history.peak_positive if direction > 0 else history.peak_negative for history in histories)
     d = curve.displacement_at(phi)
-    return max(d, curve.d0) if phi >= curve.end else d  # beyond, the control point may come back
+    return max(d, curve.d0) if phi >= curve.end else d, None  # beyond, the control point may come back

@@ -83,11 +83,31 @@ class Method:
 
 @dataclass(frozen=True)
 class RecordPeak:
-    """The largest displacement under one record [m], with FC and without; None where the structure overturned."""
+    """The largest displacement under one record, with FC and without.
+
+    Parameters
+    ----------
+    name : str
+        Of the record.
+    with_confidence, without : float or None
+        The displacement [m]; None where the structure overturned, or the outcome is unknown.
+    known_to_with_confidence, known_to_without : float or None
+        Until when the outcome is known [s], where it is unknown.
+    """
 
     name: str
     with_confidence: float | None
     without: float | None
+    known_to_with_confidence: float | None = None
+    known_to_without: float | None = None
+
+    def peak(self, *, confident: bool) -> float | None:
+        """The displacement with FC, or without [m]."""
+        return self.with_confidence if confident else self.without
+
+    def known_to(self, *, confident: bool) -> float | None:
+        """Until when the outcome is known with FC, or without [s]; None if all of it is known."""
+        return self.known_to_with_confidence if confident else self.known_to_without
 
 
 @dataclass(frozen=True)
@@ -104,30 +124,38 @@ class Dynamic:
         The displacement of each limit state that the mean may reach [m].
     enough : int
         How many records the code wants.
+    checked : bool
+        Whether the joints of the structure are known; if not, no outcome is said to be unknown.
     """
 
     records: Sequence[RecordPeak]
     d0: float
     allowed: Mapping[str, float]
     enough: int
+    checked: bool = True
 
     def mean(self, *, confident: bool) -> float | None:
-        """The mean of the largest displacements [m]; None where one overturned or passed d0*."""
+        """The mean of the largest displacements [m]; None where one overturned, passed d0* or is unknown."""
         found = self.peaks(confident=confident)
         known = [each for each in found if each is not None and each < self.d0]
         return sum(known) / len(found) if len(known) == len(found) else None
 
     def peaks(self, *, confident: bool) -> list[float | None]:
         """The largest displacement under each record [m]."""
-        return [each.with_confidence if confident else each.without for each in self.records]
+        return [each.peak(confident=confident) for each in self.records]
 
     def passed(self, *, confident: bool) -> list[str]:
         """The records that pass d0*."""
-        pairs = zip(self.records, self.peaks(confident=confident), strict=True)
-        return [record.name for record, d in pairs if d is None or d >= self.d0]
+        known = [each for each in self.records if each.known_to(confident=confident) is None]
+        pairs = [(each.name, each.peak(confident=confident)) for each in known]
+        return [name for name, d in pairs if d is None or d >= self.d0]
+
+    def unknown(self, *, confident: bool) -> list[str]:
+        """The records of unknown outcome."""
+        return [each.name for each in self.records if each.known_to(confident=confident) is not None]
 
     def holds(self, state: str, *, confident: bool) -> bool:
-        """Whether it holds at a limit state."""
+        """Whether it holds at a limit state; with an unknown outcome it does not."""
         mean = self.mean(confident=confident)
         return mean is not None and mean <= self.allowed[state]
 

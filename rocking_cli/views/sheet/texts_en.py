@@ -230,6 +230,14 @@ TEXTS = {
     "holds": "{which}, {state}: satisfied. The mean peak displacement, {mean:.6g} m, is within {allowed:.6g} m.",
     "holds_not": "{which}, {state}: not satisfied. The mean peak displacement, {mean:.6g} m, exceeds {allowed:.6g} m.",
     "past_d0": "{which}: not satisfied. d_[0]^[*] is exceeded under {names}.",
+    "unknown_after": "unknown after {time} s",
+    "unknown_fails": (
+        "{which}, {state}: not satisfied. The outcome under {names} is unknown, as a joint opens or slides that the "
+        "model keeps closed: an unknown outcome does not pass."
+    ),
+    "not_checked": (
+        "Caution: the joints of this mechanism are not checked: it does not say which of them stay closed."
+    ),
     "few": "Only {count} records were used: the code requires at least {enough} before the mean may be used.",
     "one": "Only one record was used: the code requires at least {enough} before the mean may be used.",
     # inputs

@@ -259,6 +259,14 @@ TEXTS = {
     "holds": "{which}, {state}: la media di {mean:.6g} m è entro {allowed:.6g} m: verifica soddisfatta.",
     "holds_not": "{which}, {state}: la media di {mean:.6g} m supera {allowed:.6g} m: verifica non soddisfatta.",
     "past_d0": "{which}: verifica non soddisfatta, superano d_[0]^[*]: {names}.",
+    "unknown_after": "non noto dopo {time} s",
+    "unknown_fails": (
+        "{which}, {state}: verifica non soddisfatta. L'esito sotto {names} non è noto, perché si apre o scorre un "
+        "giunto che il modello mantiene chiuso: un esito non noto non soddisfa la verifica."
+    ),
+    "not_checked": (
+        "Attenzione: i giunti di questo meccanismo non sono controllati, perché non è noto quali restano chiusi."
+    ),
     "few": "Gli accelerogrammi sono {count}: per la media la norma ne chiede almeno {enough}.",
     "one": "L'accelerogramma è uno solo: per la media la norma ne chiede almeno {enough}.",
     # inputs

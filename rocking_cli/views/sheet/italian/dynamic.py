@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rocking_cli.studies.verification.results import Dynamic, Verified
+from rocking_cli.studies.verification.results import Dynamic, RecordPeak, Verified
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
 from rocking_cli.views.sheet.language import Language
 
@@ -12,7 +12,7 @@ from rocking_cli.views.sheet.language import Language
 def part(say: Language, each: Verified, found: Dynamic, key: str) -> Part:
     """The dynamic method in a direction."""
     rows = [
-        [record.name, *(_peak(say, d, found.d0) for d in (record.with_confidence, record.without))]
+        [record.name, *(_peak(say, record, found.d0, confident=confident) for confident in (True, False))]
         for record in found.records
     ]
     heads = [say.say("record"), say.say("with_FC"), say.say("without_FC")]
@@ -22,13 +22,18 @@ def part(say: Language, each: Verified, found: Dynamic, key: str) -> Part:
     ]
     for confident in (True, False) if each.exact.confidence != 1 else (True,):
         items += _said(say, found, confident=confident)
+    if not found.checked:
+        items.append(Sentence(say.say("not_checked")))
     count = len(found.records)
     if count < found.enough:
         items.append(Sentence(say.say("one" if count == 1 else "few", count=count, enough=found.enough)))
     return Part(f"{key}-dynamic", say.say("dynamic"), items)
 
 
-def _peak(say: Language, d: float | None, d0: float) -> str:
+def _peak(say: Language, record: RecordPeak, d0: float, *, confident: bool) -> str:
+    d, known_to = record.peak(confident=confident), record.known_to(confident=confident)
+    if known_to is not None:
+        return say.say("unknown_after", time=say.number(known_to, 4))
     if d is None:
         return say.say("overturns")
     return f"{say.number(d)} {say.say('past')}" if d >= d0 else say.number(d)
@@ -37,9 +42,12 @@ def _peak(say: Language, d: float | None, d0: float) -> str:
 def _said(say: Language, found: Dynamic, *, confident: bool) -> Iterator[Sentence]:
     which = say.say("with_FC" if confident else "without_FC")
     which = f"{which[0].upper()}{which[1:]}"
-    mean = found.mean(confident=confident)
+    mean, unknown = found.mean(confident=confident), found.unknown(confident=confident)
+    if passed := found.passed(confident=confident):
+        yield Sentence(say.say("past_d0", which=which, names=", ".join(passed)))
     if mean is None:
-        yield Sentence(say.say("past_d0", which=which, names=", ".join(found.passed(confident=confident))))
+        for state in found.allowed if unknown else ():
+            yield Sentence(say.say("unknown_fails", which=which, state=state, names=", ".join(unknown)))
         return
     for state, allowed in found.allowed.items():
         key = "holds" if found.holds(state, confident=confident) else "holds_not"
