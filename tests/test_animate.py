@@ -162,12 +162,15 @@ class TestGif:
 
 class TestCommand:
     def test_a_page_is_written_and_what_happened_is_said(self, tmp_path):
-        result = run(
-            "animate", EXAMPLES / "arch.yaml", "--pulse", "sine:0.7g:0.9s", "--out", "a.html", "--polarity", "-1"
-        )
-        assert "The structure rocks to" in result.stdout
-        page = Path("a.html").read_text(encoding="utf-8")
-        assert "<h1>Oppenheim" in page and len(data_of(page)["picture"]["parts"]) == 5
+        pulse = ("--pulse", "sine:0.6g:0.5s", "--polarity", "-1", "--neighbours", 20)
+        ends = []
+        for limit, said in (("1", "The structure rocks to"), ("0.5%", "The structure has an unknown outcome")):
+            asked = ("animate", EXAMPLES / "arch.yaml", *pulse, "--opening", limit)
+            assert said in run(*asked, "--out", "a.html").stdout
+            page = Path("a.html").read_text(encoding="utf-8")
+            assert "<h1>Oppenheim" in page and len(data_of(page)["picture"]["parts"]) == 5
+            ends.append(data_of(page)["film"]["end"])
+        assert ends[1] < ends[0]
 
     def test_polarity_and_scale_reach_the_motion(self, tmp_path):
         for out, more in (("a.html", []), ("b.html", ["--polarity", "-1"])):

@@ -26,7 +26,9 @@ PARAMETERS = {
 }  # fmt: skip
 RESPONSE = {
     "peak_positive", "peak_negative", "peak_ratio", "overturned", "overturning_time", "uplift_time", "impacts",
+    "outcome", "unknown", "known_to", "known_to_reason", "peak_lower_bound", "opening",
 }  # fmt: skip
+DRAWN = "count", "amplitude", "restitution", "slenderness"
 
 
 def run(*arguments, code=0):
@@ -66,11 +68,14 @@ class TestNeighbours:
         from rocking_cli.studies.neighbours import neighbours
 
         words = ("respond", FRAME, "--record", ACCEL, "--scale", "1.1", "--polarity", "-1", "--neighbours", 50)
-        found = run_json(*words, "--within-amplitude", "0.05", "--within-restitution", "0.01")["neighbours"]
-        around = Around(50, 0.05, 0.01)
+        deviations = ("--amplitude-deviation", 0.05, "--restitution-deviation", 0.01, "--slenderness-deviation", "7%")
+        found = run_json(*words, *deviations)["neighbours"]
+        around = Around(50, amplitude=0.05, restitution=0.01, slenderness=0.07)
         alone = neighbours(build_model(load_structure(FRAME), "nonlinear"), read_record(ACCEL).scaled(-1.1), around)
-        assert (found["count"], found["amplitude"], found["restitution"]) == (50, 0.05, 0.01)
-        assert (found["overturned"], found["sensitive"]) == (alone.overturned, alone.sensitive)
+        assert [found[name] for name in DRAWN] == [50, 0.05, 0.01, 0.07]
+        assert [found[name] for name in ("overturned", "unknown", "sensitive")] == [
+            alone.overturned, alone.unknown, alone.sensitive,
+        ]  # fmt: skip
         assert list(found["peak_ratio"].values()) == [None if np.isinf(each) else each for each in alone.peak_ratio]
         assert list(found["peak_ratio"]) == ["16", "50", "84"]
 
@@ -79,7 +84,9 @@ class TestNeighbours:
         found, text = run_json(*words), run(*words).stdout
         said = [each["neighbours"] for each in found["polarities"].values()]
         for near in said:
-            assert f"Of 200 neighbouring motions ({Around().words}) {shares(near)}" in text
+            assert [near[name] for name in DRAWN] == [200, 0.04, 0.05, 0.1]
+            around = Around(200, amplitude=0.04, restitution=0.05, slenderness=0.1)
+            assert f"Of 200 neighbouring motions ({around.words}), {shares(near)}" in text
 
     def test_none_if_none_are_requested(self):
         words = ("respond", FRAME, "--record", ACCEL, "--neighbours", 0)
@@ -104,9 +111,9 @@ class TestNeighbours:
         assert near[1]["overturned"] > near[0]["overturned"]
         assert f"sine:1g:3s governs: {100 * near[1]['overturned']:.0f} % of its neighbours overturn." in text
 
-    @pytest.mark.parametrize("option", ["--within-amplitude", "--within-restitution"])
+    @pytest.mark.parametrize("option", [f"--{of}-deviation" for of in ("amplitude", "slenderness", "restitution")])
     @pytest.mark.parametrize("wrong", ["-0.1", "1", "nan"])
-    def test_widths_out_of_range_are_refused(self, option, wrong):
+    def test_deviations_out_of_range_are_refused(self, option, wrong):
         assert option in run("respond", FRAME, "--record", ACCEL, option, wrong, code=2).stderr
 
 
@@ -286,13 +293,17 @@ class TestRespond:
         assert one["peak_positive"] > 0
 
     def test_release_without_a_record(self):
-        data = run_json("respond", EXAMPLES / "arch.yaml", "--release", "-0.5")
+        asked = ("respond", EXAMPLES / "arch.yaml", "--release", "-0.5")
+        data = run_json(*asked, "--opening", 1)
         assert data["record"] is None and data["release"] == -0.5
         response = data["responses"]["nonlinear"]
         assert (
             response["peak_ratio"] == pytest.approx(0.5) and response["peak_negative"] > response["peak_positive"] > 0
         )
-        assert response["uplift_time"] is None and response["impacts"] > 5
+        assert response["uplift_time"] is None and response["impacts"] > 5 and response["outcome"] == "at_rest"
+        response = run_json(*asked)["responses"]["nonlinear"]  # a joint opens at once
+        assert (response["outcome"], response["overturned"], response["impacts"]) == ("unknown", None, 0)
+        assert response["peak_ratio"] == response["peak_lower_bound"] == pytest.approx(0.5)
 
     def test_nothing_to_respond_to(self):
         assert "--record" in run("respond", FRAME, code=2).stderr

@@ -37,6 +37,11 @@ RESPONSE = {
     "first_rebound",
     "samples_per_period",
     "over_nonlinear",
+    "unknown",
+    "known_to",
+    "known_to_reason",
+    "peak_lower_bound",
+    "opening",
 }
 
 
@@ -73,6 +78,7 @@ def test_json_has_the_promised_keys(block):
     assert set(got["responses"]) == {"linear1", "linear2", "nonlinear"}
     for response in got["responses"].values():
         assert set(response) == RESPONSE
+        assert response["unknown"] is False and response["known_to"] is None  # a block has no joint that could open
     assert set(got["closed_form"]) == {"linear1", "linear2"}
     for closed in got["closed_form"].values():
         assert set(closed) == {

@@ -17,6 +17,7 @@ from mechanisms.wall import Wall
 from rocking_cli import errors
 from rocking_cli.core.reactions import impulses
 from rocking_cli.dynamics.history import respond
+from rocking_cli.dynamics.holding import joints_in_words
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies import contact
 from rocking_cli.studies.contact import Contacts, _stretches
@@ -111,9 +112,22 @@ def test_less_friction_than_lambda_slides_before_it_rocks():
     assert found.slides == pytest.approx(history.uplift_time) and not found.holds
     above = _stretches(found.times, found.demand, 0.15)
     assert found.duration == pytest.approx((above[1] - above[0]).max())
-    said = contact_words(found, weak)
-    assert (
-        said.startswith("Sliding would start at joint O' at 0.") and "the result is not valid beyond that time" in said
+    assert contact_words(found, weak).startswith(
+        f"Sliding would start at joint O' at {found.slides:.4g} s. "
+        f"It would last at most {found.duration:.2g} s at a time. Joint O' requires"
+    )
+    # How far it slides decides until when the history is a result, which is said beside.
+    assert history.unknown and history.check.reason == "slides" and history.warned == pytest.approx(found.slides)
+    assert history.known_to > found.slides and history.time[np.isfinite(history.phi)][-1] <= history.known_to
+    slid = 0.005 * abs(np.exp(-1j * atan2(1, 5)) * (0.5 + 2.5j) - (0.5 + 2.5j))  # of its way until it is upright
+    assert f"the joint between the ground and {weak.bodies()[0].name} has slid by {1000 * slid:.3g} mm" in (
+        joints_in_words(history)
+    )
+    # Of joints that are not checked that far, each that does not hold ends it.
+    loose = NoJoints(thickness=0.3, height=3.0, restitution=0.7, friction=0.05)
+    _, unchecked = checked(loose, shaking(0.5))
+    assert contact_words(unchecked, loose).startswith(
+        f"Sliding would start at {unchecked.slides:.4g} s: the result is not valid beyond that time. It would last"
     )
     _, enough = checked(BLOCK.model_copy(update={"friction": 0.9}), shaking())
     assert np.isnan(enough.slides) and enough.duration == 0 and enough.holds
@@ -126,8 +140,8 @@ def test_of_a_structure_that_stays_at_rest_there_is_nothing_to_say():
     assert contact_words(found, BLOCK) == "" and (found.demand == 0).all()
 
 
-def test_without_weight_contact_is_lost():
-    motion = shaking(vertical=1.3)
+def test_with_little_weight_contact_is_lost():
+    motion = shaking(0.5, vertical=0.97)
     history, found = checked(BLOCK, motion)
     u, v = (np.interp(history.time, motion.time, each, right=0) for each in
             (motion.acceleration, motion.vertical.acceleration))  # fmt: skip
@@ -143,6 +157,19 @@ def test_without_weight_contact_is_lost():
     assert found.friction_needed < max(needed for _, needed, normal in states if normal > 0)  # for N tends to zero
     assert pulls and found.lost <= pulls[0] and pulls[0] - found.lost <= motion.dt
     assert found.least_normal <= 0 and not found.holds and "Contact is lost at joint O" in contact_words(found, BLOCK)
+
+
+def test_a_history_ends_where_nothing_holds_the_structure_down():
+    motion = shaking(vertical=1.3)
+    history, _ = checked(BLOCK, motion)
+    up = motion.vertical.acceleration
+    k = int((up <= -G).argmax())
+    gone = motion.dt * (k - 1 + (up[k - 1] + G) / (up[k - 1] - up[k]))  # on the ramp
+    assert (
+        history.unknown and history.check.reason == "weightless" and history.known_to == pytest.approx(gone, abs=1e-12)
+    )
+    assert history.contact_lost == pytest.approx(gone, abs=1e-12)
+    assert "nothing holds the structure down" in joints_in_words(history)
 
 
 def test_until_it_overturns_and_no_longer():
@@ -172,18 +199,29 @@ def test_masses_scale_forces_and_nothing_else():
 
 def test_strength_is_that_of_each_contact():
     motion = shaking(vertical=0.3)
-    strength = {"stress": 2e6, "width": 0.04}
+    strength = {"stress": 4e6, "width": 0.04}
     block = Block(width=1.0, height=5.0, density=2000.0, depth=0.8, strength=strength)
-    _, found = checked(block, motion)
-    twice = block.model_copy(update={"strength": {"stress": 4e6, "width": 0.04}})
+    history, found = checked(block, motion)
+    twice = block.model_copy(update={"strength": {"stress": 8e6, "width": 0.04}})
     assert found.crushing.used == pytest.approx(2 * checked(twice, motion)[1].crushing.used)
-    history = checked(block, motion)[0]
+    assert not history.unknown and "use at most" in contact_words(found, block)
     u, v = (np.interp(history.time, motion.time, each, right=0) for each in
             (motion.acceleration, motion.vertical.acceleration))  # fmt: skip
-    most = max(of_a_block(*each)[1] for each in zip(history.phi, history.rate, u, v, strict=True) if each[0] or each[1])
-    assert found.crushing.used >= most * 2000 * 5 * 0.8 / (2e6 * 0.04 * 0.8) * (1 - 1e-9)
-    assert found.crushing.used == pytest.approx(most * 2000 * 5 / (2e6 * 0.04), rel=0.02)
-    assert found.crushing.used > 1 and "would crush" in contact_words(found, block)
+    presses = {
+        t: of_a_block(*each)[1]
+        for t, *each in zip(history.time, history.phi, history.rate, u, v, strict=True)
+        if each[0] or each[1]
+    }
+    most = max(presses.values())
+    assert found.crushing.used >= most * 2000 * 5 * 0.8 / (4e6 * 0.04 * 0.8) * (1 - 1e-9)
+    assert found.crushing.used == pytest.approx(most * 2000 * 5 / (4e6 * 0.04), rel=0.02)
+    # Half as strong, a contact crushes, and the history ends there at once.
+    weak = block.model_copy(update={"strength": {"stress": 2e6, "width": 0.04}})
+    until, crushed = checked(weak, motion)
+    first = next(t for t, normal in presses.items() if normal * 2000 * 5 > 2e6 * 0.04)
+    assert until.unknown and until.check.reason == "crushes"
+    assert until.known_to == pytest.approx(first, abs=motion.dt) and until.peak_ratio < history.peak_ratio
+    assert 1 < crushed.crushing.used < 2 * found.crushing.used and "would crush" in contact_words(crushed, weak)
     assert block.enlarged(2.0).strength.width == 0.08
     frame = {"column_width": 1.0, "column_height": 6.0, "mass_ratio": 1.0, "density": 2000.0, "depth": 1.0}
     few, many = (
@@ -208,8 +246,9 @@ class NoJoints(Wall):
 STRUCTURES = [
     Wall(thickness=0.3, height=3.0),
     NoJoints(thickness=0.3, height=3.0, restitution=0.7),
-    Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7),
-    Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7, restitution=0.6),
+    # Of these a joint opens, and their histories would end before the first impact.
+    Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7, opening=1.0),
+    Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7, opening=1.0, restitution=0.6),
     AsymmetricFrame(
         column_width=1, left_height=6, right_height=7.5, spacing=8, beam_depth=1, density=2000.0, depth=1.0
     ),
@@ -269,7 +308,7 @@ def test_an_impact_that_throws_a_joint_apart_loses_contact():
 def test_respond_says_it(tmp_path):
     file = tmp_path / "frame.yaml"
     file.write_text((EXAMPLES / "frame.yaml").read_text(encoding="utf-8") + "friction: 0.25\n", encoding="utf-8")
-    asked = (file, "--record", EXAMPLES / "accel.csv", "--neighbours", 0)
+    asked = (file, "--record", EXAMPLES / "accel.csv", "--neighbours", 0, "--opening", "100%")
     responses = run_json("respond", *asked)["responses"]
     assert responses["linear1"]["contact"] is None and responses["linear2"]["contact"] is None
     found = responses["nonlinear"]["contact"]
@@ -303,7 +342,7 @@ def test_thrown_back_it_is_checked_on_both_sides_of_an_impact():
 
 
 def test_impulses_of_one_direction_alone_do_not_say_what_impacts_need():
-    arch = Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7)
+    arch = Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7, opening=1.0)
     eta = arch.eta(arch.directions[0])
     for given, known in ((eta, True), (0.5, False)):
         one = arch.model_copy(update={"restitution": {"positive_to_negative": eta, "negative_to_positive": given}})

@@ -13,15 +13,18 @@ from pydantic import Field, ValidationError, model_validator
 
 from rocking_cli.core import (
     Body,
+    Contact,
     Direction,
     Hinge,
     Joint,
     Mechanism,
+    Piece,
     Sketch,
     annular_sector,
     box,
     equivalent_block,
     length,
+    of_joints,
     polygon,
     rectangle,
     rotation,
@@ -359,7 +362,94 @@ class OwnEta(Plain):
         return 0.9
 
 
+class Stacked(Plain):
+    """A statue that stays on its pedestal: one mechanism of two bodies, and of two pieces with a closed joint."""
+
+    def bodies(self):
+        low = box("pedestal", 1.0, self.width, self.height, 0.5j * self.height)
+        return [low, box("statue", 0.3, 0.3, 1.0, 1j * (self.height + 0.5))]
+
+    def motion(self, phi, direction):
+        return super().motion(phi, direction) * 2
+
+    def joints(self, direction):
+        return (Joint("O" + direction.prime, complex(direction * self.width / 2), ("pedestal",)),)
+
+    def under(self, **more):
+        top = 1j * self.height
+        return Contact(
+            **{"pieces": ("pedestal", "statue"), "points": (top - 0.15, top + 0.15), "face": "pedestal"} | more
+        )
+
+    def contacts(self, direction):
+        return [*of_joints(self.joints(direction), self.friction), self.under()]
+
+
+class Overhanging(Stacked):
+    """The statue beyond the edge of the joint that is said to bear it."""
+
+    def contacts(self, direction):
+        top = 1j * self.height
+        return [*super().contacts(direction)[:1], self.under(points=(top - 0.15, top - 0.05))]
+
+
+class UpsideDown(Stacked):
+    def contacts(self, direction):
+        return [*super().contacts(direction)[:1], self.under(normal=-1j)]
+
+
+class OneEnd(Stacked):
+    def contacts(self, direction):
+        return [*super().contacts(direction)[:1], self.under(points=(1j * self.height,))]
+
+
+class OtherFoot(Stacked):
+    def contacts(self, direction):
+        foot = Contact((None, "pedestal"), (complex(-direction * self.width / 2),))
+        return [foot, self.under()]
+
+
+class OnNothing(Stacked):
+    def contacts(self, direction):
+        return [*super().contacts(direction)[:1], self.under(pieces=("pedestal", "bust"))]
+
+
+class HalfAStatue(Stacked):
+    def pieces(self, direction):
+        low, top = super().pieces(direction)
+        return [low, Piece(replace(top.body, mass=top.body.mass / 2), top.of)]
+
+
+class NoStatue(Stacked):
+    def pieces(self, direction):
+        return super().pieces(direction)[:1]
+
+
+class OfNoBody(Stacked):
+    def pieces(self, direction):
+        low, top = super().pieces(direction)
+        return [low, Piece(top.body, "bust")]
+
+
+class TwoAlike(Stacked):
+    def pieces(self, direction):
+        return super().pieces(direction)[:1] * 2
+
+
 WRONG = [
+    (Overhanging, "contacts_bear_its_weight", "the contact of pedestal and statue pulls with .* N as rocking starts"),
+    (
+        UpsideDown,
+        "contacts_bear_its_weight",
+        "pulls with .*: its normal must point from the first piece into the second",
+    ),
+    (OneEnd, "contacts_bear_its_weight", "the contacts of the positive direction do not leave one degree of freedom"),
+    (OtherFoot, "contacts_bear_its_weight", "of the positive direction do not balance .* joints that its motion keeps"),
+    (OnNothing, "contacts_bear_its_weight", "contact of pedestal and bust names a piece that does not exist"),
+    (HalfAStatue, "contacts_bear_its_weight", "the pieces of statue have 0.15 kg of its 0.3 kg"),
+    (NoStatue, "contacts_bear_its_weight", "statue moves, but no piece is of it"),
+    (OfNoBody, "contacts_bear_its_weight", "the piece statue is of bust, which is no body"),
+    (TwoAlike, "contacts_bear_its_weight", "two pieces have the same name"),
     (InCircles, "carries_what_hangs_on_it", "RecursionError"),
     (OwnEta, "may_lean_on_side_walls", "its rebound is lost if it rocks in the positive direction only"),
     (
@@ -432,7 +522,7 @@ def made(cls):
     return cls(width=0.7, height=2.8, **({"load": 1.0} if "load" in cls.model_fields else {}))
 
 
-@pytest.mark.parametrize("cls", [Plain, Uniform, Two])
+@pytest.mark.parametrize("cls", [Plain, Uniform, Two, Stacked])
 def test_a_right_mechanism_passes_every_check(cls):
     assert [verdict for verdict in contract(made(cls)) if not verdict.passed] == []
 

@@ -20,6 +20,7 @@ from rocking_cli import Registry, core
 from rocking_cli.cli.main import COMMANDS
 from rocking_cli.core import Angle, Length, Line, box
 from rocking_cli.core.mechanism import ANSWERS
+from rocking_cli.core.released import released
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.testing import contract
 from rocking_cli.views.collapse import data
@@ -163,7 +164,7 @@ def test_every_mechanism_has_its_page(name):
 
 
 def test_every_page_is_in_the_contents():
-    parts = {"index.md", "corrections.md", "validation_head.md"}
+    parts = {"index.md", "corrections.md", "validation_head.md", "validation_shares.md"}
     assert all(f"({page.name})" in text_of("index.md") for page in DOCS.glob("*.md") if page.name not in parts)
 
 
@@ -225,6 +226,32 @@ def test_the_braced_parapet_of_the_guide_holds_the_contract():
         assert made(brace_mass=0.0, **given).uplift(s) == pytest.approx(0.2, rel=1e-12)
     with pytest.raises(rocking_cli.InputError, match="higher than the parapet"):
         made(brace_mass=0.1, **{**given, "rest": 2.0})
+
+
+def test_the_statue_of_the_guide_holds_the_contract_and_is_checked():
+    """As rocking starts, the ends of its plinth bear what a bracket under u_g'' = lambda g does; then they open."""
+    section = text_of("plugins.md").partition("## Contacts\n")[2].partition("\n## ")[0]
+    code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
+    names = {"__name__": "statue"}
+    exec(code, names)
+    statue = names["Statue"](width=0.7, height=1.4, plinth=0.4, tall=1.0, share=0.3)
+    assert [each for each in contract(statue) if not each.passed] == []
+    g = statue.gravity
+    for s in core.Direction:
+        found = released(statue, s, np.zeros(1))
+        lam = statue.uplift(s)
+        assert lam == pytest.approx(0.35 * 1.3 / (0.7 + 0.3 * 1.9), rel=1e-12)
+        foot, left, right = (found.rows[0][0][0], *found.rows[1][0])
+        force = found.force[0] @ [1.0, -s * lam * g, 0.0, 0.0]
+        tilt = 0.3 * lam * g * 0.5 / 0.4
+        assert force[[foot, left, right]] == pytest.approx(
+            [1.3 * g, 0.15 * g - s * tilt, 0.15 * g + s * tilt], rel=1e-9
+        )
+    weak, strong = (
+        rocking_cli.respond(statue, f"sine:{level}g:0.6s", models="nonlinear")["nonlinear"] for level in (0.36, 0.8)
+    )
+    assert weak.lifted and not weak.unknown and weak.opening < 1e-4
+    assert strong.unknown and strong.check.joint == "pedestal and statue" and strong.check.reason == "opens"
 
 
 def test_the_ladder_of_the_linkages_is_refused_as_its_page_says(tmp_path):

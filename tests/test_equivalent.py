@@ -174,7 +174,7 @@ class TestCommand:
         }  # fmt: skip
         assert set(data["structures"][1]) == {
             "mechanism", "name", "p", "lambda", "lambda_lin", "ag", "period", "eta", "own_eta", "peak_ratio",
-            "overturned",
+            "overturned", "unknown", "known_to", "known_to_reason", "peak_lower_bound", "opening",
         }  # fmt: skip
         assert data["structures"][0]["ag"] == pytest.approx(0.6)
         with Path("e.csv").open(encoding="utf-8") as file:
@@ -227,13 +227,28 @@ class TestCommand:
 
 
 def test_the_picture_has_the_pulses_above_and_the_responses_below():
-    found = equivalent([SMALL, LARGE, parse_structure("mechanism: wall\nheight: 1\nthickness: 0.2\n", "w", "w")], PULSE)
+    wall = parse_structure("mechanism: wall\nheight: 1\nthickness: 0.2\nopening: 1\n", "w", "w")
+    found = equivalent([SMALL, LARGE, wall], PULSE)
     above, below = draw_equivalent(found, "sine").axes
     assert "[g]" in above.get_ylabel() and "time [s]" in above.get_xlabel()
     curves = {line.get_label(): line for line in below.get_lines() if not line.get_label().startswith("_")}
     assert list(curves) == ["small", "large", "w", "linear block of all"]
     np.testing.assert_array_equal(curves["small"].get_ydata(), found.turned(found.members[0].history))
     assert len({line.get_linestyle() for line in above.get_lines()}) == 3
+
+
+def test_what_is_not_known_is_not_drawn_as_if_it_were():
+    wall = parse_structure("mechanism: wall\nheight: 1\nthickness: 0.2\n", "w", "w")
+    found = equivalent([SMALL, wall], PULSE)
+    history = found.members[1].history
+    assert history.unknown
+    _, below = draw_equivalent(found, "sine").axes
+    curves = {line.get_label(): line for line in below.get_lines()}
+    curve = curves[f"w, unknown after {history.known_to:.3g} s (open circle)"]
+    drawn = np.asarray(curve.get_xdata(), float)[np.isfinite(np.asarray(curve.get_ydata(), float))]
+    assert drawn.size and drawn.max() <= equivalent_block(wall).positive.p * history.known_to * (1 + 1e-9)
+    (end,) = [line for line in below.get_lines() if line.get_marker() == "o" and len(line.get_xdata()) == 1]
+    assert end.get_markerfacecolor() in ("white", "none", "w") and end.get_xdata()[0] == pytest.approx(drawn.max())
 
 
 def test_a_fall_is_cut_off_with_a_cross():

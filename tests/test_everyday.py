@@ -78,18 +78,29 @@ class TestDefaults:
 
     def test_what_was_taken_is_said_once_and_only_where_it_changes_something(self, tmp_path, monkeypatch):
         (tmp_path / "rocking.toml").write_text("tail = 5\nfps = 3\n", encoding="utf-8")
-        monkeypatch.setenv("ROCKING_WITHIN_AMPLITUDE", "3%")
+        monkeypatch.setenv("ROCKING_AMPLITUDE_DEVIATION", "3%")
         said = run(*PULSE).stderr
         assert said.count("defaults:") == 1
-        assert "defaults: --within-amplitude 3% (ROCKING_WITHIN_AMPLITUDE), --tail 5 (rocking.toml)" in said
-        assert "--within" in run(*PULSE, "--tail", "5").stderr and "--tail" not in run(*PULSE, "--tail", "5").stderr
-        monkeypatch.delenv("ROCKING_WITHIN_AMPLITUDE")
+        assert "defaults: --amplitude-deviation 3% (ROCKING_AMPLITUDE_DEVIATION), --tail 5 (rocking.toml)" in said
+        assert "--amplitude" in run(*PULSE, "--tail", "5").stderr and "--tail" not in run(*PULSE, "--tail", "5").stderr
+        monkeypatch.delenv("ROCKING_AMPLITUDE_DEVIATION")
         (tmp_path / "rocking.toml").write_text("tail = 10.0\n", encoding="utf-8")
         assert "defaults:" not in run(*PULSE).stderr
+
+    def test_an_option_that_is_gone_is_not_passed_over(self, monkeypatch):
+        monkeypatch.setenv("ROCKING_WITHIN_RESTITUTION", "0.02")
+        assert (
+            "ROCKING_WITHIN_RESTITUTION: this option is gone give restitution-deviation, a standard deviation"
+            in " ".join(run(*PULSE, code=2).stderr.split())
+        )
 
     @pytest.mark.parametrize(
         ("text", "words"),
         [
+            (
+                "within-amplitude = '3%'",
+                "rocking.toml: within-amplitude: this option is gone give amplitude-deviation, a standard deviation",
+            ),
             ("neighbors = 2", "rocking.toml: neighbors: this option cannot have a default did you mean neigh"),
             ("out = 'a.csv'", "rocking.toml: out: this option cannot have a default"),
             ("model = 'linear1'", "rocking.toml: model: this option cannot have a default its meaning differs between"),

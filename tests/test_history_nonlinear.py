@@ -19,6 +19,7 @@ from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
 from tests.conftest import record
 from tests.reference_history import Nonlinear
+from tests.unchecked import UncheckedArch
 
 # What the tables and a local error of 1e-10 allow; most structures come ten times closer.
 TIME, PEAK = 5e-10, 5e-10
@@ -35,7 +36,7 @@ def structure(name):
     if name == "leaning":
         return RigidBody(polygon=LEANING)
     if name == "arch":
-        return Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5)
+        return UncheckedArch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5)  # of all its motion
     return AsymmetricFrame(
         column_width=1.0, left_height=6.0, right_height=7.5, spacing=8.0, beam_depth=1.0, density=2400.0, depth=1.0
     )
@@ -229,6 +230,41 @@ def test_a_symmetric_structure_answers_a_reversed_record_with_the_mirror_image(n
     np.testing.assert_array_equal(other.impacts[:6, 1], -one.impacts[:6, 1])
     assert other.peak_positive == pytest.approx(one.peak_negative, rel=1e-9)
     assert other.peak_negative == pytest.approx(one.peak_positive, rel=1e-9)
+
+
+def arch(kind=Arch, **fields):
+    return kind(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, **fields)
+
+
+@pytest.mark.parametrize(("amplitude", "release"), [(2.5, None), (1.4, None), (1.2, 0.1)])
+def test_the_joints_that_are_checked_change_nothing_of_the_motion(amplitude, release):
+    dt, samples = pulse("arch", amplitude, 5.0)
+    free = nonlinear(arch(UncheckedArch), dt, samples, release=release)
+    assert free.check is None and not free.unknown and np.isnan(free.opening)
+    for voussoirs, opening in ((None, 1.0), (None, 0.005), (9, 0.02), (9, 0.0)):
+        history = nonlinear(arch(voussoirs=voussoirs, opening=opening), dt, samples, release=release)
+        free = nonlinear(arch(UncheckedArch, voussoirs=voussoirs), dt, samples, release=release)
+        until = history.known_to if history.unknown else np.inf
+        known = free.time <= until
+        np.testing.assert_array_equal(history.phi[known[: history.time.size]], free.phi[known])
+        np.testing.assert_array_equal(history.rate[known[: history.time.size]], free.rate[known])
+        np.testing.assert_array_equal(history.impacts, free.impacts[free.impacts[:, 0] <= until])
+        assert np.isnan(history.phi[history.time > until]).all()
+        if history.unknown:
+            assert history.lower_bound <= history.peak_ratio <= free.peak_ratio
+        if not history.unknown:
+            assert (history.peak_ratio, history.end_time, history.words) == (free.peak_ratio, free.end_time, free.words)
+
+
+@pytest.mark.parametrize(("amplitude", "limit"), [(2.5, 0.05), (1.4, 0.05), (1.1, 1.0)])
+def test_joints_of_a_symmetric_structure_open_alike_under_the_reversed_record(amplitude, limit):
+    dt, samples = pulse("arch", amplitude, 5.0)
+    one, other = (nonlinear(arch(opening=limit), dt, sign * samples) for sign in (1, -1))
+    assert one.unknown == other.unknown == (limit < 1)
+    assert other.warned == pytest.approx(one.warned, abs=1e-9) and np.isfinite(one.warned)
+    assert other.known_to == pytest.approx(one.known_to, abs=1e-9, nan_ok=True)
+    assert other.lower_bound == pytest.approx(one.lower_bound, rel=1e-6)
+    assert other.opening == pytest.approx(one.opening, rel=1e-6) and one.opening > 0
 
 
 @pytest.mark.parametrize("model", ["nonlinear", "linear1", "linear2"])

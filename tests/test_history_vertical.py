@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.wall import Wall
@@ -15,6 +14,7 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
 from tests.reference_history import Equivalent, Nonlinear
+from tests.unchecked import UncheckedArch
 
 MODELS = ("nonlinear", "linear1", "linear2")
 STRUCTURES = {
@@ -23,7 +23,7 @@ STRUCTURES = {
     "frame": AsymmetricFrame(
         column_width=1.0, left_height=6.0, right_height=7.5, spacing=8.0, beam_depth=1.0, density=2400.0, depth=1.0
     ),
-    "arch": Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5),
+    "arch": UncheckedArch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5),
 }
 BLOCK = STRUCTURES["block"]
 G = BLOCK.gravity
@@ -63,22 +63,46 @@ def both(name, model, dt, samples, v_dt, v, release=None, **options):
 
 
 def agree(history, expected, phi_cr=0.2):
-    """Impacts to 1e-9 s, peaks to 1e-9 of themselves and uplift to 1e-12 s are those of the reference."""
-    assert history.overturned == (expected.ended == "fallen")
+    """Impacts to 1e-9 s, peaks to 1e-9 of themselves and uplift to 1e-12 s are those of the reference.
+
+    Of a history that is not known to its end this is so of the impacts until then.
+    """
+    assert history.unknown or history.overturned == (expected.ended == "fallen")
     impacts = np.array(expected.impacts).reshape(-1, 3)
+    if history.unknown:
+        impacts = impacts[impacts[:, 0] <= history.known_to]
+        assert len(history.impacts) == len(impacts) == history.impact_count
     got = history.impacts[: len(impacts)]
     assert got.shape == impacts.shape
     np.testing.assert_array_equal(got[:, 1], impacts[:, 1])
     np.testing.assert_allclose(got[:, 0], impacts[:, 0], rtol=0, atol=1e-9)
     np.testing.assert_allclose(got[:, 2], impacts[:, 2], rtol=0, atol=1e-9 * impacts[:, 2].max(initial=1e-3))
     for s, peak in ((1, history.peak_positive), (-1, history.peak_negative)):
-        assert np.isnan(peak) or peak == pytest.approx(expected.peaks[s], rel=1e-9, abs=1e-12 * phi_cr)
+        if history.unknown:
+            assert peak <= expected.peaks[s] * (1 + 1e-9)
+        else:
+            assert np.isnan(peak) or peak == pytest.approx(expected.peaks[s], rel=1e-9, abs=1e-12 * phi_cr)
     if history.overturned:
         assert history.overturning_time == pytest.approx(expected.crossings[-1], abs=1e-9)
     if expected.uplift is None:
         assert np.isnan(history.uplift_time)
     else:
         assert history.uplift_time == pytest.approx(expected.uplift, abs=1e-12)
+
+
+def is_gone_at(history, model, time):
+    """Whether a history ends where nothing holds the structure down; that of an equivalent block goes on."""
+    assert history.contact_lost == pytest.approx(time, abs=1e-14)
+    if model == "nonlinear":
+        assert history.unknown and history.known_to == pytest.approx(time, abs=1e-12)
+        assert history.check.reason == "weightless" and history.words == "unknown"
+        assert np.isfinite(history.phi[history.time <= time]).all()
+        assert np.isnan(history.phi[history.time > history.known_to]).all()
+        assert (history.impacts[:, 0] <= history.known_to).all() and np.isfinite(history.impacts).all()
+        assert np.isnan(history.overturning_time) and np.isnan(history.end_time) and history.fell_to == 0
+    else:
+        assert not history.unknown
+    return history.unknown
 
 
 def noise(name, model, seed, amplitude, npts):
@@ -114,6 +138,7 @@ def test_uplift_impacts_and_peaks_are_those_of_an_independent_integration(name, 
     v = strength * G * np.clip(np.random.default_rng(seed + 100).normal(size=v_npts), -1.9, 1.9)
     history, expected = both(name, model, dt, samples, stride * dt, v, release)
     assert release is not None or expected.uplift is not None
+    assert not history.unknown
     agree(history, expected)
     level = respond(STRUCTURES[name], GroundMotion("test", dt, samples), models=(model,), release=release)[model]
     assert abs(level.impacts[0, 0] - history.impacts[0, 0]) > 1e-4
@@ -324,7 +349,8 @@ def test_a_structure_beyond_phi_cr_is_thrown_back_by_a_ground_that_drops_faster_
     history, expected = both("block", model, 0.01, samples, 0.01, v, 0.95)
     assert expected.peaks[1] > 1.01 * blocks("block").positive.phi_cr
     agree(history, expected)
-    assert history.contact_lost == pytest.approx(0.19 + 0.01 / 3, abs=1e-14)
+    if is_gone_at(history, model, 0.19 + 0.01 / 3):
+        assert history.peak_ratio > 1.01  # and yet it has not overturned: it is thrown back, or not
 
 
 # --- without weight
@@ -362,11 +388,18 @@ def test_a_structure_without_weight_lifts_the_way_that_opens_first(model, side):
     samples = -side * 0.2 * np.array([1.0, 1.0, 0.0])
     history = respond(BLOCK, shaken(1.0, samples, 1.0, G * np.array([0.0, -3.0, 0.0])), models=(model,))[model]
     assert history.uplift_time == pytest.approx((1 - 0.2 / uplift("block", model)) / 3, abs=1e-14)
-    assert history.fell_to == Direction(side)
+    if is_gone_at(history, model, 1 / 3):
+        peaks = {1: history.peak_positive, -1: history.peak_negative}
+        assert peaks[side] > 0 == peaks[-side]
+    else:
+        assert history.fell_to == Direction(side)
     # From the first sample on both are open: it goes where it is pushed.
     history = respond(BLOCK, shaken(1.0, samples, 1.0, G * np.array([-2.0, -2.0, 0.0])), models=(model,))[model]
-    assert history.uplift_time == 0.0
-    assert history.fell_to == Direction(side)
+    if is_gone_at(history, model, 0.0):
+        assert history.peak_ratio == 0 and not history.impact_count
+    else:
+        assert history.uplift_time == 0.0
+        assert history.fell_to == Direction(side)
 
 
 @every_model
@@ -378,7 +411,8 @@ def test_weight_that_is_gone_for_a_while_neither_fails_nor_hangs(model, release,
     for strength in (0.0, 0.5, 3.0):
         samples = strength * uplift("block", model) * np.sin(np.arange(30))
         history = respond(BLOCK, shaken(0.02, samples, 0.013, v), models=(model,), release=release)[model]
-        assert history.contact_lost == pytest.approx(0.013 * (1 + 1 / -depth), abs=1e-14)
+        if is_gone_at(history, model, 0.013 * (1 + 1 / -depth)):
+            continue
         assert np.isfinite(history.end_time)
         assert history.at_rest or history.overturned
         assert np.isfinite(history.impacts).all()

@@ -13,6 +13,7 @@ from rocking_cli.dynamics.model import build_model, build_models
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
@@ -27,18 +28,28 @@ FRAME = load_structure(EXAMPLES / "frame.yaml")
 AROUND = Around(20)
 
 
-def falls(mechanism, motion, factor, etas):
+def alone(mechanism, motion, factor, slender, etas):
+    """One neighbour by itself: the ground pushes the more slender the less."""
     given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
-    alone = type(mechanism).model_validate({**mechanism.model_dump(), "restitution": given})
-    return respond(alone, motion.scaled(factor), models=("nonlinear",))["nonlinear"].overturned
+    single = type(mechanism).model_validate({**mechanism.model_dump(), "restitution": given})
+    return respond(single, motion.scaled(factor / slender), models=("nonlinear",))["nonlinear"]
 
 
-def share(mechanism, motion, factor, polarities):
-    """The share next to one factor, of the worse polarity, each neighbour followed alone."""
+def share(mechanism, motion, factor, polarities, around=AROUND):
+    """The shares next to one factor that overturn, and that do or are unknown, each of the worse polarity."""
     model = build_model(mechanism, "nonlinear")
-    etas, polarities = AROUND.etas(model), polarities[:1] if model.symmetric else polarities
-    draws = list(zip(factor * AROUND.factors(), etas, strict=True))
-    return max(np.mean([falls(mechanism, motion, sign * each, eta) for each, eta in draws]) for sign in polarities)
+    polarities = polarities[:1] if model.symmetric else polarities
+    ends = [
+        [
+            alone(mechanism, motion, sign * factor * each, *others)
+            for each, *others in zip(*around.drawn(model), strict=True)
+        ]
+        for sign in polarities
+    ]
+    return (
+        max(np.mean([each.overturned for each in of]) for of in ends),
+        max(np.mean([each.overturned or each.unknown for each in of]) for of in ends),
+    )
 
 
 @pytest.mark.parametrize("polarities", [(-1,), (1, -1)])
@@ -47,30 +58,52 @@ def share(mechanism, motion, factor, polarities):
 )
 def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, polarities):
     motion = parse_pulse(pulse).sampled()
-    found = margin(build_model(mechanism, "nonlinear"), motion, polarities, around=AROUND)
+    model = build_model(mechanism, "nonlinear")
+    found = margin(model, motion, polarities, around=AROUND)
+    assert found.around == Around(20, 0.04, 0.05, 0.10) and found.checked and not found.unknown.any()
     partly = np.flatnonzero((found.overturned > 0) & (found.overturned < 1))
     assert found.factors.tolist() == sorted([*FACTORS, 1.0]) and partly.size
     for k in [0, *partly[:2], partly[-1], FACTORS.size]:
-        assert found.overturned[k] == share(mechanism, motion, found.factors[k], polarities)
-    assert found.itself == share(mechanism, motion, 1.0, polarities)
+        assert found.overturned[k] == share(mechanism, motion, found.factors[k], polarities)[0]
+    assert found.itself == share(mechanism, motion, 1.0, polarities)[0]
+
+
+@pytest.mark.parametrize("polarities", [(-1,), (1, -1)])
+def test_the_shares_of_unknown_outcome_are_those_of_neighbours_followed_alone(polarities):
+    """Of a body that slides: more overturn for certain under one polarity, and more may do so under the other."""
+    body = parse_structure(f"{CORNERS}friction: 0.4\n".replace("0.69", "0.6"), "sliding", "sliding")
+    motion, around = read_record(EXAMPLES / "accel.csv"), Around(10, slenderness=0.0)
+    found = margin(build_model(body, "nonlinear"), motion, polarities, around=around, factors=np.array([0.5, 2.0, 3.0]))
+    assert found.factors.tolist() == [0.5, 1.0, 2.0, 3.0]
+    expected = [share(body, motion, factor, polarities, around) for factor in found.factors]
+    np.testing.assert_allclose(list(zip(found.overturned, found.at_most, strict=True)), expected, atol=1e-12)
+    assert 0 < found.overturned[2] < 1 and found.unknown[-1] > 0
+    assert (found.overturned[-1] > 0) == (1 in polarities)
+
+
+def test_of_joints_that_the_mechanism_does_not_name_nothing_is_said_to_be_unknown():
+    curve = build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear")
+    found = margin(curve, parse_pulse("sine:0.5g:1s").sampled(), around=Around(2), factors=np.array([2.0]))
+    assert not found.checked and not found.unknown.any()
 
 
 def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypatch):
     followed, done = [], []
     follow = margins.follow
-    monkeypatch.setattr(margins, "follow", lambda *a, **k: followed.append(len(a[2])) or follow(*a, **k))
+    monkeypatch.setattr(margins, "follow", lambda *a, **k: followed.append(len(a[2].amplitude)) or follow(*a, **k))
     motion = parse_pulse("sine:0.8g:0.5s").sampled()
-    every = 61 * AROUND.count
+    around = Around(20, 0.02, 0.02, 0.0)
+    every = 61 * around.count
     # A little heavier at one side, so that a reversed motion is another one.
     leaning = parse_structure(CORNERS, "leaning", "leaning")
     model = build_model(leaning, "nonlinear")
-    one = margin(model, motion, (1,), around=AROUND)
+    one = margin(model, motion, (1,), around=around)
     certain = int((one.overturned == 1).sum())
     for each, again in ((BLOCK, 0), (leaning, 61 - certain)):
         followed.clear()
         done.clear()
-        margin(build_model(each, "nonlinear"), motion, (1, -1), around=AROUND, progress=done.append)
-        assert followed == [every, again * AROUND.count]
+        margin(build_model(each, "nonlinear"), motion, (1, -1), around=around, progress=done.append)
+        assert followed == [every, again * around.count]
         assert sum(done) == 2 * every
     assert certain > 10
 
@@ -87,8 +120,9 @@ def test_sixty_factors_from_a_fifth_to_five():
     assert FACTORS.size == 60 and FACTORS[0] == pytest.approx(0.2) and FACTORS[-1] == pytest.approx(5)
 
 
-def made(*shares) -> Margin:
-    return Margin(AROUND, 0.5, np.arange(1.0, len(shares) + 1), np.array(shares, dtype=float))
+def made(*shares, unknown=None) -> Margin:
+    doubtful = np.zeros(len(shares)) if unknown is None else np.array(unknown, dtype=float)
+    return Margin(AROUND, 0.5, np.arange(1.0, len(shares) + 1), np.array(shares, dtype=float), doubtful)
 
 
 class TestLevels:
@@ -102,6 +136,15 @@ class TestLevels:
         assert made(0, 0).first(0.1) is None and made(0, 0).last_below(0.1) == 2.0
         assert made(1, 1).first(0.9) == 1.0 and made(1, 1).last_below(0.9) is None
         assert made(1, 1).islands(0.9) == [(1.0, 2.0)] and made(0, 0).islands(0.1) == []
+
+    def test_where_unknown_outcomes_count_as_overturning(self):
+        found = made(0.0, 0.2, 0.6, 0.3, 1.0, unknown=(0.1, 0.4, 0.0, 0.3, 0.0))
+        np.testing.assert_allclose(found.at_most, [0.1, 0.6, 0.6, 0.6, 1.0])
+        assert [found.possible(level) for level in LEVELS] == [1.0, 2.0, 5.0]
+        assert [found.first(level) for level in LEVELS] == [2.0, 3.0, 5.0]
+        assert [found.last_possible_below(level) for level in LEVELS] == [None, 1.0, 4.0]
+        assert [found.last_below(level) for level in LEVELS] == [1.0, 4.0, 4.0]
+        assert (found.itself, found.itself_at_most) == (0.0, 0.1)
 
 
 class TestWords:
@@ -124,6 +167,23 @@ class TestWords:
         assert in_words(made(0, 0.6, 0.3, 1.0), 0.5).endswith("always worse: at a factor of 3 (1.5 g) only 30 % do.")
         assert in_words(made(0, 0.6, 1.0, 0.7, 0.8), 0.5).endswith("always worse: at a factor of 4 (2 g) only 70 % do.")
         assert "always worse" not in in_words(made(0, 0.2, 0.6, 1.0), 0.5)
+
+    def test_unknown_outcomes_are_told_from_the_first_factor_on(self):
+        doubt = (
+            "From a factor of 2 (PGA 1 g) on, the outcome of some neighbours is unknown, as joints open or slide that "
+            "the model keeps closed: there, the structure may overturn"
+        )
+        assert in_words(made(0, 0, 0, unknown=(0, 0.3, 0.6)), 0.5) == (
+            "At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g) do 10 % or more of the neighbouring motions "
+            f"certainly overturn the structure. {doubt}. Counted as overturning, they make the shares reach 10 % from "
+            "2 (1 g), 50 % from 3 (1.5 g)."
+        )
+        assert in_words(made(0, 0, 0, unknown=(0, 0.05, 0.05)), 0.5).endswith(f"the structure. {doubt}.")
+        assert in_words(made(0, 0.2, 0.0, 1.0, unknown=(0, 0.4, 0.5, 0)), 0.5).endswith(
+            "A stronger motion is not always worse: at a factor of 3 (1.5 g) none does for certain. "
+            f"{doubt}. Counted as overturning, they make the shares reach 10 % from 2 (1 g), 50 % from 2 (1 g), "
+            "90 % from 4 (2 g)."
+        )
 
     def test_the_numbers_are_those_of_the_shares(self):
         motion = parse_pulse("ricker:0.7g:0.9s").sampled()
@@ -162,16 +222,48 @@ class TestCommand:
 
     def test_json_is_the_study(self):
         data = run_json("margin", self.BLOCK, "--record", self.ACCEL, "--pulse", "sine:0.5g:0.8s", "--neighbours", 20)
-        assert data["neighbours"] == {"count": 20, "amplitude": 0.02, "restitution": 0.02}
+        assert data["neighbours"] == {"count": 20, "amplitude": 0.04, "restitution": 0.05, "slenderness": 0.10}
         assert len(data["motions"]) == 2 and data["motions"][0]["name"] == "accel.csv"
         model = build_model(load_structure(self.BLOCK), "nonlinear")
         found = margin(model, parse_pulse("sine:0.5g:0.8s").sampled(), around=AROUND)
         theirs = data["motions"][1]
-        assert theirs["shares"] == found.overturned.tolist() and theirs["factors"] == sorted([*FACTORS.tolist(), 1.0])
+        assert theirs["shares"] == found.overturned.tolist() and theirs["unknown"] == [0.0] * 61
+        assert theirs["factors"] == sorted([*FACTORS.tolist(), 1.0])
         assert theirs["overturned"] == found.itself and theirs["uplift"] == found.uplift
         assert set(theirs["levels"]) == {"10", "50", "90"}
         assert theirs["levels"]["50"]["first"] == found.first(0.5)
         assert theirs["verdict"] == in_words(found, 0.5)
+
+    def test_options_go_before_the_file(self, tmp_path):
+        file = tmp_path / "b.yaml"
+        file.write_text(
+            self.BLOCK.read_text(encoding="utf-8") + "uncertainty: {slenderness: 0.03, restitution: 0.01}\n"
+        )
+        words = ("margin", file, "--pulse", "sine:0.5g:0.8s", "--neighbours", 5, "--polarity", 1)
+        own = {"count": 5, "amplitude": 0.04, "slenderness": 0.03, "restitution": 0.01}
+        assert run_json(*words)["neighbours"] == own
+        given = run_json(*words, "--slenderness-deviation", "7%", "--amplitude-deviation", 0.02)
+        assert given["neighbours"] == own | {"slenderness": 0.07, "amplitude": 0.02}
+        assert run_json(*words, "--restitution-deviation", 0.04)["neighbours"] == own | {"restitution": 0.04}
+
+    def test_unknown_outcomes_are_a_share_of_their_own(self):
+        words = ("margin", EXAMPLES / "arch.yaml", "--record", self.ACCEL, "--neighbours", 5, "--polarity", 1)
+        (ours,) = run_json(*words)["motions"]
+        model = build_model(load_structure(EXAMPLES / "arch.yaml"), "nonlinear")
+        found = margin(model, read_record(self.ACCEL), (1,), around=Around(5))
+        assert ours["unknown"] == found.unknown.tolist() and max(ours["unknown"]) > 0.5
+        assert ours["levels"]["50"]["first_or_unknown"] == found.possible(0.5) is not None
+        assert ours["levels"]["10"]["last_below_or_unknown"] == found.last_possible_below(0.1) is not None
+        text = run(*words).stdout
+        assert "or unknown" in text and "of some neighbours is unknown" in " ".join(text.split())
+        (known,) = run_json(*words, "--opening", "100%")["motions"]
+        wider, less = np.array(known["unknown"]), np.array(ours["unknown"])
+        assert (wider <= less).all() and wider.sum() < less.sum() - 1
+
+    def test_of_joints_that_are_not_checked_it_says_so(self):
+        words = ("margin", EXAMPLES / "curve.yaml", "--pulse", "sine:0.5g:0.8s", "--neighbours", 2)
+        assert run_json(*words)["motions"][0]["unknown"] is None
+        assert "Caution: the joints of this mechanism are not checked" in run(*words).stdout
 
     def test_a_scaled_motion_is_the_motion(self):
         one, two = (
@@ -195,8 +287,12 @@ class TestCommand:
         [
             ((), "--record PLACE or --pulse PULSE"),
             (("--record", "x", "--neighbours", 0), "at least 1"),
-            (("--record", "x", "--within-amplitude", 1), "from 0 up to, but not including, 1"),
-            (("--record", "x", "--within-restitution", -1), "from 0"),
+            (("--record", "x", "--amplitude-deviation", 1), "from 0 up to, but not including, 1"),
+            (("--record", "x", "--slenderness-deviation", "100%"), "from 0 up to, but not including, 1"),
+            (("--record", "x", "--restitution-deviation", -1), "from 0"),
+            (("--record", "x", "--opening", 1.1), "from 0 to 1"),
+            (("--record", "x", "--within-amplitude", 0.02), "give --amplitude-deviation"),
+            (("--record", "x", "--within-restitution", 0.02), "give --restitution-deviation"),
             (("--record", "no.AT2"), "no such file"),
         ],
     )
@@ -227,8 +323,19 @@ def test_a_missing_record_of_several_leaves_the_others():
 
 @pytest.mark.parametrize(("uplift", "mark"), [(0.05, "<"), (0.5, "|"), (9.0, ">")])
 def test_where_it_uplifts_is_marked_on_the_axis_or_pointed_to(uplift, mark):
-    (axes,) = draw_margins({"a": Margin(AROUND, uplift, FACTORS, np.zeros(FACTORS.size))}, "title").axes
+    (axes,) = draw_margins({"a": Margin(AROUND, uplift, FACTORS, *np.zeros((2, FACTORS.size)))}, "title").axes
     (drawn,) = (line for line in axes.get_lines() if line.get_marker() in ("<", "|", ">"))
     assert drawn.get_marker() == mark
     assert axes.get_xlim()[0] <= drawn.get_xdata()[0] <= axes.get_xlim()[1]
     assert ("arrowhead" in axes.get_xlabel()) == (mark != "|")
+
+
+def test_both_curves_are_drawn_where_some_outcomes_are_unknown():
+    shares, unknown = np.linspace(0, 0.4, FACTORS.size), np.linspace(0, 0.6, FACTORS.size)
+    (axes,) = draw_margins({"a": Margin(AROUND, 0.5, FACTORS, shares, unknown)}, "title").axes
+    curves = [line.get_ydata() for line in axes.get_lines() if len(line.get_xdata()) == FACTORS.size]
+    np.testing.assert_allclose(curves, [shares, shares + unknown])
+    (band, *_) = axes.collections
+    assert band.get_hatch()
+    corners = band.get_paths()[0].vertices
+    assert corners[:, 1].max() == pytest.approx(1.0) and corners[:, 1].min() == pytest.approx(0.0)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
+from math import exp, log
 
 import numpy as np
 import pytest
+from scipy.special import ndtr, ndtri
 
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
@@ -18,74 +21,147 @@ from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure import load_structure, parse_structure
-from rocking_cli.studies.neighbours import Around, Neighbours, can_lift, governing, least_uplift, neighbours
+from rocking_cli.studies.neighbours import (
+    Around,
+    Neighbours,
+    Severity,
+    can_lift,
+    governing,
+    least_uplift,
+    neighbours,
+    severity,
+)
 from tests.conftest import EXAMPLES
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
 FRAME = load_structure(EXAMPLES / "frame.yaml")
+PORTAL = load_structure(EXAMPLES / "masonry" / "portal.yaml")
 ACCEL = read_record(EXAMPLES / "accel.csv")
 
 
-def fate(mechanism, motion, factor, etas):
-    """One neighbour by itself: its peak ratio, infinite if it overturns."""
+def alone(mechanism, motion, amplitude, slender, etas):
+    """The history of one neighbour by itself: the ground pushes the more slender the less, and lifts it as much."""
     given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
-    alone = type(mechanism).model_validate({**mechanism.model_dump(), "restitution": given})
-    history = respond(alone, motion.scaled(factor), models=("nonlinear",))["nonlinear"]
-    return np.inf if history.overturned else history.peak_ratio
+    single = type(mechanism).model_validate({**mechanism.model_dump(by_alias=True), "restitution": given})
+    level = replace(motion, vertical=None).scaled(amplitude / slender)
+    up = motion.vertical and motion.vertical.scaled(amplitude)
+    return respond(single, replace(level, vertical=up), models=("nonlinear",))["nonlinear"]
+
+
+def fate(history):
+    """Its peak ratio, infinite if it overturns or its outcome is unknown."""
+    return np.inf if history.overturned or history.unknown else history.peak_ratio
+
+
+def one_in_each(uniform):
+    """Whether there is one number in each of as many equal parts, as in a Latin hypercube."""
+    return (np.sort(np.floor(uniform * uniform.size).astype(int)) == np.arange(uniform.size)).all()
 
 
 class TestDraws:
-    def test_factors_and_restitutions_are_uniform_and_not_correlated(self):
-        around = Around(2000, 0.03, 0.01)
-        model = build_model(FRAME, "nonlinear")
-        factors, etas = around.factors(), around.etas(model)
-        # A Latin hypercube: one number in each of 2000 equal parts.
-        assert (np.sort(np.floor((factors - 0.97) / 0.06 * 2000).astype(int)) == np.arange(2000)).all()
-        added = etas - np.array(model.eta)
-        assert (np.sort(np.floor((added[:, 0] + 0.01) / 0.02 * 2000).astype(int)) == np.arange(2000)).all()
-        np.testing.assert_allclose(added[:, 0], added[:, 1], atol=1e-15)
-        assert abs(np.corrcoef(factors, added[:, 0])[0, 1]) < 0.1
+    def test_they_are_lognormal_and_truncated_normal_and_not_correlated(self):
+        drawn = Around(2000, 0.03, 0.01, 0.08).drawn(build_model(FRAME, "nonlinear"))
+        uniform = [ndtr(np.log(drawn.amplitude) / 0.03), ndtr(np.log(drawn.slender) / 0.08)]
+        inertia = {side: FRAME.kinetic_inertia(np.zeros(1), side)[0] for side in Direction}
+        for column, side in enumerate(Direction):
+            eta, most = FRAME.eta(side), (inertia[side] / inertia[side.opposite]) ** 0.5
+            uniform.append(ndtr((drawn.eta[:, column] - eta) / 0.01) / ndtr((most - eta) / 0.01))
+        assert all(one_in_each(each) for each in uniform)
+        np.testing.assert_allclose(uniform[2], uniform[3], atol=1e-12)  # of both directions the same
+        assert (abs(np.corrcoef(uniform[:3])[np.triu_indices(3, 1)]) < 0.1).all()
 
     def test_they_are_the_same_every_time(self):
-        assert Around().factors().tolist() == Around().factors().tolist()
+        model = build_model(FRAME, "nonlinear")
+        for one, other in zip(Around().drawn(model), Around().drawn(model), strict=True):
+            assert one.tolist() == other.tolist() and len(one) == 200
 
-    def test_restitution_stays_within_what_no_impact_exceeds(self):
+    def test_restitution_is_drawn_again_above_what_no_impact_exceeds(self):
         """That bound is 1 for a block, and the root of the ratio of the inertias at rest for a frame."""
         elastic = BLOCK.model_copy(update={"restitution": 0.995})
-        etas = Around().etas(build_model(elastic, "nonlinear"))
-        assert etas.max() == 1.0 and etas.min() == pytest.approx(0.975, abs=2e-4)
+        etas = Around().drawn(build_model(elastic, "nonlinear")).eta
+        assert 0.9995 < etas.max() < 1.0
+        # Half a normal distribution, and a little more: none of those above 1 is put at 1.
+        assert np.median(etas) == pytest.approx(0.995 + 0.03 * ndtri(0.5 * ndtr(0.005 / 0.03)), abs=2e-4)
         inertia = {side: FRAME.kinetic_inertia(np.zeros(1), side)[0] for side in Direction}
-        etas = Around(restitution=0.5).etas(build_model(FRAME, "nonlinear"))
+        etas = Around(restitution=0.5).drawn(build_model(FRAME, "nonlinear")).eta
         for column, side in enumerate(Direction):
-            assert etas[:, column].max() == pytest.approx((inertia[side] / inertia[side.opposite]) ** 0.5, rel=1e-12)
+            most = (inertia[side] / inertia[side.opposite]) ** 0.5
+            assert most - 0.01 < etas[:, column].max() < most
+            share = ndtr((most - FRAME.eta(side)) / 0.5)
+            assert np.median(etas[:, column]) == pytest.approx(FRAME.eta(side) + 0.5 * ndtri(share / 2), abs=5e-3)
 
     def test_restitution_stays_positive(self):
         dead = BLOCK.model_copy(update={"restitution": 0.01})
-        assert Around().etas(build_model(dead, "nonlinear")).min() == 1e-3
+        etas = Around().drawn(build_model(dead, "nonlinear")).eta[:, 0]
+        assert etas.min() == 1e-3
+        assert (etas == 1e-3).mean() == pytest.approx(ndtr((1e-3 - 0.01) / 0.03), abs=0.01)
+
+    def test_deviations_of_nothing_are_the_structure_itself(self):
+        model = build_model(FRAME, "nonlinear")
+        drawn = Around(7, 0.0, 0.0, 0.0).drawn(model)
+        assert drawn.amplitude.tolist() == drawn.slender.tolist() == [1.0] * 7
+        assert drawn.eta.tolist() == [list(model.eta)] * 7
 
     @pytest.mark.parametrize(
-        "wrong", [{"count": -1}, {"count": 10**7}, {"amplitude": -0.1}, {"amplitude": 1.0}, {"restitution": np.nan}]
+        "wrong",
+        [
+            {"count": -1},
+            {"count": 10**7},
+            {"amplitude": -0.1},
+            {"amplitude": 1.0},
+            {"restitution": np.nan},
+            {"slenderness": -0.1},
+            {"slenderness": 1.0},
+        ],
     )
     def test_wrong_numbers_are_refused(self, wrong):
         with pytest.raises(InputError, match="must be from 0"):
             Around(**wrong)
 
 
+LIFTED = replace(ACCEL, vertical=GroundMotion("up", 0.02, 4.0 * np.sin(np.arange(500) * 0.7)))
+
+
+@pytest.mark.parametrize("motion", [ACCEL, LIFTED], ids=["level", "vertical"])
 @pytest.mark.parametrize("mechanism", [BLOCK, FRAME], ids=["block", "frame"])
 @pytest.mark.parametrize("scale", [0.6, 0.9])
-def test_neighbours_are_what_each_would_be_alone(mechanism, scale):
-    around = Around(30, 0.05, 0.03)
-    model, motion = build_model(mechanism, "nonlinear"), ACCEL.scaled(scale)
-    fates = np.array(
-        [fate(mechanism, motion, *each) for each in zip(around.factors(), around.etas(model), strict=True)]
-    )
+def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
+    around = Around(30, 0.05, 0.03, 0.08)
+    mechanism = mechanism.model_copy(update={"opening": 1.0})  # joints feel the ground as it is: see below
+    model, motion = build_model(mechanism, "nonlinear"), motion.scaled(scale)
+    fates = np.array([fate(alone(mechanism, motion, *each)) for each in zip(*around.drawn(model), strict=True)])
     found = neighbours(model, motion, around)
     assert found.overturned == np.isinf(fates).mean()
+    assert found.unknown == 0
     ranks = np.sort(fates)[[int(np.ceil(share * 30)) - 1 for share in (0.16, 0.5, 0.84)]]
     np.testing.assert_allclose(found.peak_ratio, ranks, rtol=1e-6)
     itself = respond(mechanism, motion, models=("nonlinear",))["nonlinear"].overturned
     assert found.as_itself == (np.isinf(fates) == itself).mean()
     assert found.sensitive == (found.as_itself < 0.9)
+
+
+@pytest.mark.parametrize(
+    ("file", "opening", "scale", "some", "fell"),
+    [("arch", 0.005, 1.0, 0.3, 0.0), ("arch", 0.005, 1.1, 0.6, 0.0), ("wall", 0.0, 2.5, 0.3, 0.3)],
+)
+def test_neighbours_of_unknown_outcome_are_what_each_would_be_alone(file, opening, scale, some, fell):
+    structure = load_structure(EXAMPLES / f"{file}.yaml").model_copy(update={"opening": opening})
+    around, motion = Around(20, 0.1, 0.03, 0.0), ACCEL.scaled(scale)
+    model = build_model(structure, "nonlinear")
+    histories = [alone(structure, motion, *each) for each in zip(*around.drawn(model), strict=True)]
+    found = neighbours(model, motion, around)
+    assert found.unknown == np.mean([each.unknown for each in histories]) and some <= found.unknown < 1
+    assert found.overturned == np.mean([each.overturned for each in histories]) >= fell
+    assert found.at_most == pytest.approx(np.mean([np.isinf(fate(each)) for each in histories]), abs=1e-12)
+    ranks = np.sort([fate(each) for each in histories])[[int(np.ceil(share * 20)) - 1 for share in (0.16, 0.5, 0.84)]]
+    np.testing.assert_allclose(found.peak_ratio, ranks, rtol=1e-6)
+    itself = respond(structure, motion, models=("nonlinear",))["nonlinear"]
+    assert found.as_itself == np.mean([each.words == itself.words for each in histories])
+
+
+def test_nothing_is_known_of_joints_that_the_mechanism_does_not_name():
+    found = neighbours(build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear"), ACCEL, Around(5))
+    assert found.unknown is None and found.at_most == found.overturned
 
 
 @pytest.mark.parametrize(
@@ -102,15 +178,17 @@ def test_two_hundred_tell_the_share_of_thousands(file, pulse):
     model, motion = build_model(load_structure(EXAMPLES / f"{file}.yaml"), "nonlinear"), parse_pulse(pulse).sampled()
     few, many = (neighbours(model, motion, Around(count)) for count in (200, 2_500))
     assert few.overturned == pytest.approx(many.overturned, abs=3.5 * 0.035)
+    assert few.unknown == pytest.approx(many.unknown, abs=3.5 * 0.035)
 
 
-def test_the_share_of_a_linear_block_is_that_of_its_islands():
+@pytest.mark.parametrize("varied", ["amplitude", "slenderness"])
+def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
     """A linear block under a sine is solved exactly: the factors that overturn it are known, to the last island.
 
-    Where boundaries cross the two per cent about an amplitude, the share of neighbours is the length of what lies
-    between them.
+    Near boundaries, the share of neighbours is the lognormal probability of what lies between them; that of a more
+    slender block is the same, as its motion is that under a weaker ground motion.
     """
-    period, half = 0.6, 0.02
+    period, deviation = 0.6, 0.01
     block = equivalent_block(BLOCK)
     model = build_model(BLOCK, "linear2")
     fine = np.linspace(2.0, 9.0, 70_001)
@@ -120,12 +198,14 @@ def test_the_share_of_a_linear_block_is_that_of_its_islands():
     checked = 0
     for edge in edges:
         for amplitude in edge * np.array([0.985, 0.995, 1.01]):
-            within = (fine > amplitude * (1 - half)) & (fine < amplitude * (1 + half))
-            exact = falls[within].mean()
+            below = ndtr(np.log(fine / amplitude) / deviation)
+            assert below[0] < 1e-6 and below[-1] > 1 - 1e-6
+            exact = np.diff(below)[falls[1:]].sum()
             motion = GroundMotion(
                 "sine", period / 20_000, Sine(amplitude, period).acceleration(np.arange(20_001) * period / 20_000)
             )
-            found = neighbours(model, motion, Around(1000, half, 0.0))
+            deviations = {"amplitude": 0.0, "restitution": 0.0, "slenderness": 0.0, varied: deviation}
+            found = neighbours(model, motion, Around(1000, **deviations))
             # Each part of the range has one sample: the share is off by a part at each boundary.
             assert found.overturned == pytest.approx(exact, abs=3e-3)
             checked += 0.05 < exact < 0.95
@@ -150,34 +230,92 @@ class TestWithoutShaking:
         assert least_uplift(build_model(BLOCK, "nonlinear"), push) == pytest.approx(0.25 * BLOCK.gravity / 5.0)
         assert least_uplift(build_model(BLOCK, "nonlinear"), push.scaled(0)) is None
 
-    def test_a_release_alone_has_neighbours_too(self):
+    @pytest.mark.parametrize("off", [-1e-9, 1e-9])
+    def test_the_neighbour_that_lifts_first_decides(self, off):
+        model = build_model(BLOCK, "nonlinear")
+        drawn = Around().drawn(model)
+        first = ACCEL.scaled(least_uplift(model, ACCEL) / (drawn.amplitude / drawn.slender).max())
+        assert not can_lift(model, first, 1.2)
+        assert neighbours(model, first.scaled(1 + off)).lifted == (off > 0)
+
+    def test_a_release_as_a_share_of_the_critical_rotation_is_that_of_every_neighbour(self):
         found = neighbours(build_model(BLOCK, "nonlinear"), None, release=0.5)
-        expected = 0.5 * np.quantile(Around().factors(), (0.16, 0.5, 0.84), method="inverted_cdf")
-        assert found.overturned == 0 and found.peak_ratio == pytest.approx(tuple(expected), rel=1e-9)
+        assert found.overturned == 0 and found.peak_ratio == pytest.approx((0.5,) * 3, rel=1e-9)
+
+    def test_a_release_by_an_angle_is_more_to_the_more_slender(self):
+        found = neighbours(build_model(BLOCK, "nonlinear"), None, release=0.5, release_is_angle=True)
+        expected = [0.5 * exp(0.1 * ndtri(share)) for share in (0.16, 0.5, 0.84)]
+        assert found.overturned == 0 and found.peak_ratio == pytest.approx(tuple(expected), rel=2e-3)
 
     @pytest.mark.parametrize("sign", [1, -1])
     def test_a_release_next_to_the_critical_rotation_falls_as_often_as_it_is_beyond_it(self, sign):
-        found = neighbours(build_model(FRAME, "nonlinear"), None, release=0.99 * sign)
-        assert found.overturned == (0.99 * Around().factors() > 1).mean() == pytest.approx(0.245, abs=0.01)
+        model = build_model(FRAME, "nonlinear")
+        dull = Around(restitution=0.0)
+        found = neighbours(model, None, dull, release=0.99 * sign, release_is_angle=True)
+        assert found.overturned == (dull.drawn(model).slender < 0.99).mean()
+        assert found.overturned == pytest.approx(ndtr(log(0.99) / 0.10), abs=0.01)
+        assert neighbours(model, None, dull, release=0.99 * sign).overturned == 0
 
 
 @pytest.mark.parametrize(
     ("off", "said"), [(1e-9, "No motion governs: one, other have the same effect."), (1e-4, "other governs: 40 %")]
 )
 def test_what_differs_by_rounding_does_not_govern(off, said):
-    assert governing({"one": (0.4, np.inf, 0.5), "other": (0.4, np.inf, 0.5 * (1 + off))}).startswith(said)
+    one, other = Severity(0.4, np.inf, 0.5, 0.4), Severity(0.4, np.inf, 0.5 * (1 + off), 0.4)
+    assert governing({"one": one, "other": other}).startswith(said)
 
 
-NEAR = "(with amplitudes up to 2 % higher or lower and a coefficient of restitution up to 0.02 higher or lower)"
+@pytest.mark.parametrize(
+    ("worst", "said"),
+    [
+        (
+            Severity(0.6, np.inf, np.inf, 0.3),
+            "other governs: 60 % of its neighbours overturn or have an unknown outcome.",
+        ),
+        (Severity(0.6, np.inf, np.inf, 0.0), "other governs: 60 % of its neighbours have an unknown outcome."),
+        (Severity(0.6, np.inf, np.inf, 0.6), "other governs: 60 % of its neighbours overturn."),
+        (Severity(0.0, 0.0, np.inf, 0.0), "other governs: its outcome is unknown."),
+        (Severity(0.0, 0.0, np.inf, 1.0), "other governs: it overturns."),
+    ],
+)
+def test_an_unknown_outcome_is_as_bad_as_overturning(worst, said):
+    better = Severity(0.5, np.inf, np.inf, 0.5) if worst.share else Severity(0.0, 0.0, 0.9, 0.0)
+    assert governing({"one": better, "other": worst}) == said
+
+
+def test_of_two_unknown_outcomes_none_is_said_to_be_the_same():
+    doubt = Severity(0.6, np.inf, np.inf, 0.3)
+    assert governing({"one": doubt, "other": doubt}) == (
+        "Which motion governs is not known: the outcomes under one, other are unknown."
+    )
+
+
+def test_a_history_of_unknown_outcome_is_as_severe_as_one_that_overturns():
+    unknown, rocks = (respond(PORTAL, ACCEL.scaled(scale), models=("nonlinear",))["nonlinear"] for scale in (2.0, 1.0))
+    assert severity(unknown) == (0.0, 0.0, np.inf, 0.0)
+    assert severity(rocks) == (0.0, 0.0, rocks.peak_ratio, 0.0) and rocks.peak_ratio > 0
+    near = Neighbours(Around(), "nonlinear", 0.2, (0.1, 0.3, np.inf), 1.0, unknown=0.1)
+    assert severity(unknown, near) == (pytest.approx(0.3), 0.3, np.inf, 0.2)
+
+
+NEAR = "(standard deviations 4 % of amplitude, 10 % of slenderness, 0.05 of restitution),"
 
 
 class TestWords:
     def test_where_nothing_can_lift_it(self):
         found = neighbours(build_model(BLOCK, "nonlinear"), parse_pulse("sine:0.1g:1s").sampled())
-        assert str(found) == f"None of 200 neighbouring motions {NEAR} uplifts the structure."
+        assert str(found) == f"None of 200 neighbouring motions {NEAR[:-1]} uplifts the structure."
 
-    def sentence(self, overturned, peaks):
-        return str(Neighbours(Around(), "nonlinear", overturned, peaks, 1.0))
+    def sentence(self, overturned, peaks, unknown=0.0):
+        around = Around(restitution=0.05, slenderness=0.10)
+        return str(Neighbours(around, "nonlinear", overturned, peaks, 1.0, unknown=unknown))
+
+    def test_deviations_that_are_not_given_are_those_of_the_structure(self):
+        own = "and those of the structure for its"
+        assert Around().words == f"standard deviations 4 % of amplitude, {own} slenderness and restitution"
+        assert Around(20, 0.01, 0.02).words == (
+            f"standard deviations 1 % of amplitude, 0.02 of restitution, {own} slenderness"
+        )
 
     def test_a_share(self):
         said = self.sentence(0.43, (0.31, 0.52, np.inf))
@@ -216,16 +354,33 @@ class TestWords:
             "none overturns the structure; at most one in six uplifts it."
         )
 
+    @pytest.mark.parametrize(
+        ("overturned", "unknown", "said"),
+        [
+            (0.4, 0.1, "40 % overturn the structure, and the outcome under 10 % is unknown"),
+            (0.0, 0.25, "none is known to overturn the structure, and the outcome under 25 % is unknown"),
+            (0.0, 1.0, "none is known to overturn the structure, and the outcome under all is unknown"),
+            (0.4, None, "40 % overturn the structure"),
+        ],
+    )
+    def test_unknown_outcomes_are_a_share_of_their_own(self, overturned, unknown, said):
+        peaks = (0.1, np.inf, np.inf)
+        assert self.sentence(overturned, peaks, unknown) == (
+            f"Of 200 neighbouring motions {NEAR} {said}; 16 % keep its peak rotation within 0.1 phi_cr."
+        )
+
     @pytest.mark.parametrize("scale", [0.3, 0.7, 0.8, 0.9, 1.1])
     def test_the_numbers_are_those_of_the_neighbours(self, scale):
         model, motion, around = build_model(BLOCK, "nonlinear"), ACCEL.scaled(scale), Around(400, 0.05)
-        runs = Runs.of(0, 0, scale=around.factors(), eta=around.etas(model))
+        amplitude, slender, eta = around.drawn(model)
+        runs = Runs.of(0, 0, scale=amplitude, slender=slender, eta=eta)
         fallen = respond_many([model], [motion], runs).overturned.mean()
         said = str(neighbours(model, motion, around))
-        if not can_lift(model, motion, 1.05):
-            assert said == f"None of 400 neighbouring motions ({around.words}) uplifts the structure." and fallen == 0
+        words = around.of(model).words
+        if not can_lift(model, motion, (amplitude / slender).max()):
+            assert said == f"None of 400 neighbouring motions ({words}) uplifts the structure." and fallen == 0
             return
-        assert f"Of 400 neighbouring motions ({around.words})" in said
-        share = re.search(r"\) ([\d.]+) % overturn", said)
-        told = float(share[1]) / 100 if share else {"all": 1.0, "none": 0.0}[re.search(r"\) (all|none)", said)[1]]
-        assert told == pytest.approx(fallen, abs=5e-4)
+        assert f"Of 400 neighbouring motions ({words})," in said
+        share = re.search(r"\), ([\d.]+) % overturn", said)
+        told = float(share[1]) / 100 if share else {"all": 1.0, "none": 0.0}[re.search(r"\), (all|none)", said)[1]]
+        assert told == pytest.approx(fallen, abs=5e-3)

@@ -240,7 +240,11 @@ def test_curves_as_a_table(store, tmp_path, ending):
     else:
         rows = parquet.read_table(out).to_pylist()
     names = ["structure", "limit_state", "measure", "unit", "kind", "median", "dispersion", "scale"]
-    assert list(rows[0]) == [*names, "x", "probability", "low", "high"]
+    other = [f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high")]
+    assert list(rows[0]) == [*names, "x", "probability", "low", "high", "unknown", *other]
+    for each in rows:  # all outcomes are known, so that there is one curve
+        assert float(each["unknown"]) == 0
+        assert all(each[name] == each[name.removeprefix("lower_")] for name in other)
     assert {(each["limit_state"], each["kind"]) for each in rows} == {
         ("uplift", "step"), ("0.5", "lognormal"), ("overturning", "lognormal"),
     }  # fmt: skip

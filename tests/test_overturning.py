@@ -35,6 +35,7 @@ from tests.pulses import exact_pulse
 
 SINE = parse_shape("sine")
 BLOCK = Block(width=0.7, height=2.8)
+PORTAL = load_structure(EXAMPLES / "masonry" / "portal.yaml")
 FRAME = str(EXAMPLES / "frame.yaml")
 FILES = [str(EXAMPLES / f"{name}.yaml") for name in ("block", "frame", "wall")]
 
@@ -70,7 +71,8 @@ class TestMap:
 
     def test_every_region_is_there_and_the_shares_are_those_of_the_points(self, plane):
         assert sum(plane.shares.values()) == pytest.approx(1.0, abs=1e-12)
-        assert all(share > 0 for share in plane.shares.values())
+        assert {region for region, share in plane.shares.items() if share > 0} == set(Region) - {Region.UNKNOWN}
+        assert plane.shares[Region.UNKNOWN] == 0  # an equivalent block has no joints
         assert plane.shares[Region.NO_UPLIFT] == pytest.approx(np.mean(plane.a <= 1))
         assert plane.shares[Region.WITHOUT_IMPACT] == np.mean(impacts_before(plane.outcome) == 0)
 
@@ -86,19 +88,30 @@ class TestMap:
             assert safe == above[-1] if above.size else np.isnan(safe)
         assert np.isfinite(plane.safe_again).any()
 
-    def test_a_nonlinear_point_is_the_history_of_respond(self):
-        structure = pulsed_model(Prepared(BLOCK), "nonlinear", SINE)
-        found = overturning_map(structure, SINE, np.array([3.0, 6.0]), np.array([0.8, 2.0, 4.0, 9.0]))
+    @pytest.mark.parametrize(
+        ("mechanism", "omega", "a", "missing"),
+        [
+            (BLOCK, [3.0, 6.0], [0.8, 2.0, 4.0, 9.0], {Region.UNKNOWN}),
+            (PORTAL, [0.4, 3.0], [0.8, 1.1, 1.5, 9.0], set()),
+        ],
+    )
+    def test_a_nonlinear_point_is_the_history_of_respond(self, mechanism, omega, a, missing):
+        structure = pulsed_model(Prepared(mechanism), "nonlinear", SINE)
+        found = overturning_map(structure, SINE, np.array(omega), np.array(a))
         for row, ag in enumerate(found.accelerations * STANDARD_GRAVITY):
             for column, period in enumerate(found.periods):
                 motion = replace(SINE, amplitude=float(ag), period=float(period)).sampled(COARSE)
-                alone = respond(BLOCK, motion, models=("nonlinear",))["nonlinear"]
+                alone = respond(mechanism, motion, models=("nonlinear",))["nonlinear"]
                 assert found.outcome.overturned[row, column] == alone.overturned
+                assert found.outcome.unknown[row, column] == alone.unknown
+                for name in ("known_to", "lower_bound"):
+                    each = getattr(found.outcome, name)[row, column]
+                    assert each == pytest.approx(getattr(alone, name), rel=1e-9, nan_ok=True)
                 if alone.overturned:
                     assert found.outcome.impact_count[row, column] == alone.impact_count
                 else:
                     assert found.outcome.peak_ratio[row, column] == pytest.approx(alone.peak_ratio, rel=1e-9)
-        assert {int(each) for each in found.regions.ravel()} == set(Region)
+        assert {int(each) for each in found.regions.ravel()} == set(Region) - missing
 
     def test_histories_on_samples_agree_with_the_exact_answer(self, plane):
         structure = linear_block(0.9)
@@ -368,7 +381,11 @@ class TestCommand:
             "c.csv", "--json",
         )  # fmt: skip
         data = json.loads(result.stdout)
-        assert set(data) == {"pulse", "model", "polarity", "largest_tried", "period", "structures", "first", "tied"}
+        assert set(data) == {
+            "pulse", "model", "polarity", "largest_tried", "period", "structures", "first", "tied", "undecided",
+        }  # fmt: skip
+        assert all(each["least_or_unknown"] == each["least"] for each in data["structures"])
+        assert data["undecided"] == [False] * 8
         assert [each["mechanism"] for each in data["structures"]] == ["block", "asymmetric_frame", "wall"]
         with Path("c.csv").open(encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
@@ -412,7 +429,9 @@ class TestCommand:
     def test_a_map_of_pulses_too_weak_to_lift_is_a_result(self, arguments, tmp_path):
         arguments = ["overturning", *arguments, "--points", 8, "--plot", "map.png", "--out", "map.csv"]
         data = json.loads(run(*arguments, "--json").stdout)
-        assert data["shares"] == {"no_uplift": 1.0, "rocks": 0.0, "after_impact": 0.0, "without_impact": 0.0}
+        assert data["shares"] == {
+            "no_uplift": 1.0, "rocks": 0.0, "after_impact": 0.0, "without_impact": 0.0, "unknown": 0.0,
+        }  # fmt: skip
         assert set(data["least_a"]["overturning"]) == {None} and max(data["a"]) <= 1
         assert f"the largest has a = {max(data['a']):.4g}, and uplift requires a > 1" in run(*arguments).stdout
         with Path("map.csv").open(encoding="utf-8") as file:

@@ -223,7 +223,8 @@ def odd_plugin(tmp_path_factory):
     for name, text in MODULES.items():
         (site / name).parent.mkdir(exist_ok=True)
         (site / name).write_text(text, encoding="utf-8")
-    return {**os.environ, "PYTHONPATH": str(site), "PYTHONWARNINGS": "default"}
+    path = [str(site), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(path), "PYTHONWARNINGS": "default"}
 
 
 class TestMeasuresOfOthers:
@@ -374,6 +375,24 @@ class TestPluginsThatGoWrong:
         assert told.count("Traceback") == 1 and "1 / 0" in told and "Same error as above." in told
         checks = [line for line in told.splitlines() if line.startswith(("passes ", "FAILS "))]
         assert len(checks) == len(CHECKS) + 2
+
+
+@pytest.mark.parametrize(
+    ("part", "fields"),
+    [
+        ("strength", {"stress": None, "width": None}),
+        ("uncertainty", {"slenderness": ">= 0, < 1", "restitution": ">= 0, < 1"}),
+    ],
+)
+def test_the_fields_of_what_may_be_added_to_any_mechanism_are_listed(part, fields):
+    found = run_json("mechanisms", part)
+    rows = {row["field"]: row for row in found["fields"][part]}
+    assert found["part"] == part and set(rows) == set(fields)
+    assert all(bounds in (None, rows[name]["bounds"]) for name, bounds in fields.items())
+    assert all(row["description"] and row["example"] is not None for row in rows.values())
+    text = run("mechanisms", part).stdout
+    assert all(name in text for name in fields) and f"`{part}` of any mechanism" in text
+    assert f"`{part}`" in run("mechanisms").stdout
 
 
 def test_check_takes_a_file(tmp_path):

@@ -109,6 +109,18 @@ WRONG = {
         BLOCK + "restitution: {positive_to_negative: 0.9, negative_to_positive: 3}\n", 4, 64,
         "restitution.negative_to_positive", "at most 1",
     ),
+    "deviation below 0": (
+        BLOCK + "uncertainty: {slenderness: -0.05}\n", 4, 28, "uncertainty.slenderness", "must be at least 0, got -0.05",
+    ),
+    "deviation of everything": (
+        BLOCK + "uncertainty:\n  restitution: 1\n", 5, 16, "uncertainty.restitution", "must be less than 1, got 1",
+    ),
+    "deviation of what": (
+        BLOCK + "uncertainty: {slendernes: 0.05}\n", 4, 15, "uncertainty.slendernes", "did you mean slenderness?",
+    ),
+    "deviation alone": (BLOCK + "uncertainty: 0.05\n", 4, 14, "uncertainty", "got"),
+    "opening of more than all": (BLOCK + "opening: 1500\n", 4, 10, "opening", "must be at most 1000, got 1500"),
+    "opening below 0": (BLOCK + "opening: -0.005\n", 4, 10, "opening", "must be at least 0, got -0.005"),
     "number for a name": (BLOCK + "name: 12\n", 4, 7, "name", "must be text"),
     "gravity": (BLOCK + "gravity: -9.81\n", 4, 10, "gravity", "must be more than 0 m/s2"),
     "half a column": (
@@ -309,6 +321,13 @@ def test_sizes_with_units_are_the_same_structure():
     arch = "mechanism: arch\nradius: 10\nthickness: 1.5\ninclusion_angle_deg: "
     assert parse(arch + "157.5 deg\n") == parse(arch + "157.5\n")
     assert parse(arch + "2.7 rad\n").inclusion_angle_deg == pytest.approx(154.6986, abs=1e-4)
+
+
+def test_what_is_not_given_of_how_well_it_is_known_is_left_to_the_usual():
+    plain, half = parse(BLOCK), parse(f"{BLOCK}uncertainty: {{slenderness: 0.03}}\nopening: 0.01\n")
+    assert plain.uncertainty is None and plain.opening == 0.005
+    assert half.uncertainty.slenderness == 0.03 and half.uncertainty.restitution is None and half.opening == 0.01
+    assert Block(width=1.0, height=4.0, uncertainty={"restitution": 0}).uncertainty.restitution == 0.0
 
 
 def test_a_plugin_takes_units_without_a_line_of_its_own():

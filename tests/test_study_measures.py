@@ -18,7 +18,7 @@ from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
-from tests.stores import command
+from tests.stores import as_before_joints, command, version_of
 
 STUDY = f"""\
 structures:
@@ -164,21 +164,20 @@ class TestStudyFile:
 
 
 class TestStore:
-    def version(self, place):
-        with closing(sqlite3.connect(place)) as connection:
-            return connection.execute("PRAGMA user_version").fetchone()[0]
-
-    def test_a_store_of_before_goes_on_and_learns_what_is_asked(self, tmp_path):
+    @pytest.mark.parametrize(("checked", "versions"), [(True, (5, 5)), (False, (2, 4))])
+    def test_a_store_of_before_goes_on_and_learns_what_is_asked(self, tmp_path, checked, versions):
         path, place = write(tmp_path, "PGA"), tmp_path / "study.db"
         assert command("fragility", path).exit_code == 0
-        assert self.version(place) == 2  # as before there were measured values
+        if not checked:  # as before joints were checked
+            as_before_joints(place, tmp_path / "older.db").replace(place)
+        assert version_of(place) == versions[0]  # as before there were measured values
         with closing(sqlite3.connect(place)) as connection:
             assert not connection.execute("SELECT * FROM sqlite_master WHERE name = 'measured'").fetchall()
             before = connection.execute("SELECT * FROM run").fetchall()
         more = write(tmp_path, "PGA", "measures: [Sa(0.5), Du]\n")
         shown = command("fragility", more)
         assert shown.exit_code == 0 and "24 of 24 runs are in the store already" in shown.stderr
-        assert self.version(place) == 4
+        assert version_of(place) == versions[1]
         with closing(sqlite3.connect(place)) as connection:
             assert connection.execute("SELECT * FROM run").fetchall() == before
         assert "over Sa(0.5) [g]" in shown.stdout and "over Du [s]" in shown.stdout
@@ -238,7 +237,7 @@ class TestStore:
         path = write(tmp_path, more="measures: [sa(1), Du, d5-95, arias, PGV/v_imp]\nbivariate: [[PGV, D5-95]]\n")
         shown = command("fragility", path, "--json")
         assert shown.exit_code == 0 and "1 run is damaged" in shown.stderr
-        assert json.loads(shown.stdout)["curves"] == measured[1]["curves"] and self.version(place) == 4
+        assert json.loads(shown.stdout)["curves"] == measured[1]["curves"] and version_of(place) == 5
         with closing(sqlite3.connect(place)) as connection:
             assert connection.execute("SELECT * FROM measured").fetchall() == values
 

@@ -15,6 +15,7 @@ from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.dynamics.history import respond
+from rocking_cli.dynamics.holding import NEXT, NO_JOINTS
 from rocking_cli.dynamics.verdict import agreements, verdict
 from tests.conftest import EXAMPLES, record
 from tests.test_cli import run
@@ -35,6 +36,12 @@ def fell(direction, at=2.0, **more):
     return replace(
         RESTED, overturned=True, peak_ratio=np.nan, fell_to=int(direction), overturning_time=at, ratio=gone, **more
     )
+
+
+def unknown(after=2.0):
+    """RESTED, of which no more is known after that time."""
+    known = RESTED.time <= after
+    return replace(RESTED, unknown=True, known_to=after, ratio=np.where(known, RESTED.ratio, np.nan))
 
 
 UP, DOWN = Direction.POSITIVE, Direction.NEGATIVE
@@ -106,6 +113,10 @@ LOW = {"uplift_error": -0.33}
             "trust",
         ),
         ({"nonlinear": replace(peak(0.4), still_rocking=True)}, "nonlinear: still rocking", "overturns"),
+        # An equivalent block has no joints, so that it neither agrees nor disagrees with what is not known.
+        ({"nonlinear": unknown(), "linear2": fell(UP)}, "has an unknown outcome", "linear2"),
+        ({"nonlinear": unknown(), "linear2": fell(UP)}, "known up to 2 s only", "trust"),
+        ({"nonlinear": unknown(), "linear2": peak(0.9)}, NO_JOINTS, "close"),
     ],
 )
 def test_the_verdict_says_what_happened(histories, words, not_said):
@@ -137,6 +148,10 @@ def fading(size):
 )  # fmt: skip
 def test_motions_on_both_sides_of_the_bounds(run_of, expected):
     assert agreements({"nonlinear": RESTED, "linear2": run_of})["linear2"].grade.key == expected
+
+
+def test_nothing_is_compared_with_what_is_not_known():
+    assert agreements({"nonlinear": unknown(), "linear1": fell(UP), "linear2": RESTED}) == {}
 
 
 @pytest.mark.parametrize(("delay", "expected"), [(0.99, Grade.AGREES), (1.01, Grade.ESTIMATE)])
@@ -185,6 +200,7 @@ STRUCTURES = {
     "valley": (EXAMPLES / "frame.yaml").read_text(encoding="utf-8"),
     "arch": "mechanism: arch\nradius: 6.3\nthickness: 0.819\ninclusion_angle_deg: 150\nvoussoirs: 9\n",
 }
+STRUCTURES["closed-arch"] = STRUCTURES["arch"] + "opening: 1\n"  # of which every outcome counts as known
 MOTIONS = [
     ["--record", str(EXAMPLES / "accel.csv")],
     ["--record", str(EXAMPLES / "accel.csv"), "--scale", "0.4"],
@@ -222,6 +238,19 @@ def check(text, motion, folder):
     time = np.array([float(row["t [s]"]) for row in rows])
     uplift = max((side["lambda_ratio"] - 1 for side in block.values()), key=abs)
     best = runs["nonlinear"]
+    assert best["unknown"] == (best["opening"] > (1 if "opening: 1" in text else 0.005))
+    if best["unknown"]:
+        assert said.startswith("The structure has an unknown outcome.") and best["known_to_reason"] in said
+        assert f"known up to {best['known_to']:.4g} s only" in said
+        peak, bound = f"rocks to {best['peak_ratio']:.4g} of", f"{best['peak_lower_bound']:.4g}"
+        assert peak in said and bound in re.split("real peak", said)[1]
+        assert data["agreement"] == {"linear1": None, "linear2": None}
+        assert NO_JOINTS in said and "linear" not in said
+        beyond = time > best["known_to"]
+        assert np.isfinite(curves["nonlinear"][~beyond]).all() and beyond.any()
+        hidden = [row for row, late in zip(rows, beyond.tolist(), strict=True) if late]
+        assert {row[name] for row in hidden for name in row if name.startswith("nonlinear")} == {""}
+        return
     if best["overturned"]:
         sense = {"positive": "clockwise", "negative": "anticlockwise"}[best["overturning_direction"]]
         assert said.startswith(f"The structure overturns {sense}.")
@@ -311,6 +340,8 @@ def test_the_frame_whose_linear_motions_die_out_is_not_said_to_agree(tmp_path):
         ({"uplifts": True, "overturned": False}, names.ROCKS),
         ({"uplifts": True, "overturned": True}, names.OVERTURNS),
         ({"uplifts": True, "overturned": False, "still_rocking": True}, names.STILL_ROCKING),
+        ({"uplifts": True, "overturned": False, "unknown": True}, names.UNKNOWN),
+        ({"uplifts": False, "overturned": False, "unknown": True}, names.UNKNOWN),
     ],
 )
 def test_an_outcome_has_one_name(facts, word):
@@ -318,27 +349,34 @@ def test_an_outcome_has_one_name(facts, word):
 
 
 @pytest.mark.parametrize(
-    ("pulse", "word"),
-    [("sine:0.1g:1s", "does not uplift"), ("sine:0.4g:0.5s", "rocks"), ("sine:1g:2s", "overturns")],
+    ("structure", "pulse", "word"),
+    [
+        ("block", "sine:0.1g:1s", "does not uplift"),
+        ("block", "sine:0.4g:0.5s", "rocks"),
+        ("block", "sine:1g:2s", "overturns"),
+        ("masonry/portal", "sine:0.9g:0.6s", "unknown"),
+    ],
 )
-def test_every_command_calls_an_outcome_the_same(pulse, word, tmp_path):
-    block = EXAMPLES / "block.yaml"
+def test_every_command_calls_an_outcome_the_same(structure, pulse, word, tmp_path):
+    block = EXAMPLES / f"{structure}.yaml"
     _, amplitude, period = pulse.split(":")
     smaller = run("spectrum", block, "--pulse", pulse, "--sizes", "5:6:2").stdout
     texts = {
         "respond": run("respond", block, "--pulse", pulse, "--neighbours", 0).stdout,
         "animate": run("animate", block, "--pulse", pulse, "--neighbours", 0, "--out", tmp_path / "a.html").stdout,
         "report": run("report", "--neighbours", 20, block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
-        "spectrum": re.findall(r" s: (it .*?\w)\.", smaller)[0],
+        "spectrum": re.findall(r" s: (it.*?\w)\.", smaller)[0],
         "pulse": run("pulse", block, "--ag", amplitude, "--period", period[:-1]).stdout,
     }
     for command, text in texts.items():
         assert word in " ".join(text.split()), command
-        before = re.split("Coefficient of restitution|No closed form|Closed form", " ".join(text.split()))[0]
+        said = " ".join(text.split()).replace(NEXT, "")
+        before = re.split("Coefficient of restitution|No closed form|Closed form", said)[0]
         for other in {"does not uplift", "rocks", "overturns"} - {word, "rocks"}:
             assert other not in before, command
     table = next(line for line in texts["respond"].splitlines() if line.strip().startswith("outcome"))
-    assert re.split(r"\s{2,}", table.strip())[1:] == [word] * 3
+    cells = re.split(r"\s{2,}", table.strip())[1:]
+    assert cells == ([word] * 3 if word != "unknown" else [word, "rocks", "rocks"])  # of the equivalent blocks
 
 
 @pytest.mark.parametrize(

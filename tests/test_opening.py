@@ -1,0 +1,301 @@
+"""Joints released alone beside a history: how far they open, and until when its result stands."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from itertools import pairwise
+from math import isnan, nan
+
+import numpy as np
+import pytest
+
+from rocking_cli import GroundMotion, Registry, load_structure, read_record, respond
+from rocking_cli.core import Direction
+from rocking_cli.core.released import Undetermined, impulses, released
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.model import build_models
+from tests.conftest import EXAMPLES, SHARED
+from tests.oracle.openings import openings
+
+BLOCKS = SHARED / "blocks" / "assemblies.json"
+ACCEL = EXAMPLES / "accel.csv"
+NEVER = nan
+
+
+def structure(name, **fields):
+    made = load_structure(EXAMPLES / name)
+    return made.model_copy(update=fields) if fields else made
+
+
+def history(made, factor=1.0):
+    return respond(made, read_record(ACCEL).scaled(factor), models=("nonlinear",))["nonlinear"]
+
+
+# Of each: first warning, when an opening of 0.5 % is passed [s], and the largest opening over D_cr. By two programs.
+PUBLISHED = [
+    ("masonry/buttressed_arch.yaml", {}, 0.48972, [
+        (0.4, 3.586, NEVER, 0.00337), (0.5, 3.195, 3.772, 0.1148), (0.6, 3.248, 3.320, 0.3865),
+        (0.7, 3.249, 3.319, 0.4661), (1.0, 1.865, 3.314, 0.8992)]),
+    ("masonry/portal.yaml", {"friction": 0.6}, 0.89495, [
+        (1.0, NEVER, NEVER, 0.0), (1.5, 3.364, NEVER, 0.00056), (1.75, 3.300, 3.498, 0.00544),
+        (2.0, 3.298, 3.498, 0.0350)]),
+    ("assembly.yaml", {"friction": 0.6}, 0.97931, [
+        (1.0, 3.091, NEVER, 0.00101), (1.5, 3.044, 3.331, 0.3448)]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "fields", "reach", "rows"), PUBLISHED, ids=lambda value: str(value)[:24])
+def test_values_that_two_other_programs_agree_on(name, fields, reach, rows):
+    made = structure(name, **fields)
+    for factor, warned, passed, opening in rows:
+        found = history(made, factor)
+        assert found.check.reach == pytest.approx(reach, rel=1e-4)
+        assert found.opening == pytest.approx(opening, rel=0.02, abs=1e-4)
+        for ours, theirs in ((found.warned, warned), (found.known_to, passed)):
+            assert ours == pytest.approx(theirs, abs=0.01, nan_ok=True)
+        assert found.unknown == (not isnan(passed))
+        assert found.words == ("unknown" if found.unknown else "rocks")
+
+
+@pytest.mark.parametrize(("name", "factor"), [("masonry/buttressed_arch.yaml", 0.5), ("masonry/portal.yaml", 1.75)])
+def test_openings_are_those_of_an_integration_that_shares_nothing(name, factor):
+    made = structure(name)
+    largest, first = openings(made.model_copy(update={"opening": 1.0}), read_record(ACCEL), factor)
+    found = history(made, factor)
+    assert found.opening == pytest.approx(largest, rel=0.02)
+    assert found.known_to == pytest.approx(first[0.005], abs=0.003)
+
+
+@pytest.mark.skipif(not BLOCKS.is_file(), reason=f"no assemblies in {BLOCKS}")
+def test_seventy_assemblies_followed_by_two_engines_of_free_blocks():
+    stated, wrong = 0, []
+    for name, case in json.loads(BLOCKS.read_text(encoding="utf-8")).items():
+        made = Registry()["assembly"](**{k: v for k, v in case["structure"].items() if k != "mechanism"})
+        motion = GroundMotion(name, case["record"]["dt"], 9.80665 * np.array(case["record"]["a_g"]))
+        found = respond(made, motion, models=("nonlinear",))["nonlinear"]
+        theirs = case["opening"]
+        assert found.check.reach == pytest.approx(theirs["D_cr"], rel=1e-3), name
+        assert found.opening == pytest.approx(theirs["share"], rel=0.02, abs=2e-4), name
+        assert found.check.passed == pytest.approx(theirs["first"]["0.005"] or nan, abs=0.01, nan_ok=True), name
+        if found.unknown:
+            continue
+        stated += 1
+        engines = case["moreau"]["fell"] is not None, case["mujoco"]["fell"] is not None
+        if engines[0] == engines[1] != found.overturned and not 0.05 < case["neighbours"]["share"] < 0.95:
+            wrong.append(name)
+    assert (stated, wrong) == (33, [])
+
+
+def test_an_arch_and_its_voussoirs_say_the_same():
+    for factor in (1.0, 1.5):
+        one, other = history(structure("arch.yaml"), factor), history(structure("assembly.yaml"), factor)
+        assert one.unknown == other.unknown
+        assert one.opening == pytest.approx(other.opening, rel=0.02)
+        for field in ("warned", "known_to"):
+            assert getattr(one, field) == pytest.approx(getattr(other, field), abs=0.002, nan_ok=True)
+
+
+def test_an_arch_without_voussoirs_may_open_at_forty_cuts():
+    made = structure("arch.yaml", voussoirs=None)
+    pieces = made.pieces(Direction.POSITIVE)
+    assert len(pieces) >= 40
+    assert sum(each.body.mass for each in pieces) == pytest.approx(
+        sum(body.mass for body in made.weighed()) * made._beta / (made._cuts[-1] - made._cuts[0])
+    )
+    assert history(made, 1.5).unknown
+
+
+CHECKED = [
+    file for folder in ("", "masonry", "linkages", "walls") for file in sorted((EXAMPLES / folder).glob("*.yaml"))
+]
+
+
+@pytest.mark.parametrize("file", CHECKED, ids=lambda file: file.stem)
+def test_forces_balance_every_piece_and_uplift_opens_nothing(file):
+    made = load_structure(file)
+    for direction in made.directions:
+        rotations = np.linspace(0.0, 0.5 * made.limit(direction), 5)
+        if file.stem == "portico":  # three columns: a joint too many
+            with pytest.raises(Undetermined):
+                released(made, direction, rotations)
+            continue
+        found = released(made, direction, rotations)
+        if found is None:
+            assert file.stem == "curve"
+            continue
+        push = -int(direction) * made.uplift(direction) * made.gravity
+        at_rest = found.force[0] @ np.array([1.0, push, 0.0, 0.0])
+        weight = made.gravity * sum(body.mass for body in made.weighed())
+        normals = [row for normal, _ in found.rows for row in normal]
+        assert at_rest[normals].min() > -1e-9 * weight
+        # All of the weight, and what ties pull, comes down to the ground at rest.
+        if not made.attached:
+            up = sum(
+                (at_rest[row] * contact.normal).imag
+                for contact, (normal, _) in zip(found.contacts, found.rows, strict=True)
+                for row in normal
+                if None in contact.pieces
+            ) + sum(
+                (at_rest[shear] * -1j * contact.normal).imag
+                for contact, (_, shear) in zip(found.contacts, found.rows, strict=True)
+                if shear is not None and None in contact.pieces
+            )
+            moving = sum(each.body.mass for each in made.pieces(direction))
+            signs = [1 if contact.pieces[0] is None else -1 for contact in found.contacts if None in contact.pieces]
+            if all(sign > 0 for sign in signs):
+                assert up == pytest.approx(made.gravity * moving, rel=1e-6)
+
+
+def test_impulses_are_those_of_the_kinematic_restitution_of_a_block():
+    made = Registry()["block"](width=0.7, height=2.8, friction=0.6)
+    alpha, eta = np.arctan2(0.7, 2.8), made.eta(Direction.POSITIVE)
+    constant, factor = impulses(made, Direction.POSITIVE).T
+    normal, shear = constant + eta * factor
+    assert abs(shear) / normal == pytest.approx((1 - eta) / ((1 + eta) * np.tan(alpha)), rel=1e-9)
+
+
+def test_compliance_of_a_block_let_go_at_its_foot():
+    """Released in the vertical alone, held along its face: c = 1/(A^-1)_11 of A = J M^-1 J^T, by hand."""
+    b, h = 0.35, 1.4
+    made = Registry()["block"](width=2 * b, height=2 * h, mass=1.0)
+    inertia = (b * b + h * h) / 3
+    a = np.array([[1 + b * b / inertia, -b * h / inertia], [-b * h / inertia, 1 + h * h / inertia]])
+    found = released(made, Direction.NEGATIVE, np.zeros(1)).compliance[0]
+    assert found == pytest.approx(1 / np.diag(np.linalg.inv(a)), rel=1e-12)
+
+
+def test_where_the_quick_bounds_hold_every_joint_bears():
+    for name in ("masonry/buttressed_arch.yaml", "frame.yaml", "wall.yaml"):
+        made = structure(name)
+        (model,) = build_models(made, ("nonlinear",))
+        joints, random = model.joints, np.random.default_rng(3)
+        rows, within = joints.rows, joints.within
+        inside = 0
+        for _ in range(6000):
+            d, place, x = random.integers(2), random.integers(len(within)), random.random()
+            low, low_more, high, high_more, most = within[place, d]
+            y = random.random() * most
+            least, largest = max(low + low_more * y, -50.0), min(high + high_more * y, 50.0)
+            if least > largest:
+                continue
+            u = least + random.random() * (largest - least)
+            inside += 1
+            at = (place + x) / len(within) * len(rows)
+            k, t = int(at), at - int(at)
+            factors = rows[k, d].reshape(-1, 5, 4) @ np.array([1, t, t * t, t**3])
+            force = factors[:, :4] @ np.array([1.0, u, y, 0.0])
+            normals = [row for row in joints.contacts[:, d, :2].ravel() if row >= 0]
+            assert force[normals].min() >= 0
+        assert inside > 2000
+
+
+def test_a_batch_says_what_single_histories_say():
+    made = structure("masonry/portal.yaml")
+    (model,) = build_models(made, ("nonlinear",))
+    factors = [1.0, 1.5, 1.75, 2.0]
+    many = respond_many([model], [read_record(ACCEL)], Runs.of(0, 0, scale=factors))
+    for k, factor in enumerate(factors):
+        one = history(made, factor)
+        assert many.unknown[k] == one.unknown
+        for field in ("known_to", "warned", "lower_bound", "peak_ratio"):
+            assert getattr(many, field)[k] == pytest.approx(getattr(one, field), rel=1e-9, nan_ok=True)
+
+
+def test_what_is_beyond_is_no_result():
+    found = history(structure("masonry/portal.yaml"), 2.0)
+    assert found.unknown and not found.overturned and not found.at_rest and not found.still_rocking
+    assert np.isnan(found.phi[found.time > found.known_to]).all()
+    assert np.isfinite(found.phi[found.time <= found.known_to]).all()
+    assert (found.impacts[:, 0] <= found.known_to).all() and len(found.impacts) == found.impact_count
+    assert found.lower_bound <= found.peak_ratio
+    assert found.peak_ratio == pytest.approx(np.nanmax(np.abs(found.ratio)), rel=1e-3)
+
+
+def test_a_wider_limit_keeps_the_result():
+    assert not history(structure("masonry/portal.yaml", opening=0.01), 1.75).unknown
+    assert history(structure("masonry/portal.yaml", opening=0.0), 1.5).unknown
+
+
+def test_a_structure_of_another_size_opens_as_far():
+    made, motion = structure("masonry/portal.yaml"), read_record(ACCEL)
+    models = build_models(made, ("nonlinear",)) + build_models(made.enlarged(2.0), ("nonlinear",))
+    found = respond_many(models, [motion], Runs.of([0, 1], 0, scale=3.0, size=[2.0, 1.0]))
+    assert found.opening[0] == pytest.approx(found.opening[1], rel=1e-6)
+    assert found.opening[0] > 0
+
+
+def test_joints_of_more_slender_neighbours_bear_the_whole_acceleration():
+    (model,) = build_models(structure("masonry/portal.yaml", opening=1.0), ("nonlinear",))
+    runs = Runs.of(0, 0, scale=[1.5, 1.8], slender=[1.0, 1.2])
+    plain, slender = respond_many([model], [read_record(ACCEL)], runs).peak_ratio
+    assert plain == pytest.approx(slender, rel=1e-9)  # the motion over phi_cr is that of a weaker ground motion
+    plain, slender = respond_many([model], [read_record(ACCEL)], runs).opening
+    assert slender > 2 * plain > 0
+    one, other = respond_many([model], [read_record(ACCEL)], runs).peak_positive
+    assert other == pytest.approx(1.2 * one, rel=1e-9)
+
+
+def test_crushing_ends_a_history_at_once():
+    made = structure("masonry/portal.yaml", strength={"stress": 5e4, "width": 0.05})
+    found = history(made, 1.0)
+    assert found.unknown and found.check.reason == "crushes"
+    assert found.known_to <= found.uplift_time + 0.05 if np.isfinite(found.uplift_time) else True
+
+
+def test_nothing_is_known_where_the_ground_falls_away():
+    motion = GroundMotion("x", 0.01, np.zeros(200))
+    down = GroundMotion("y", 0.01, np.where(np.arange(200) == 100, -12.0, 0.0))
+    found = respond(structure("block.yaml"), replace(motion, vertical=down), models=("nonlinear",))["nonlinear"]
+    assert found.unknown
+    assert found.known_to == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_plugin_of_several_bodies_that_names_no_contacts_is_not_checked():
+    found = history(structure("curve.yaml"))
+    assert found.check is None and isnan(found.opening) and not found.unknown
+
+
+@pytest.mark.parametrize(
+    ("name", "factor"), [("masonry/portal.yaml", 1.5), ("masonry/portal.yaml", 2.0), ("assembly.yaml", 1.5)]
+)
+def test_joints_cut_in_two_say_the_same(name, factor):
+    made = structure(name)
+    (model,) = build_models(made, ("nonlinear",))
+    contacts = {direction: made.contacts(direction) for direction in Direction}
+
+    class Cut(type(made)):
+        def contacts(self, direction):
+            found = []
+            for each in contacts[direction]:
+                if len(each.points) == 1:
+                    found.append(each)
+                    continue
+                middle = sum(each.points) / 2
+                halves = ((each.points[0], middle), (middle, each.points[1]))
+                found += [replace(each, points=ends, name=f"{each.label} {k}") for k, ends in enumerate(halves)]
+            return found
+
+    (other,) = build_models(Cut.from_fields({key: getattr(made, key) for key in made.model_fields_set}), ("nonlinear",))
+    assert other.joints.rows.shape != model.joints.rows.shape
+    one, two = (respond_many([each], [read_record(ACCEL)], Runs.of(0, 0, scale=factor)) for each in (model, other))
+    assert one.unknown[0] == two.unknown[0]
+    assert one.warned[0] == pytest.approx(two.warned[0], abs=0.005, nan_ok=True)
+    assert one.known_to[0] == pytest.approx(two.known_to[0], abs=0.02, nan_ok=True)
+
+
+def test_a_wall_in_running_bond_is_checked():
+    """A pier of eight courses, of one brick and of two halves in turn: most of its joints are redundant."""
+    bricks = {}
+    for course in range(8):
+        edges = (0.0, 0.25, 0.5) if course % 2 else (0.0, 0.5)
+        for k, (left, right) in enumerate(pairwise(edges)):
+            low = 0.25 * course
+            corners = [[left, low], [right, low], [right, low + 0.25], [left, low + 0.25]]
+            bricks[f"c{course} {k}"] = {"polygon": corners}
+    ground = {"floor": {"polygon": [[-1.0, -0.3], [2.5, -0.3], [2.5, 0.0], [-1.0, 0.0]]}}
+    made = Registry()["assembly"](blocks=bricks, ground=ground, friction=0.7, density=1800.0, depth=0.5)
+    (model,) = build_models(made, ("nonlinear",))
+    assert model.joints is not None and model.joints.labels
+    found = respond_many([model], [read_record(ACCEL)], Runs.of(0, 0, scale=[1.0, 4.0]))
+    assert np.isfinite(found.opening).all()

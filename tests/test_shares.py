@@ -1,0 +1,133 @@
+"""Shares of neighbours: how they are drawn, and whether what is stated is met."""
+
+from __future__ import annotations
+
+import csv
+from math import log, sqrt, tan
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+from rocking_cli import GroundMotion, Registry, build_models
+from rocking_cli.errors import InputError
+from rocking_cli.studies.neighbours import Around, neighbours
+from tests.conftest import SHARED
+
+TESTS = SHARED / "experiments" / "granite_boulders.csv"
+NORMAL = NormalDist()
+
+
+def model(name="block", **fields):
+    fields = fields or {"width": 0.7, "height": 2.8}
+    return build_models(Registry()[name](**fields), ("nonlinear",))[0]
+
+
+def held(level, push=-1):
+    """A ground acceleration of one size, in g times lambda, for long."""
+    return GroundMotion("held", 0.02, push * level * 9.80665 * np.ones(1501))
+
+
+@pytest.mark.parametrize(("level", "restitution"), [(0.9, None), (1.03, None), (1.1, None), (1.03, 0.5)])
+def test_a_held_acceleration_overturns_the_share_that_is_exact(level, restitution):
+    made = model("block", width=0.7, height=2.8, restitution=restitution)
+    found = neighbours(made, held(level * made.lambda_[0]))
+    assert found.overturned == pytest.approx(NORMAL.cdf(log(level) / sqrt(0.04**2 + 0.10**2)), abs=0.03)
+
+
+def test_what_a_force_holds_is_not_scaled_with_the_slenderness():
+    fields = {"width": 0.7, "height": 2.8, "depth": 1.0, "density": 2000.0}
+    force = {"name": "strut", "force": [0.0, -20_000.0], "at": [0.0, 2.8]}
+    made = model("block", **fields, loads=[force])
+    own = model("block", **fields).lambda_[0]
+    assert made.weight_share == pytest.approx(own / made.lambda_[0], rel=1e-9)
+    drawn = Around(2000).drawn(made)
+    assert drawn.slender.std() == pytest.approx(0.10 * made.weight_share, rel=0.05)
+
+
+def test_restitution_is_drawn_from_what_no_impact_exceeds():
+    made = model()
+    drawn = Around(4000, restitution=0.05).drawn(made).eta
+    assert drawn.max() < 1
+    mean, top = made.eta[0], (1 - made.eta[0]) / 0.05
+    ratio = NORMAL.pdf(top) / NORMAL.cdf(top)
+    assert drawn.mean() == pytest.approx(mean - 0.05 * ratio, abs=1e-4)
+    assert drawn.var() == pytest.approx(0.05**2 * (1 - top * ratio - ratio**2), rel=1e-2)
+    assert (drawn[:, 0] == drawn[:, 1]).all()  # of both directions the same
+
+
+def test_amplitude_and_slenderness_are_lognormal():
+    drawn = Around(4000).drawn(model())
+    for values, deviation in ((drawn.amplitude, 0.04), (drawn.slender, 0.10)):
+        assert np.log(values).mean() == pytest.approx(0, abs=1e-4)
+        assert np.log(values).std() == pytest.approx(deviation, rel=1e-2)
+    logs = np.log([drawn.amplitude, drawn.slender])
+    assert abs(np.corrcoef(logs)[0, 1]) < 0.04
+
+
+def test_deviations_come_from_the_file_and_options_win():
+    plain, given = model(), model("block", width=0.7, height=2.8, restitution=0.9)
+    measured = model("block", width=0.7, height=2.8, uncertainty={"slenderness": 0.03, "restitution": 0.01})
+    assert tuple(plain.scatter) == (0.05, 0.10)
+    assert tuple(given.scatter) == (0.03, 0.10)
+    assert tuple(measured.scatter) == (0.01, 0.03)
+    assert Around().of(measured).words == (
+        "standard deviations 4 % of amplitude, 3 % of slenderness, 0.01 of restitution"
+    )
+    assert Around(slenderness=0.07).of(measured).slenderness == 0.07
+    with pytest.raises(InputError, match="slenderness_deviation must be from 0 to below 1"):
+        Around(slenderness=-0.1)
+
+
+def test_without_deviations_all_neighbours_are_the_motion_itself():
+    made = model()
+    motion = held(1.2 * made.lambda_[0])
+    found = neighbours(made, motion, Around(50, amplitude=0.0, restitution=0.0, slenderness=0.0))
+    assert found.as_itself == 1
+
+
+def test_a_release_stays_a_share_of_phi_cr_or_an_angle():
+    made = model("block", width=0.7, height=2.8, restitution=0.5)
+    share = neighbours(made, None, Around(200), release=0.9)
+    angle = neighbours(made, None, Around(200), release=0.9, release_is_angle=True)
+    assert share.overturned == 0
+    # An angle of 0.9 phi_cr overturns whatever is less slender than 0.9 of the nominal.
+    assert angle.overturned == pytest.approx(NORMAL.cdf(log(0.9) / 0.10), abs=0.02)
+
+
+@pytest.mark.skipif(not TESTS.is_file(), reason=f"no shake-table tests in {TESTS}")
+def test_shares_are_met_in_600_tests_of_two_boulders():
+    """All 600 rows with 200 neighbours give Brier 0.061, log loss 0.198 and gap 0.021; every third and 100 here."""
+    stated, seen = boulders(count=100, every=3)
+    held_off = np.clip(stated, 0.5 / 101, 1 - 0.5 / 101)
+    assert np.mean((stated - seen) ** 2) < 0.064
+    assert -np.mean(seen * np.log(held_off) + (1 - seen) * np.log(1 - held_off)) < 0.205
+
+
+def boulders(count, every):
+    """Stated shares and outcomes of tests of both specimens."""
+    shaken = np.load(TESTS.with_name("granite_motions_100hz.npz"))
+    numbers = shaken["test"].tolist()
+    shapes = ((0.2943, 0.0510, 4.97), (0.2920, 0.0507, 5.47))
+    specimens = [boulder(*shape) for shape in shapes]
+    stated, seen = [], []
+    with TESTS.open(encoding="utf-8") as file:
+        for row in list(csv.DictReader(file))[::every]:
+            k = numbers.index(int(row["test"]))
+            part = slice(shaken["start"][k], shaken["start"][k] + shaken["length"][k])
+            motion = GroundMotion(row["test"], 0.01, shaken["samples"][part] / 32767 * float(shaken["peak"][k]))
+            for each, outcome in zip(specimens, ("sp1", "sp2"), strict=True):
+                stated.append(neighbours(each, motion, Around(count)).overturned)
+                seen.append(int(row[outcome]))
+    return np.array(stated), np.array(seen)
+
+
+def boulder(height, gyration, angle):
+    """A body on an edge by the height of its centroid [m], its squared radius of gyration [m2] and angle [deg]."""
+    half = height * tan(np.radians(angle))
+    shape = {
+        "polygon": [[-half, 0.0], [half, 0.0], [half, 2 * height], [-half, 2 * height]],
+        "mass": 100.0, "centroid": [0.0, height], "inertia": 100.0 * gyration,
+    }  # fmt: skip
+    pivot = {"pivot": "rock", "at": [half, 0.0]}
+    return model("linkage", bodies={"rock": shape}, positive={"lead": "rock", "joints": {"O": pivot}})

@@ -1,0 +1,508 @@
+"""An unknown outcome does not pass, whatever the command: in shares, ranks, verdicts, sheets and reports."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from math import inf, isclose, nan
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.cli import terminal
+from rocking_cli.cli.main import COMMANDS
+from rocking_cli.core import Direction
+from rocking_cli.dynamics.history import respond
+from rocking_cli.dynamics.outcome import Outcome
+from rocking_cli.dynamics.verdict import governs
+from rocking_cli.plotting.azimuths import draw_azimuths
+from rocking_cli.plotting.margin import draw_margins
+from rocking_cli.plotting.survey import draw_survey
+from rocking_cli.studies import assessment
+from rocking_cli.studies.azimuths import Around as AllAround
+from rocking_cli.studies.margin import LEVELS, Margin
+from rocking_cli.studies.metrics import METRICS, Shaking
+from rocking_cli.studies.movements import Watched, largest
+from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing
+from rocking_cli.studies.survey import ORDERS, Survey, Surveyed, Under
+from rocking_cli.studies.verification import dynamic
+from rocking_cli.studies.verification.results import Dynamic, RecordPeak
+from rocking_cli.views import assessment_words
+from rocking_cli.views import azimuths as azimuth_views
+from rocking_cli.views import margin as margin_views
+from rocking_cli.views import survey as survey_views
+from rocking_cli.views.sheet.italian import dynamic as sheets
+from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.verification_words import of_histories
+from tests.conftest import EXAMPLES
+from tests.test_cli import run, run_json
+
+ARCH = "mechanism: arch\nname: {0}\nradius: {1}\nthickness: 0.8\ninclusion_angle_deg: 150\nvoussoirs: 7\n"
+SITE = "FC: 1.2\nag: 0.9\nF0: 2.5\nTC: 0.5\nS: 1.2\n"  # so strong that the static methods fail too
+STUDY = """\
+name: strong pulses
+structures: [arch.yaml]
+records: [{pulse: sine:1g:0.4s}, {pulse: sine:1g:0.5s}]
+method: stripes
+levels: {measure: PGA, least: 1.9, most: 2.0, count: 2}
+limit_states: [0.5, overturning]
+"""
+PULSE = "--pulse", "sine:2g:0.4s"  # opens a joint of the arch after .06 s, long before it could overturn
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A made-up arch whose history ends early, a sister of it, and the files that commands need beside them."""
+    made = tmp_path_factory.mktemp("unknown")
+    files = {
+        "arch.yaml": ARCH.format("thin arch", 6.0),
+        "sister.yaml": ARCH.format("wide arch", 7.0),
+        "site.yaml": SITE,
+        "study.yaml": STUDY,
+        "table.csv": "file\narch.yaml\n",
+    }
+    for name, text in files.items():
+        (made / name).write_text(text)
+    return made
+
+
+# What each command is asked, and what shows in its JSON that the outcome is unknown.
+HISTORIES = {
+    "respond": (
+        ["arch.yaml", *PULSE, "--model", "nonlinear", "--neighbours", 3],
+        lambda found: found["responses"]["nonlinear"]["outcome"] == "unknown" and found["neighbours"]["unknown"] == 1,
+    ),
+    "margin": (
+        ["arch.yaml", *PULSE, "--neighbours", 2],
+        lambda found: found["motions"][0]["unknown"][-1] == 1 and found["motions"][0]["levels"]["50"]["first"] is None,
+    ),
+    "verify": (
+        ["arch.yaml", "--site", "site.yaml", *PULSE],
+        lambda found: all(
+            side["dynamic"][FC]["unknown"] == ["sine:2g:0.4s"]
+            for side in found["directions"].values()
+            for FC in ("with_FC", "without_FC")
+        ),
+    ),
+    "survey": (["table.csv", *PULSE], lambda found: found["rows"][0]["unknown"] == 1),
+    "design": (
+        [
+            "arch.yaml",
+            *PULSE,
+            "--neighbours",
+            2,
+            "--points",
+            2,
+            "--vary",
+            "thickness=0.79:0.8",
+            "--until",
+            "overturned<1",
+        ],
+        lambda found: found["scan"]["unknown"] == [1, 1],
+    ),
+    "animate": (
+        ["arch.yaml", *PULSE, "--neighbours", 2, "--out", "film.html"],
+        lambda found: found["outcome"] == "unknown",
+    ),
+    "pulse": (
+        ["arch.yaml", "--ag", "2g", "--period", 0.4],
+        lambda found: found["responses"]["nonlinear"]["unknown"],
+    ),
+    "overturning": (
+        ["arch.yaml", "--model", "nonlinear", "--ag", "1.9g:2g", "--period", "0.4:0.41", "--points", 3],
+        lambda found: found["shares"]["unknown"] == 1,
+    ),
+    "spectrum": (
+        ["arch.yaml", *PULSE, "--sizes", "2.4:2.5:2"],
+        lambda found: found["spectra"][0]["unknown"] == [1, 1, 1],
+    ),
+    "equivalent": (
+        ["arch.yaml", "sister.yaml", "--ag", "2g", "--period", 0.4],
+        lambda found: [each["unknown"] for each in found["structures"]] == [True, True],
+    ),
+    "fragility": (
+        ["study.yaml", "--jobs", 1, "--quantiles"],
+        lambda found: found["outcomes"][0]["share"] == 1 and all(each["band"] for each in found["curves"]),
+    ),
+    "results": (["study.db", "--quantiles"], lambda found: found["outcomes"][0]["share"] == 1),
+    "report": (
+        ["arch.yaml", *PULSE, "--neighbours", 2, "--out", "report.html"],
+        lambda found: found["motions"][0]["unknown"] and found["motions"][0]["headline"] == "unknown",
+    ),
+}
+# These follow no history; `figure` follows those of the paper's structures, `warm` those that compile the kernels.
+WITHOUT = {
+    "draw", "equiv", "collapse", "error", "record", "select", "figure", "mechanisms", "measures", "new", "info", "warm",
+    "completion",
+}  # fmt: skip
+LINEAR = {"linear1", "linear2", "closed_form"}  # equivalent blocks have no joints: their outcomes are their own
+KNOWN = {"at_rest", "rocks", "still_rocking", "does not uplift", "overturned"}
+PASSED = re.compile(
+    r"does not overturn(?! before its first impact)|overturns under none|overturns in no direction\.|"
+    r"none of \d+ motions overturns it\.|"
+    r"^\s*outcome(?!.*unknown).*(?:rocks|at rest|still rocking)|structure rocks|(?<!not )\bsatisfied|\bpasses\b(?! if)",
+    re.IGNORECASE | re.MULTILINE,
+)
+
+
+def offences(data, at=""):
+    """Where JSON takes an outcome for known, or for a pass."""
+    if isinstance(data, dict):
+        for key, value in data.items():
+            if key not in LINEAR:
+                yield from offences(value, f"{at}.{key}")
+    elif isinstance(data, list):
+        for value in data:
+            yield from offences(value, at)
+    else:
+        *_, key = at.rpartition(".")
+        known = key in ("outcome", "headline") and data in KNOWN
+        if known or (key == "overturned" and data is False) or (data is True and (".holds." in at or key == "passes")):
+            yield f"{at} = {data}"
+
+
+def test_every_command_is_walked_or_follows_no_history():
+    assert set(HISTORIES) | WITHOUT == set(COMMANDS) and not set(HISTORIES) & WITHOUT
+
+
+def both(monkeypatch, command, *asked):
+    """What a command prints as JSON, and as text, of one run."""
+    show = terminal.show
+
+    def twice(view, *, as_json):
+        show(view, as_json=True)
+        show(view, as_json=False)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(terminal, "show", twice)
+        line, said = run(command, *asked).stdout.split("\n", 1)
+    return json.loads(line), said
+
+
+@pytest.mark.parametrize("command", HISTORIES)
+def test_no_command_takes_an_unknown_outcome_for_a_pass(folder, command, monkeypatch):
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(assessment, "POINTS", 3)  # of a map
+    asked, is_unknown = HISTORIES[command]
+    if command == "results" and not (folder / "study.db").exists():
+        run("fragility", *HISTORIES["fragility"][0])
+    found, said = both(monkeypatch, command, *asked)
+    assert is_unknown(found)
+    assert not list(offences(found))
+    if command == "design":
+        assert found["holds"] == [] and found["value"] is None and not found["everywhere"]
+    assert "unknown" in said and not PASSED.findall(said)
+
+
+@pytest.mark.parametrize("command", ["respond", "verify"])
+def test_the_walk_sees_a_pass(folder, command, monkeypatch):
+    """With a weak motion, and a limit that no opening passes, the walk finds what it would else not see."""
+    monkeypatch.chdir(folder)
+    (folder / "site.yaml").write_text(SITE.replace("ag: 0.9", "ag: 0.01"))
+    found, said = both(monkeypatch, command, *HISTORIES[command][0], "--opening", 1, "--scale", 0.25)
+    (folder / "site.yaml").write_text(SITE)
+    assert not HISTORIES[command][1](found)
+    assert list(offences(found)) and PASSED.findall(said)
+
+
+class TestMargin:
+    FOUND = Margin(
+        Around(20, 0.04, 0.05, 0.1), 0.3, np.array([0.5, 1.0, 2.0, 4.0]), np.array([0.0, 0.05, 0.2, 0.6]),
+        np.array([0.0, 0.1, 0.4, 0.4]),
+    )  # fmt: skip
+
+    def test_levels_lie_between_what_overturns_and_what_may(self):
+        data = margin_views.margin_data(self.FOUND)
+        assert data["shares"] == [0, 0.05, 0.2, 0.6] and data["unknown"] == [0, 0.1, 0.4, 0.4]
+        at_most = np.add(data["shares"], data["unknown"])
+        for level in LEVELS:
+            each = data["levels"][f"{100 * level:g}"]
+            reached = [factor for factor, share in zip(data["factors"], at_most, strict=True) if share >= level]
+            assert each["first_or_unknown"] == min(reached)
+            assert each["last_below_or_unknown"] == {0.1: 0.5, 0.5: 1.0, 0.9: 2.0}[level]
+        assert [data["levels"][each]["first"] for each in ("10", "50", "90")] == [2.0, 4.0, None]
+
+    def test_what_is_not_checked_is_null_and_warned_of(self):
+        found = replace(self.FOUND, unknown=np.zeros(4), checked=False)
+        assert margin_views.margin_data(found)["unknown"] is None
+        mechanism = rk.load_structure(EXAMPLES / "curve.yaml")
+        parts = margin_views.view(mechanism, [margin_views.Row("a", 1.0, 0.5, found)], "1", found.around).parts
+        assert str(parts[-1]).startswith("Caution: the joints of this mechanism are not checked")
+
+    def test_the_table_has_a_second_row_and_the_plot_a_band(self):
+        row = margin_views.Row("a.csv", 1.0, 0.5, self.FOUND)
+        table = margin_views.view(rk.Block(width=0.5, height=2.0), [row], "both", self.FOUND.around).parts[2]
+        assert [cells[0].strip() for cells in table.rows] == ["a.csv", "or unknown"]
+        assert [cells[3] for cells in table.rows] == ["5 %", "15 %"] and table.rows[1][4:7] == ["1", "2", "4"]
+        axes = draw_margins({"a.csv": self.FOUND}, "").axes[0]
+        low, high = (f(axes.collections[0].get_paths()[0].vertices[:, 1]) for f in (np.min, np.max))
+        assert low == 0 and high == 1  # the band goes from the one curve to the other
+        assert [line.get_ydata()[-1] for line in axes.lines if len(line.get_xdata()) == 4] == [0.6, 1.0]
+
+
+def severity(share, median, itself, certain):
+    return Severity(share, median, itself, certain)
+
+
+@pytest.mark.parametrize(
+    ("worst", "said"),
+    [
+        (severity(1.0, inf, inf, 0.0), "a governs: 100 % of its neighbours have an unknown outcome."),
+        (severity(0.8, inf, inf, 0.3), "a governs: 80 % of its neighbours overturn or have an unknown outcome."),
+        (severity(0.8, inf, inf, 0.8), "a governs: 80 % of its neighbours overturn."),
+        (severity(0.0, 0.0, inf, 0.0), "a governs: its outcome is unknown."),
+        (severity(0.0, 0.0, inf, 1.0), "a governs: it overturns."),
+    ],
+)
+def test_a_motion_of_unknown_outcome_governs_as_one_that_overturns(worst, said):
+    assert governing({"a": worst, "b": severity(0.0, 0.0, 0.4, 0.0)}) == said
+
+
+def test_of_unknown_outcomes_none_is_the_worse():
+    both = severity(1.0, inf, inf, 0.0)
+    assert governing({"a": both, "b": both}).startswith("Which motion governs is not known")
+
+
+def ended(**fields):
+    """What of a history counts where two polarities are compared."""
+    usual = {"overturned": False, "unknown": False, "peak_ratio": 0.2, "overturning_time": nan}
+    return {"nonlinear": SimpleNamespace(**{**usual, **fields})}
+
+
+def test_a_polarity_that_overturns_governs_over_one_that_is_unknown():
+    falls, open_ = ended(overturned=True, peak_ratio=nan, overturning_time=3.0), ended(unknown=True)
+    worse, said = governs({1: open_, -1: falls})
+    assert worse == -1
+    assert said.endswith(": with the motion reversed it overturns, as given its outcome is unknown.")
+    assert governs({1: ended(), -1: open_})[0] is None
+
+
+class TestSeveral:
+    def test_motions_of_unknown_outcome_are_counted_apart(self, folder):
+        weak, strong = ("--pulse", "sine:0.1g:0.3s"), PULSE
+        said = run("respond", folder / "arch.yaml", *weak, *strong, "--neighbours", 3, "--model", "nonlinear").stdout
+        assert "the outcome under 1 of 2 motions is unknown, and none of the others overturns it." in said
+        assert "sine:2g:0.4s: the outcome is known up to 0.0617 s only: then the joint between voussoir" in said
+        (row,) = (line.split() for line in said.splitlines() if line.startswith(" sine:2g"))
+        assert row == ["sine:2g:0.4s", "2", "unknown", "0", "%", "100", "%", "unknown"]
+
+
+class TestSurvey:
+    def row(self, name, **under):
+        given = {"overturned": 0.0, "peak_ratio": 0.3, "worst": "a", **under}
+        return Surveyed(1, 2, name, "arch", "positive", 0.2, 0.2, 2.0, 0.1, 1.0, 1.0, 0.9, under=Under(**given))
+
+    def test_unknown_ranks_as_overturning_does(self):
+        rows = [
+            self.row("rocks far", peak_ratio=0.99),
+            self.row("half falls", overturned=0.5),
+            self.row("unknown", unknown=1.0, peak_ratio=nan),
+            self.row("falls or may", overturned=0.25, unknown=0.5),
+        ]
+        ranked = sorted(rows, key=ORDERS["response"])
+        assert [each.name for each in ranked] == ["unknown", "falls or may", "half falls", "rocks far"]
+
+    def test_it_is_told_and_drawn_apart(self):
+        rows = [self.row("one", unknown=1.0, peak_ratio=nan), self.row("two"), self.row("three", unknown=None)]
+        found = Survey(rows, motions=["a"], by="response")
+        assert [row["unknown"] for row in survey_views.data(found)["rows"]] == [1.0, 0.0, None]
+        assert list(survey_views.columns(found)["unknown"][:2]) == [1.0, 0.0]
+        said = " ".join(survey_views.sentences(found))
+        assert (
+            "3 of 3 uplift and 0 are known to overturn" in said
+            and "one: the outcome under at least one motion is unknown" in said
+        )
+        assert "the joints of three are not checked" in said
+        labels = [line.get_label() for line in draw_survey(found, "").axes[0].lines]
+        assert labels == ["rocks (2)", "unknown under at least one motion (1)"]
+
+    def test_the_limit_of_the_opening_holds_for_every_row(self, folder):
+        given = "survey", folder / "table.csv", *PULSE, "--scale", 0.4  # opens a joint by less than D_cr
+        rows = [run_json(*given, *more)["rows"][0] for more in ((), ("--opening", 1))]
+        assert [row["unknown"] for row in rows] == [1, 0]
+        assert rows[0]["peak_ratio"] is None and rows[1]["peak_ratio"] > 0
+
+
+def near(overturned, unknown, median=0.3):
+    return Neighbours(Around(20), "nonlinear", overturned, (0.1, median, 0.5), 1.0, unknown=unknown)
+
+
+class TestDesign:
+    def test_the_share_is_the_largest_that_may_overturn(self, monkeypatch):
+        monkeypatch.setattr(Shaking, "each", lambda self, structure: [near(0.3, 0.0), near(0.1, 0.5)])
+        value, behind = METRICS["overturned"].at(None, Shaking([]))
+        assert isclose(value, 0.6) and behind.unknown == 0.5
+
+    @pytest.mark.parametrize("op", ["<", ">"])
+    def test_unknown_meets_no_requirement(self, folder, op):
+        found = rk.design(
+            folder / "arch.yaml", "thickness=0.79:0.8", f"overturned {op} 0.5", PULSE[1], neighbours=2, points=2
+        )
+        assert found.holds == [] and [each.unknown for each in found.behind] == [1, 1]
+        assert np.isnan(found.metric).all() == (op == ">")
+        assert found.to_dict()["scan"]["unknown"] == [1, 1]
+
+    def test_a_median_that_is_unknown_is_not_said_to_overturn(self, folder):
+        found = rk.design(
+            folder / "arch.yaml", "thickness=0.79:0.8", "peak_ratio < 0.5", PULSE[1], neighbours=2, points=2
+        )
+        assert np.isinf(found.metric).all() and not found.met.any()
+        assert [row[1] for row in found.view.parts[1].rows] == ["unknown", "unknown"]
+        labels = [line.get_label() for line in found.figure().axes[0].lines]
+        assert "at least half overturn or are unknown" in labels
+        assert "at least half of the neighbours overturn" not in labels
+
+
+class TestAzimuths:
+    def found(self):
+        azimuths, no, none = np.arange(0.0, 360.0, 60.0), np.zeros(6, dtype=bool), np.full(6, nan)
+        many = Outcome(
+            still_rocking=no, failed=no, fell_to=np.zeros(6), peak_positive=none, peak_negative=none, opening=none,
+            overturning_time=none, impact_count=np.zeros(6), end_time=none, warned=none,
+            unknown=np.array([0, 1, 1, 0, 0, 0], dtype=bool), overturned=np.array([1, 0, 0, 0, 0, 0], dtype=bool),
+            peak_ratio=np.array([nan, 0.9, 0.1, 0.4, 0.3, 0.2]), known_to=np.array([nan, 1.0, 2.0, nan, nan, nan]),
+            lower_bound=np.array([nan, 0.5, 0.1, nan, 0.2, nan]), uplift_time=np.ones(6),
+        )  # fmt: skip
+        return AllAround(("x", "y"), 1.0, azimuths, np.full(6, 0.5), {"nonlinear": many})
+
+    def test_they_are_told_apart(self):
+        found = self.found()
+        structure = SimpleNamespace(mechanism=rk.Block(width=0.5, height=2.0, name="b"))
+        view = azimuth_views.view(structure, found)
+        data = view.data if isinstance(view.data, dict) else view.data()
+        mine = data["responses"]["nonlinear"]
+        assert mine["overturned"] == [True, None, None, False, False, False]
+        assert mine["sectors_unknown"] == [[60.0, 120.0]] and mine["sectors_that_overturn"] == [[0.0, 0.0]]
+        bounds = mine["peak_lower_bound"]
+        assert bounds[1:3] == [0.5, 0.1] and np.isnan([bounds[0], *bounds[3:]]).all()
+        # The largest peak is one of a direction whose outcome is known.
+        assert view.parts[2].rows == [["nonlinear", "17 %", "33 %", "0 %", "0.4", "180"]]
+        assert "it overturns in 1 of 6 directions, at 0 degrees; its outcome is unknown in 2 of 6" in view.parts[3]
+        assert np.isnan(azimuth_views.columns(found)["overturns nonlinear"][1:3]).all()
+
+    def test_no_curve_is_drawn_there(self):
+        axes = draw_azimuths(self.found(), "", "phi").axes[0]
+        curve, crosses, circles = axes.lines[:3]
+        assert np.isnan(curve.get_ydata()).tolist() == [True, True, True, False, False, False, True]
+        assert len(crosses.get_xdata()) == 1 and np.allclose(circles.get_xdata(), np.radians([60, 120]))
+        assert "circles: unknown" in axes.get_xlabel()
+
+
+class TestVerification:
+    """Of two variants, with FC and without, each fails for itself if a record of it is unknown."""
+
+    def made(self, with_FC=None, without=None, d=0.01, checked=True):
+        known = None if with_FC is not None else d, None if without is not None else d
+        records = [RecordPeak("one", d, d), RecordPeak("two", *known, with_FC, without)]
+        return Dynamic(records, 0.25, {"SLV": 0.1, "SLC": 0.15}, 7, checked=checked)
+
+    @pytest.mark.parametrize("confident", [True, False])
+    def test_unknown_does_not_pass_however_small_the_peaks_are(self, confident):
+        found = self.made(**{"with_FC" if confident else "without": 3.0})
+        for variant in (True, False):
+            passes = variant is not confident
+            assert found.mean(confident=variant) == (0.01 if passes else None)
+            assert [found.holds(state, confident=variant) for state in ("SLV", "SLC")] == [passes] * 2
+            assert found.passed(confident=variant) == []  # nor is it known to pass d0*
+            assert found.unknown(confident=variant) == ([] if passes else ["two"])
+        one, other, changes, _ = of_histories(found, 1.2)
+        said = one if confident else other
+        assert "not satisfied. The outcome under two is unknown" in said
+        assert said.endswith("an unknown outcome does not pass, at SLV and SLC.")
+        assert "within d_SLV" in (other if confident else one)
+        assert changes == "The confidence factor FC changes the verdict at SLV and SLC."
+
+    def test_what_is_not_checked_passes_with_a_caution(self):
+        found = self.made(checked=False)
+        assert found.holds("SLV", confident=True)
+        assert "Caution: the joints of this mechanism are not checked" in " ".join(of_histories(found, 1.2))
+
+    @pytest.mark.parametrize(
+        ("language", "cell", "verdict", "caution"),
+        [
+            ("en", "unknown after 3.5 s", "not satisfied. The outcome under two is unknown", "Caution: the joints"),
+            (
+                "it",
+                "non noto dopo 3,5 s",
+                "verifica non soddisfatta. L'esito sotto two non è noto",
+                "Attenzione: i giunti",
+            ),
+        ],
+    )
+    def test_the_sheet_says_so_for_each_state(self, language, cell, verdict, caution):
+        each = SimpleNamespace(exact=SimpleNamespace(confidence=1.2))
+        found = self.made(with_FC=3.5, checked=False)
+        _, grid, *said = sheets.part(Language(language), each, found, "x").items
+        assert grid.rows[1][1:] == [cell, "0,01" if language == "it" else "0.01"]
+        failed = [item.text for item in said if verdict in item.text]
+        assert len(failed) == 2 and "SLV" in failed[0] and "SLC" in failed[1]
+        assert any(item.text.startswith(caution) for item in said)
+
+    def test_a_direction_that_a_polarity_overturns_is_known(self):
+        falls = SimpleNamespace(overturned=True, fell_to=1, unknown=False, peak_positive=nan, peak_negative=0.01)
+        open_ = SimpleNamespace(
+            overturned=False, fell_to=0, unknown=True, known_to=2.0, peak_positive=0.0, peak_negative=0.1
+        )
+        curve = SimpleNamespace(displacement_at=lambda phi: 2 * phi, end=1.0, d0=1.5)
+        assert dynamic._largest(curve, Direction.POSITIVE, [falls, open_]) == (None, None)
+        assert dynamic._largest(curve, Direction.NEGATIVE, [falls, open_]) == (None, 2.0)
+        assert dynamic._largest(curve, Direction.NEGATIVE, [falls]) == (0.02, None)
+
+    def test_times_with_FC_are_those_of_the_record(self, folder):
+        """With FC the motion is simulated 1.1 times as quick: the moment is given as one of the record."""
+        found = run_json("verify", folder / "arch.yaml", "--site", folder / "site.yaml", *PULSE)
+        (record,) = found["directions"]["positive"]["dynamic"]["records"]
+        assert record["d_with_FC"] is record["d_without_FC"] is None
+        assert (
+            0.9 < record["known_to_with_FC"] / record["known_to_without_FC"] < 1
+        )  # a stronger motion opens it earlier
+
+
+@pytest.fixture(scope="module")
+def page(folder):
+    """The text of a report on the arch, as the walk writes it."""
+    if not (folder / "report.html").exists():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(assessment, "POINTS", 3)
+            patch.chdir(folder)
+            run("report", *HISTORIES["report"][0])
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", (folder / "report.html").read_text()))
+
+
+class TestReport:
+    def test_the_summary_says_until_when_and_why(self, page):
+        assert "The outcome of thin arch under sine:2g:0.4s is unknown: it is known up to" in page
+        assert "Under sine:2g:0.4s: unknown" in page and "The structure may overturn." in page
+        assert "opens or slides by less than 0.5 %" in page
+        assert not re.search(r"does not overturn\b|agree closely|no, it rocks", page)
+
+    def test_tables_end_there(self, page):
+        assert re.search(r"known up to; peaks, impacts and displacements are those until then 0\.0\d+", page)
+        assert re.search(r"outcome known .* up to 0\.0\d+ s", page)
+
+    def test_a_pulse_alone_may_be_unknown_too(self):
+        fit, own = SimpleNamespace(pulse=SimpleNamespace(title="sine")), SimpleNamespace(reference="critical rotation")
+        result = SimpleNamespace(alone=0.2, alone_unknown=True, fits=[fit], histories={"nonlinear": own})
+        assert "has an unknown outcome" in assessment_words.alone(result)
+        result.alone_unknown = False
+        assert "rocks the structure to 20 % of its critical rotation" in assessment_words.alone(result)
+
+    def test_movements_say_until_when_they_are_the_largest(self):
+        mechanism = rk.load_structure(EXAMPLES / "masonry" / "portal.yaml").model_copy(update={"opening": 0.0})
+        motion = rk.parse_pulse("sine:1g:0.5s").sampled()
+        history = respond(mechanism, motion, models=("nonlinear",))["nonlinear"]
+        assert history.unknown
+        moved = Watched(mechanism).peaks(history)
+        assert moved.known_to == history.known_to and moved.points[0].horizontal > 0
+        later = replace(moved, known_to=nan), replace(moved, known_to=9.0)
+        assert largest([moved, *later]).known_to == history.known_to and np.isnan(largest(later[:1]).known_to)
+
+
+def test_many_histories_in_python_have_no_outcome_where_it_is_unknown(folder):
+    found = rk.respond_each([folder / "arch.yaml", EXAMPLES / "curve.yaml"], PULSE[1], models="nonlinear")
+    data = found.to_dict()["nonlinear"]
+    assert np.ravel(data["overturned"]).tolist()[0] is None and np.ravel(data["unknown"]).tolist() == [True, None]
+    assert "and the outcome of 1 is unknown." in found.sentences[0]

@@ -1,0 +1,28 @@
+"""Structures that do not name their contacts, so that all of their equation of motion can be tested."""
+
+from __future__ import annotations
+
+from mechanisms.arch import Arch
+from mechanisms.asymmetric_frame import AsymmetricFrame
+from mechanisms.wall import Wall
+
+
+class UncheckedArch(Arch):
+    """An arch whose joints are not checked: it moves as any other, and its histories are known to their end."""
+
+    def contacts(self, direction):
+        return None
+
+
+class UncheckedFrame(AsymmetricFrame):
+    """A frame whose joints are not checked."""
+
+    def contacts(self, direction):
+        return None
+
+
+class UncheckedWall(Wall):
+    """A wall whose joints are not checked."""
+
+    def contacts(self, direction):
+        return None
