@@ -324,6 +324,15 @@ def test_respond_says_it(tmp_path):
     assert pulse["friction_needed"] > 0 and pulse != found
 
 
+def test_without_friction_in_the_file_what_is_required_is_compared_with_masonry():
+    block = Block(width=0.7, height=2.8)
+    _, found = checked(block, shaking(0.5))
+    assert found.friction_needed < 0.6
+    assert "no more than the 0.6 usual for masonry" in contact_words(found, block)
+    said = contact_words(replace(found, friction_needed=0.61), block)
+    assert "more than the 0.6 usual for masonry" in said and "no more than" not in said
+
+
 def test_an_answer_in_python_has_it_too():
     import rocking_cli as rk
 

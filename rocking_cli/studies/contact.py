@@ -24,6 +24,7 @@ Reals = NDArray[np.float64]
 Places = NDArray[np.intp]
 BEARS = 0.01  # of N as rocking starts: with less a joint bears nothing that friction could be asked of
 IDLE = 1e-9  # of the largest force as rocking starts: a joint with less, such as of a beam without mass, bears nothing
+MASONRY = 0.6  # friction that joints of masonry usually have
 NEAR_PEAK = 0.9  # of the largest demand: how long it lasts is how long there is more than that
 LOOKS = 300  # moments of each direction at which it is seen whether another joint would open
 OPEN = 1e-6  # of the weight: a tension that is more than rounding
@@ -120,6 +121,11 @@ class Contact:
     opens_joint: str = ""
     followed: bool = False
     known_to: float = NONE
+
+    @property
+    def beyond_masonry(self) -> bool:
+        """Whether more friction is required than joints of masonry usually have."""
+        return self.friction_needed > MASONRY
 
     @property
     def holds(self) -> bool:

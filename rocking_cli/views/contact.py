@@ -6,7 +6,7 @@ from math import isnan
 from typing import Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.studies.contact import NEAR_PEAK, NONE, Contact
+from rocking_cli.studies.contact import MASONRY, NEAR_PEAK, NONE, Contact
 from rocking_cli.views.view import number
 
 BEYOND = ": the result is not valid beyond that time"
@@ -106,7 +106,11 @@ def _friction(found: Contact, beyond: str) -> str:
     where = _where(found.joint) if found.joint else "the structure"
     if found.friction is None:
         lasts = f"it requires more than {100 * NEAR_PEAK:.0f} % of this value for {number(found.duration, 2)} s"
-        return f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}; around this time {lasts}."
+        usual = f"{'more' if found.beyond_masonry else 'no more'} than the {MASONRY:g} usual for masonry"
+        return (
+            f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}, {usual}; around this time "
+            f"{lasts}."
+        )
     there = number(found.friction, 3)
     if isnan(found.slides):
         return f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}; {there} is available."
