@@ -165,6 +165,28 @@ def test_compliance_of_a_block_let_go_at_its_foot():
     assert found == pytest.approx(1 / np.diag(np.linalg.inv(a)), rel=1e-12)
 
 
+def test_a_lone_block_that_jumps_is_known_no_further():
+    """Its foot's force by hand, N/m = g + R [sin(a - phi) phi.. - cos(a - phi) phi.^2], and its opening by sums."""
+    r, g, dt = np.sqrt(2), 9.80665, 1e-4
+    u = 2.25 * g * np.sin(6 * np.pi * np.arange(4000) * dt)
+    motion, made = GroundMotion("sine", dt, u), Registry()["block"](width=2.0, height=2.0)
+    found = respond(made, motion, models=("nonlinear",))["nonlinear"]
+    whole = respond(made.model_copy(update={"opening": 1e3}), motion, models=("nonlinear",))["nonlinear"]
+    part = slice(0, u.size)
+    lever = np.pi / 4 - abs(whole.phi[part])
+    bend = -3 / (4 * r) * (g * np.sin(lever) + np.sign(whole.phi[part]) * u * np.cos(lever))  # Eq. 1
+    force = g + r * (np.sin(lever) * bend - np.cos(lever) * whole.rate[part] ** 2)
+    first = int(np.argmax((force < 0) & (whole.phi[part] != 0)))
+    assert found.warned == pytest.approx(first * dt, abs=2 * dt)
+    let_go = np.maximum(-force, 0) / (1 - 0.75 * np.sin(lever) ** 2)  # m - G^2/I of what hangs on its foot
+    opening = np.cumsum(np.cumsum(let_go[first:])) * dt**2
+    assert found.unknown
+    assert found.known_to == pytest.approx((first + np.argmax(opening > 0.005 * found.check.reach)) * dt, abs=5 * dt)
+    runs = respond_many(build_models(made, ("nonlinear",)), [motion], Runs.of(0, 0, scale=[0.5, 1.0]))
+    assert runs.unknown.tolist() == [False, True]
+    assert runs.known_to[1] == pytest.approx(found.known_to, abs=dt)
+
+
 def test_where_the_quick_bounds_hold_every_joint_bears():
     for name in ("masonry/buttressed_arch.yaml", "frame.yaml", "wall.yaml"):
         made = structure(name)
@@ -188,6 +210,25 @@ def test_where_the_quick_bounds_hold_every_joint_bears():
             normals = [row for row in joints.contacts[:, d, :2].ravel() if row >= 0]
             assert force[normals].min() >= 0
         assert inside > 2000
+
+
+@pytest.mark.parametrize("name", ["masonry/portal.yaml", "wall.yaml", "block.yaml", "frame.yaml"])
+def test_below_the_line_of_the_calm_every_joint_bears(name):
+    (model,) = build_models(structure(name), ("nonlinear",))
+    joints, random = model.joints, np.random.default_rng(3)
+    most, fastest = joints.calm
+    assert most > 0 and fastest > 0
+    least = np.inf
+    for d, table in enumerate(model.tables):
+        cells = len(joints.rows) * table.q(model.phi_cr[d]) / table.end
+        normals = [row for row in joints.contacts[:, d, :2].ravel() if row >= 0]
+        for at in np.append(cells * random.random(300), [0.0, cells]):
+            factors = joints.rows[int(at), d].reshape(-1, 5, 4) @ (at - int(at)) ** np.arange(4.0)
+            share = random.choice([0.0, 1.0, random.random()])
+            for u in (-share * most, share * most):
+                least = min(least, (factors[normals, :4] @ [1.0, u, (1 - share) * fastest, 0.0]).min())
+    weight = model.gravity * sum(body.mass for body in structure(name).weighed())
+    assert 0 <= least < 0.3 * weight  # and much more would be too much
 
 
 def test_a_batch_says_what_single_histories_say():

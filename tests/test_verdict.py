@@ -15,7 +15,7 @@ from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.dynamics.history import respond
-from rocking_cli.dynamics.holding import NEXT, NO_JOINTS
+from rocking_cli.dynamics.holding import NO_JOINTS, OVERTURNS
 from rocking_cli.dynamics.verdict import agreements, verdict
 from tests.conftest import EXAMPLES, record
 from tests.test_cli import run
@@ -370,7 +370,7 @@ def test_every_command_calls_an_outcome_the_same(structure, pulse, word, tmp_pat
     }
     for command, text in texts.items():
         assert word in " ".join(text.split()), command
-        said = " ".join(text.split()).replace(NEXT, "")
+        said = " ".join(text.split()).replace(OVERTURNS, "")
         before = re.split("Coefficient of restitution|No closed form|Closed form", said)[0]
         for other in {"does not uplift", "rocks", "overturns"} - {word, "rocks"}:
             assert other not in before, command

@@ -11,10 +11,10 @@ from rocking_cli.names import percent
 
 NOT_CHECKED = "The joints of this mechanism are not checked: it does not say which of them stay closed."
 NO_JOINTS = "The equivalent blocks have no joints, and cannot tell the outcome, whatever they give."
-NEXT = (
-    "Next: `rocking margin` shows up to which scale factor the outcome is known. For stronger motions, describe the "
-    "structure as a linkage that hinges at the joint that opens, or assume that it overturns."
-)
+INSTANT = 1e-6  # of D_cr: less of an opening is said to be none
+NEXT = "Next: `rocking margin` shows up to which scale factor the outcome is known. For stronger motions, {}."
+OVERTURNS = "assume that it overturns"
+HINGES = f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}"
 
 
 def unchecked(name: str = "") -> str:
@@ -39,14 +39,13 @@ def joints_in_words(history: History) -> str:
     """
     check = history.check
     if history.unknown:
-        return f"{_until(history)} {NEXT}"
+        alone = check is not None and check.alone
+        return f"{_until(history)} {NEXT.format(OVERTURNS if alone else HINGES)}"
     if check is None:
         return NOT_CHECKED
-    if not check.count:
-        return ""
     if isnan(check.warned):
-        return "All joints bear throughout the motion."
-    if not check.largest:
+        return "" if check.alone else "All joints bear throughout the motion."
+    if check.largest < INSTANT * check.reach:
         where = f"the joint between {check.warned_joint}"
         return f"All joints bear throughout, except {where} for an instant at {check.warned:.4g} s."
     return (

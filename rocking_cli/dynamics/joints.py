@@ -28,6 +28,7 @@ FINER = 4  # cells of the certain bounds in one of the forces
 TENSION = 1e-9  # of the weight: a force that is missing by rounding alone
 QUICK = 3e-3  # of 1/p: the longest step in which openings of a small structure are advanced
 ANY = 1e6  # m/s2: more than any ground acceleration
+NEVER = (np.inf, -1.0)  # all joints bear under no q.^2 at all
 SAFE = 0.01  # of the width of the certain bounds, which the cubics may leave between two of their nodes
 
 
@@ -63,6 +64,10 @@ class Joints:
         Acceleration of gravity [m/s2].
     redundant : bool
         Whether statics alone does not say what each joint bears: then rows are modes in which several let go.
+    calm : tuple of float
+        What all joints bear up to phi_cr: u_g'' at q.^2 = 0, and q.^2 at u_g'' = 0; that is -1 if they do not at rest.
+    alone : bool
+        Whether the only joint is that of a single body with the ground.
     """
 
     labels: Sequence[str]
@@ -77,6 +82,8 @@ class Joints:
     step: float
     gravity: float
     redundant: bool = False
+    calm: tuple[float, float] = NEVER
+    alone: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,6 +118,8 @@ class JointCheck:
         Which.
     count : int
         How many joints are checked; 0 if none could open.
+    alone : bool
+        Whether that is the joint of a single body with the ground.
     """
 
     limit: float
@@ -127,6 +136,7 @@ class JointCheck:
     parted: float | None
     parted_joint: str
     count: int
+    alone: bool
 
 
 REASONS = ("opens", "slides", "crushes", "weightless")  # in the order of the kernel
@@ -163,6 +173,7 @@ def check_of(joints: Joints | None, marks: Reals) -> JointCheck | None:
         parted=float(marks[opens]) if stays_closed else None,
         parted_joint=label(where),
         count=len(joints.labels),
+        alone=joints.alone,
     )
 
 
@@ -185,8 +196,6 @@ def joints_of(mechanism: Mechanism, statics: Sequence[Statics], tables: Sequence
     Joints or None
         None if its joints are not known, so that no history of it is checked.
     """
-    if len(mechanism.bodies()) == 1 and mechanism.friction is None and mechanism.strength is None:
-        return _without(mechanism, statics)
     cells = max(TO_CRITICAL * table.end / table.q(side.reference) for table, side in zip(tables, statics, strict=True))
     cells = int(min(np.ceil(cells), MOST_CELLS))
     sides = list(zip(mechanism.sides, tables, strict=True))
@@ -226,23 +235,14 @@ def joints_of(mechanism: Mechanism, statics: Sequence[Statics], tables: Sequence
     return Joints(
         labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), mechanism.opening,
         not any(table.held.size for table in tables), QUICK / p, mechanism.gravity,
-        redundant,
+        redundant, _calm(within, tables, statics),
+        len(mechanism.bodies()) == 1,
     )  # fmt: skip
 
 
 def _determined(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple[Released | None, Reals | None]:
     """The rows of a direction, and their impulses. Raises `Undetermined`."""
     return released(mechanism, direction, phi), impulses(mechanism, direction.opposite)
-
-
-def _without(mechanism: Mechanism, statics: Sequence[Statics]) -> Joints | None:
-    """The joints of a single body that never slides nor crushes: nothing opens under it before it overturns."""
-    if not all(mechanism.contacts(direction) for direction in mechanism.directions):
-        return None
-    return Joints(
-        [], np.zeros((0, 2, 4), np.int64), np.zeros((0, 2)), np.zeros((0, 2, 0, 20)), np.zeros((2, 0, 2)),
-        np.zeros((0, 2, 5)), _reach(mechanism, statics), mechanism.opening, True, 1.0, mechanism.gravity,
-    )  # fmt: skip
 
 
 def _at(table: Table, cells: int) -> Reals:
@@ -335,6 +335,22 @@ def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
     return found
 
 
+def _calm(within: Reals, tables: Sequence[Table], statics: Sequence[Statics]) -> tuple[float, float]:
+    """What all joints bear anywhere between rest and phi_cr: u_g'' at q.^2 = 0, and q.^2 at u_g'' = 0.
+
+    Between the two they bear what lies below the straight line, as each cell is convex.
+    """
+    push = fast = np.inf
+    for d, (table, side) in enumerate(zip(tables, statics, strict=True)):
+        line = within[: int(np.ceil(table.q(side.reference) / table.end * len(within))), d]
+        push = min(push, -line[:, 0].max(), line[:, 2].min())
+        for at, slope in ((-line[:, 0], -line[:, 1]), (line[:, 2], line[:, 3])):
+            narrows = slope < 0
+            fast = min(fast, np.min(at[narrows] / -slope[narrows], initial=np.inf))
+        fast = min(fast, line[:, 4].min())
+    return (float(push), float(fast)) if push > 0 and fast > 0 else NEVER
+
+
 def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
     """Between which u_g'' all rows are at least zero at some q.^2."""
     base, push = plane[..., ONE] + plane[..., RATE] * fast[:, None], plane[..., PUSH]
@@ -378,7 +394,7 @@ def _reach(mechanism: Mechanism, statics: Sequence[Statics]) -> float:
 def laid_out(all_joints: Sequence[Joints | None]) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals]:
     """Lay out the joints of several structures one after the other, as the fields of `kernels.Joints`."""
     counts = np.zeros((len(all_joints), 8), np.int64)
-    numbers = np.ones((len(all_joints), 4))
+    numbers = np.ones((len(all_joints), 6))
     known = [each for each in all_joints if each is not None]
     first = rows_at = struck_at = within_at = 0
     for k, each in enumerate(all_joints):
@@ -388,7 +404,7 @@ def laid_out(all_joints: Sequence[Joints | None]) -> tuple[Integers, Integers, R
             first, len(each.labels), each.rows.shape[2], len(each.rows), rows_at, struck_at, within_at,
             len(each.within),
         )  # fmt: skip
-        numbers[k] = each.gravity, each.limit * each.reach, each.step, each.scales
+        numbers[k] = each.gravity, each.limit * each.reach, each.step, each.scales, *each.calm
         first += len(each.labels)
         rows_at, struck_at, within_at = (
             rows_at + each.rows.size, struck_at + each.struck.size, within_at + each.within.size,

@@ -86,8 +86,8 @@ class Joints(NamedTuple):
     rows: np.ndarray  # of all structures, each (cells, 2, rows, OF_ROW): forces [N] and compliance [1/kg] over q
     struck: np.ndarray  # each (2, rows, 2): impulses over the rate before, a constant and the factor of eta
     within: np.ndarray  # each (cells, 2, 5): where all joints bear for certain, see `quiet`
-    # (m, 4): gravity [m/s2], limit of the opening [m], longest step in the structure's own size [s], whether all forces
-    # scale with g
+    # (m, 6): gravity [m/s2], limit of the opening [m], longest step in the structure's own size [s], whether all forces
+    # scale with g, and the u_g'' and the q.^2 that joints bear up to phi_cr, each without the other
     numbers: np.ndarray
 
 
@@ -105,6 +105,7 @@ class Watch(NamedTuple):
     step: float
     scales: bool  # whether all forces scale with g, as those of no tie do
     slender: float  # factor on its slenderness, by which u_g'' is divided, but not for its joints
+    slow: float  # q.^2 up to which no joint opens before phi_cr, in the whole motion
     kept: np.ndarray  # (joints, KEPT)
     notes: np.ndarray  # (NOTES,)
     active: np.ndarray  # int (4 joints,): rows that move in a step
@@ -504,8 +505,12 @@ def quiet(watch, law, ground, tau, q, w):
     Forces are affine in g, u_g'' and q.^2: with g times a factor they bear under u_g'' and q.^2 times that. That of a
     tie does not grow with g, and nothing is certain under vertical motion.
     """
+    if watch.notes[MOVING] != 0:
+        return False
+    if w * w <= watch.slow and q <= law.q_cr:
+        return True
     weight = ground.g + ground.grade * tau
-    if watch.notes[MOVING] != 0 or weight <= 0 or not (watch.scales or weight == law.gravity):
+    if weight <= 0 or not (watch.scales or weight == law.gravity):
         return False
     per_weight = watch.gravity / weight
     cells = watch.within.shape[0]
@@ -1166,10 +1171,14 @@ def numbers_of(usual, what):
 
 
 @compile_kernel
-def watch_of(joints, m, size, slender):
+def watch_of(joints, m, size, slender, motion):
     """The joints of a structure, none of which has opened."""
     first, count, rows, cells, rows_at, struck_at, within_at, within_cells = joints.sizes[m]
-    gravity, limit, quick, scales = joints.numbers[m]
+    gravity, limit, quick, scales, push, fast = joints.numbers[m]
+    slow = -1.0
+    if motion.v.size == 0 and (scales != 0 or size == 1):
+        strongest = abs(motion.factor) * size * max(1.0, slender) * (motion.ahead[0] if motion.ahead.size > 0 else 0.0)
+        slow = fast / size * (1 - strongest / push)
     return Watch(
         count,
         joints.contacts[first : first + count],
@@ -1182,6 +1191,7 @@ def watch_of(joints, m, size, slender):
         min(LOOK, quick * sqrt(size)),
         scales != 0,
         slender,
+        slow,
         np.empty((count, KEPT)),
         np.empty(NOTES),
         np.empty(4 * count, np.int64),
@@ -1242,7 +1252,7 @@ def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks):
             deck.v_above[v_later],
         )
         marks = all_marks[i]
-        watch = watch_of(deck.joints, m, size, what[SLENDER])
+        watch = watch_of(deck.joints, m, size, what[SLENDER], motion)
         marks[STATUS] = follow(structure, motion, what[START], rtol, most_impacts, brief, watch, samples, marks)
         for d in range(2):
             for peak in (PEAK, PASSED_PEAK, WARNED_PEAK):

@@ -139,8 +139,8 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
     run = histories[best]
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
     said = [f"{by or 'The'} structure {_ends(run)}."]
-    if run.unknown or (best == "nonlinear" and run.check is not None and run.check.count):
-        said.append(joints_in_words(run))
+    if run.unknown or (best == "nonlinear" and run.check is not None):
+        said += filter(None, [joints_in_words(run)])
     if run.unknown and len(histories) > 1:
         said.append(NO_JOINTS)
     else:
