@@ -42,6 +42,7 @@ from rocking_cli.errors import MechanismError
 ABOVE = 1e-6  # of how far they are apart: hinges that are above one another
 SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
 SLIPS = 0.01  # of the limit: where it is seen which way a face that slips goes
+GLUE = 0.01  # of lambda: by more than that the shear of joints without friction raises it, and it is said
 OFF = 1e-7  # of its length: a joint that opens there by less stays shut
 LEADS = 1e-8  # of the fastest turn: less is none
 
@@ -114,8 +115,9 @@ class Assembly(Membered):
     verified: ClassVar[str] = "arches, portals and stacks by hand; static and kinematic multiplier; brute force"
     caution: ClassVar[str] = (
         "The assembly rocks on the joints that open first. `rocking collapse` gives the rotation up to which no other "
-        "joint opens if it is pushed slowly; time histories state until when they are known. If friction is given, a "
-        "joint that slides is assumed to open as well (associated flow), which overestimates lambda."
+        "joint opens if it is pushed slowly; beyond it joints may open or slide. Time histories state until when they "
+        "are known. If friction is given, a joint that slides is assumed to open as well (associated flow), which "
+        "overestimates lambda: by up to 11 % for the walls of Ferris and Tin-Loi (2001)."
     )
 
     starter: ClassVar[tuple[str, ...]] = ("density", "depth")
@@ -356,11 +358,19 @@ class Assembly(Membered):
             linkage = LinkageMotion(centres, [*pins, *guides], lead, direction, fixed, rest)
         except NoMotion as error:
             why = error.reason
+            needed = self._needed(direction)
             if found.lifted:
                 joints = [self._joint(k) for k in found.lifted]
                 why = (
                     f"{' and '.join(joints)} open at both ends but still carry shear, because joints without "
                     f"friction never slide: give `friction`, or `friction_of: {{{joints[0]}: 0}}`"
+                )
+            elif joints := [self._joint(k) for k in analysis.sheared(needed, self._contacts)]:
+                mu = f"{analysis.USUAL:g}"
+                why = (
+                    f"the mechanism at {self._collapse(direction).multiplier:.4g} g cannot move on. More shear than a "
+                    f"friction of {mu} allows is carried between {', and between '.join(joints)}, because joints "
+                    f"without friction never slide: give `friction`, such as {mu}"
                 )
             raise MechanismError(f"in the {direction.label} direction {why}") from None
         self._check_slips_off(direction, linkage)
@@ -444,6 +454,34 @@ class Assembly(Membered):
 
     # What is said of it
 
+    def own_caution(self) -> str:
+        """By how much joints that never slide raise lambda, if by more than 1 %."""
+        raised = []
+        for direction in self.directions:
+            lambda_, usual = self._collapse(direction).multiplier, self._with_usual(direction)
+            if usual is not None and usual < (1 - GLUE) * lambda_:
+                raised.append(f"{usual:.4g} g instead of {lambda_:.4g} g in the {direction.label} direction")
+        if not raised:
+            return ""
+        return (
+            "Joints without `friction` never slide and may carry shear without a normal force, which raises lambda. "
+            f"With a friction of {analysis.USUAL:g} it would be {' and '.join(raised)}: give `friction`."
+        )
+
+    @per_direction
+    def _with_usual(self, direction: Direction) -> float | None:
+        """Lambda with the usual friction in joints without any; None if all have some."""
+        return analysis.with_usual(self._collapse(direction))
+
+    @per_direction
+    def _no_model(self, direction: Direction) -> str:
+        """Why its mechanism cannot be followed, as a sentence without a full stop; empty if it can."""
+        try:
+            self._linkage(direction)
+        except MechanismError as error:
+            return str(error)
+        return ""
+
     def collapse(self, direction: Direction) -> CollapseMechanism:
         """The weakest mechanism of a direction. Raises `MechanismError` where there is none."""
         found = self._groups(direction)
@@ -451,7 +489,8 @@ class Assembly(Membered):
         friction = self._needed(direction)
         thrust = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
         parts = {name: "+".join(group) for group in found.groups for name in group}
-        moves = not found.slides
+        no_model = "" if found.slides else self._no_model(direction)
+        moves = not found.slides and not no_model
         valid = self._valid_to(direction) if moves else None
         return CollapseMechanism(
             lambda_=self.uplift(direction) if moves else state.multiplier,
@@ -465,6 +504,8 @@ class Assembly(Membered):
             lifted=[self._joint(k) for k in found.lifted],
             slides=[self._joint(k) for k in found.slides],
             glued=[self._joint(k) for k in friction.glued],
+            with_usual=self._with_usual(direction),
+            no_model=no_model,
             friction_needed=friction.needed,
             valid_to=valid[0] if valid else None,
             opens=self._joint(valid[1]) if valid else "",
@@ -526,12 +567,15 @@ class Assembly(Membered):
             most = f"no friction up to {analysis.MOST:g} does"
             why = f"{most}: {which} would carry shear without pressing, and lambda be less"
             friction = Extra("friction_needed", nan, "", why)
+        usual = self._with_usual(direction)
+        meaning = f"lambda with a friction of {analysis.USUAL:g} in joints without any given"
+        known = (friction,) if usual is None else (friction, Extra("lambda_with_usual", usual, "g", meaning))
         found = self._valid_to(direction)
         if found is None:
-            return (friction,)
+            return known
         phi, k, share = found
         return (
-            friction,
+            *known,
             Extra("valid_to", phi, "rad", f"rotation at which, held there, the joint of {self._joint(k)} opens too"),
             Extra("held_by", share, "g", "the acceleration that holds it there, G/B"),
         )

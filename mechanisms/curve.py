@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from math import hypot, pi
+from math import hypot, pi, sqrt
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
@@ -37,7 +37,8 @@ class Curve(Mechanism):
     """One rigid body that stands for the structure: its centroid moves in the direction that the curve says.
 
     With the ratio r(phi), G = m R sin(beta), B = m R cos(beta), tan(beta) = r, R constant: G/B is the curve, and the
-    inertia stays as it is at rest. For a single rigid body on two feet that is exact.
+    inertia stays as it is at rest, in both directions. For a single rigid body on two feet that is exact. Where R
+    differs, the body turns the less in the direction of the larger one: what it moves by is in the curve.
     """
 
     mechanism: ClassVar[str] = "curve"
@@ -109,7 +110,7 @@ class Curve(Mechanism):
         for key in ("loads", "ties", "interlock", "density"):
             if getattr(self, key) is not None:
                 raise geometry_error(key, "all that acts on the structure is in its curve: have it in the analysis")
-        arm = self._arm(Direction.POSITIVE)
+        arm = max(self._arm(direction) for direction in Direction)
         if self.inertia < self.mass * arm**2:
             raise geometry_error(
                 "inertia",
@@ -150,8 +151,17 @@ class Curve(Mechanism):
         return all(len(ratio.x) == 2 for ratio in self._ratios.values())
 
     def bodies(self) -> Sequence[Body]:
-        central = self.inertia - self.mass * self._arm(Direction.POSITIVE) ** 2
-        return (Body("structure", self.mass, max(central, 0.0), 1j * self.centroid_height),)
+        central = max(self._central(direction) for direction in Direction)
+        return (Body("structure", self.mass, central, 1j * self.centroid_height),)
+
+    def _central(self, direction: Direction) -> float:
+        """What the turning body needs about its centroid for the inertia given [kg m2]."""
+        return max(self.inertia - self.mass * self._arm(direction) ** 2, 0.0)
+
+    def _turning(self, direction: Direction) -> float:
+        """By how much the body turns over phi."""
+        most = max(self._central(each) for each in Direction)
+        return sqrt(self._central(direction) / most) if most > 0 else 1.0
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         ratio, arm = self._ratios[direction], self._arm(direction)
@@ -160,8 +170,8 @@ class Curve(Mechanism):
         path = self._way(phi, direction)
         speed: Points = arm * _along(r, direction)
         change: Points = 1j * direction * bend * speed
-        rest, none = 1j * self.centroid_height, np.zeros_like(phi)
-        return (RigidMotion(rest, rest + arm * path, speed, change, -direction * phi, none - direction, none),)
+        rest, none, turns = 1j * self.centroid_height, np.zeros_like(phi), -direction * self._turning(direction)
+        return (RigidMotion(rest, rest + arm * path, speed, change, turns * phi, none + turns, none),)
 
     def _way(self, phi: Reals, direction: Direction) -> Points:
         """The integral of cos(beta) + i sin(beta) from rest, the first times s."""

@@ -92,6 +92,12 @@ class FieldError(InputError, ValueError):
     """Fields that a mechanism made in Python does not have, or values that they cannot have; a `ValueError` too."""
 
 
+def about(name: str | None, error: Exception) -> str:
+    """The message of an error that begins with the name of what it is about, once."""
+    text = str(error)
+    return text if text.startswith(f"{name}: ") else f"{name}: {text}"
+
+
 def renamed(error: InputError, arguments: Mapping[str, str]) -> InputError:
     """The same problems, with other names for the arguments of a function, which stand in backticks: `dt`.
 

@@ -51,3 +51,9 @@ def percent(share: float) -> str:
     if size < 5e-3:
         return "0 %"
     return f"{sign}{size:.0f} %" if size >= 9.95 else f"{sign}{size:.2g} %"
+
+
+def peaks_over(no_critical_rotation: list[bool] | tuple[bool, ...]) -> str:
+    """What a peak is over, in words; `no_critical_rotation` says of each direction whether it ends at its limit."""
+    free = list(no_critical_rotation)
+    return "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"

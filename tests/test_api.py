@@ -228,3 +228,21 @@ MODULES = ("", ".api.verbs", ".dynamics.batch", ".dynamics.exact", ".names", ".u
 def test_examples_in_docstrings_run(name):
     found = doctest.testmod(import_module(f"rocking_cli{name}"))
     assert found.attempted > 0 and found.failed == 0
+
+
+def test_a_motion_keeps_samples_of_its_own():
+    samples = np.zeros(100)
+    made = []
+    for k in (1, 2, 3):
+        samples[:] = k
+        made.append(rk.GroundMotion(f"m{k}", 0.01, samples))
+    assert [each.pga_g for each in made] == pytest.approx([k / 9.80665 for k in (1, 2, 3)])
+    with pytest.raises(ValueError, match="read-only"):
+        made[0].acceleration[0] = 9.0
+    assert made[0].scaled(1.0).acceleration is not samples
+
+
+@pytest.mark.parametrize("scales", [[[1.0], [2.0], [3.0]], np.ones((2, 2))])
+def test_factors_in_several_dimensions_are_refused(scales):
+    with pytest.raises(rk.InputError, match="scales must be one factor or a list of them"):
+        rk.respond_each(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", models="nonlinear", scales=scales)

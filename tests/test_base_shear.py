@@ -42,7 +42,7 @@ def test_what_holds_the_top_of_a_wall_is_no_base_shear():
     found = Contacts(wall).check(history, SHAKING.scaled(2.2))
     assert 0 < np.nanmax(np.abs(shear)) <= found.base_shear
     # Two equal blocks share the drive between foot and top: the foot takes well less than all of it.
-    assert found.base_shear < 0.9 * 1000.0 * 2.2 * SHAKING.pga * 9.80665
+    assert found.base_shear < 0.9 * 1000.0 * 2.2 * SHAKING.pga_g * 9.80665
 
 
 def test_at_rest_there_is_none():

@@ -154,4 +154,4 @@ class TestWritten:
     def test_a_pga_in_g_has_the_digits_of_the_file(self):
         for value in (0.8740596, 0.1234567, 0.3, 0.55):
             motion = GroundMotion("m", 0.01, np.array([0.0, value * STANDARD_GRAVITY, 0.0]))
-            assert motion.pga == value
+            assert motion.pga_g == value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -188,3 +189,17 @@ class TestOthers:
             "uses a single record, but 2 are given"
             in run("figure", "14", "--record", "r/east.csv", "--record", "r/west.csv", code=2).stderr
         )
+
+
+def test_what_governs_is_over_the_limit_where_nothing_is_critical(tmp_path):
+    """A tie that holds a block up to its limit: there is no phi_cr to speak of."""
+    file = tmp_path / "tied.yaml"
+    file.write_text(
+        "mechanism: block\nwidth: 0.6\nheight: 4.0\ndensity: 2000\ndepth: 1.0\none_sided: positive\nrebound: 0.5\n"
+        "ties:\n  - {name: bar, from: {ground: [-4.0, 4.0]}, to: {at: [-0.3, 4.0]}, stiffness: 1e6}\n",
+        encoding="utf-8",
+    )
+    said = " ".join(run("respond", file, "--pulse", "sine:0.4g:0.8s", "--pulse", "sine:0.5g:0.8s").stdout.split())
+    assert "of the limit" in said and "governs" in said and "phi_cr." not in said.split("governs")[1].split(".")[0]
+    governs = re.search(r"governs: the median peak of its neighbours is [\d.]+ ([a-z_ ]+)\.", said)
+    assert governs is not None and governs[1] == "of the limit"

@@ -105,7 +105,7 @@ class TestTables:
     def test_what_larger_and_smaller_ones_do(self):
         weak = run(BLOCK, "--record", ACCEL, "--scale", "0.01").stdout
         assert "it does not uplift. No smaller size down to scale 0.1 overturns. No larger size" in weak
-        strong = run(BLOCK, "--record", ACCEL, "--scale", "200").stdout
+        strong = run(BLOCK, "--record", ACCEL, "--scale", "200", "--opening", "1000").stdout
         assert "Every smaller size down to scale 0.1 overturns. Every larger size up to scale 10" in strong
         between = run_json(BLOCK, "--record", ACCEL, "--scale", "5")["spectra"][0]
         fell = np.array(between["every_overturned"][0]) & (np.array(between["scale"]) > 1)

@@ -21,7 +21,8 @@ from rocking_cli.dynamics.holding import joints_in_words
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies import contact
 from rocking_cli.studies.contact import Contacts, _stretches
-from rocking_cli.views.contact import contact_words
+from rocking_cli.views.contact import contact_row, contact_words
+from rocking_cli.views.view import number
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -368,3 +369,20 @@ def test_the_picture_shows_it_where_it_is_requested(tmp_path):
         sizes.append((tmp_path / f"{k}.svg").read_text(encoding="utf-8").count("friction required"))
     assert sizes == [0, 1]
     assert "give --plot FILE" in " ".join(run(*asked, "--contact", code=2).stderr.split())
+
+
+def test_forces_in_a_row_are_in_kN_as_they_are_in_sentences():
+    heavy, none = Block(width=0.7, height=2.8, mass=20e3), Block(width=0.7, height=2.8)
+    for structure, unit, per in ((heavy, "kN", 1000), (none, "N/kg", 1)):
+        _, found = checked(structure, shaking(0.4))
+        row = contact_row(found, structure)
+        assert row[5] == f"{found.base_shear / per:.4g} {unit}" and row[6] == f"{found.least_normal / per:.4g} {unit}"
+
+
+def test_no_number_is_minus_nothing():
+    assert number(-0.0) == "0" and number(-0.0, 3) == "0" and number(-1e-9) == "-1e-09"
+
+
+def test_the_name_of_a_structure_begins_a_message_once():
+    assert errors.about("pier", errors.MechanismError("pier: it locks")) == "pier: it locks"
+    assert errors.about("pier", errors.MechanismError("it locks")) == "pier: it locks"

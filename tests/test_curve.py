@@ -187,3 +187,17 @@ def test_eta_is_that_of_any_rigid_body():
     found = Curve(points=[[0.0, tan(radians(20.0))], [0.7, 0.0]], **{**STRAIGHT, "inertia": 3000.0})
     m_r2 = 1000.0 * (1.4 / np.cos(radians(20.0))) ** 2
     assert found.eta(POSITIVE) == pytest.approx(1 - 2 * m_r2 * np.sin(radians(20.0)) ** 2 / 3000.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_the_inertia_given_is_that_of_both_directions(swapped):
+    """Whichever direction has the longer way of the centroid."""
+    one, other = [[0.0, 0.2], [0.1, 0.15], [0.5, 0.0]], [[0.0, 0.1], [0.1, 0.08], [0.3, 0.0]]
+    points, negative = (other, one) if swapped else (one, other)
+    made = Curve(
+        mass=10e3, points=points, negative_points=negative, control_height=4.0, centroid_height=2.0, inertia=50e3,
+        restitution=0.9,
+    )  # fmt: skip
+    for direction in Direction:
+        found = made.coefficients(np.array([0.0, 0.02, made.critical_rotation(direction)]), direction)
+        assert pytest.approx(50e3, rel=1e-12) == found.I

@@ -270,3 +270,12 @@ def test_a_wall_is_designed_for_a_code():
     assert counts.states["SLV"].ratio == pytest.approx(1, abs=1e-6)
     wide = rk.design(rk.Block(width=0.6, height=8.0), "width=0.4m:0.9m", "alpha0 >= 0.1")
     assert wide.value == pytest.approx(0.8, rel=1e-9)
+
+
+def test_a_range_that_looks_like_millimetres_is_warned_of(tmp_path):
+    file = tmp_path / "block.yaml"
+    file.write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\n", encoding="utf-8")
+    odd = run("design", file, "--vary", "width=200:800", "--until", "lambda > 0.1", "--points", "3").stderr
+    assert "at width = 200 m: width is 200 m: did you mean 200 mm?" in " ".join(odd.split())
+    right = run("design", file, "--vary", "width=200mm:800mm", "--until", "lambda > 0.1", "--points", "3").stderr
+    assert "did you mean" not in right

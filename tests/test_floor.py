@@ -149,7 +149,7 @@ class TestFloor:
         assert peaks["stiff"] == pytest.approx(peaks["ground"], rel=1e-3)
         assert (np.nan_to_num(peaks["floor"], nan=9) > np.nan_to_num(peaks["ground"], nan=9)).any()
         record = json.loads(run("results", tmp_path / "floor.db", "--json").stdout)["records"][0]
-        assert record["pga"] == pytest.approx(read_record(ACCEL).pga)
+        assert record["pga"] == pytest.approx(read_record(ACCEL).pga_g)
 
 
 class TestTurned:
@@ -252,7 +252,7 @@ def test_in_python(quake, tmp_path):
 
     other = rk.correct(quake, "trim 0:6", {"lowpass": 20})
     assert other.processing == ("trim 0:6", "lowpass 20")
-    assert rk.on_floor(quake, FLOOR).pga == Floor.parse(FLOOR).of(quake).pga
+    assert rk.on_floor(quake, FLOOR).pga_g == Floor.parse(FLOOR).of(quake).pga_g
     found = rk.respond_around(
         rk.Block(width=0.7, height=2.8), quake, rk.correct(quake, "lowpass 3"), models="nonlinear"
     )

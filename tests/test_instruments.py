@@ -76,7 +76,7 @@ class TestDerivatives:
         bare = write(tmp_path / "bare.csv", "t,u", T, U)
         with pytest.raises(InputError, match="does not say what unit its displacements are in"):
             read_record(bare, quantity="displacement")
-        assert read_record(bare, quantity="displacement", units="m").pga == pytest.approx(
+        assert read_record(bare, quantity="displacement", units="m").pga_g == pytest.approx(
             np.abs(ACC).max() / STANDARD_GRAVITY, rel=5e-3
         )
         with pytest.raises(InputError, match="'g' is not a unit of displacement"):

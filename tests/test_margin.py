@@ -188,7 +188,7 @@ class TestWords:
     def test_the_numbers_are_those_of_the_shares(self):
         motion = parse_pulse("ricker:0.7g:0.9s").sampled()
         found = margin(build_model(BLOCK, "nonlinear"), motion, around=AROUND)
-        words = in_words(found, motion.pga).split("; the factors")[0]
+        words = in_words(found, motion.pga_g).split("; the factors")[0]
         said = re.findall(
             r"(\d+) % (?:[a-z ]* first overturn the structure )?at (?:a factor of )?([\d.]+) \((?:PGA )?([\d.]+) g\)",
             words,

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from scipy import signal
 
+import rocking_cli as rk
 from rocking_cli.cli.motion_files import find
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.processing.entry import Entry, of_reading
+from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import STEPS, parse_step, parse_steps, process
 from tests.conftest import EXAMPLES
@@ -113,7 +115,7 @@ class TestShape:
         import rocking_cli as rk
 
         found = rk.correct(rk.on_floor(ACCEL, "T1=0.4,z=1,n=3"), "trim 1:9", "lowpass 5")
-        assert found.of_ground.pga == rk.correct(ACCEL, "trim 1:9", "lowpass 5").pga
+        assert found.of_ground.pga_g == rk.correct(ACCEL, "trim 1:9", "lowpass 5").pga_g
 
     def test_histories_of_a_pulse_stay_as_fine_when_it_is_resampled(self):
         import rocking_cli as rk
@@ -359,3 +361,17 @@ def test_record_takes_lists_and_patterns(tmp_path):
     assert [each["pga"] for each in said] == pytest.approx([0.55, 1.1])
     run("record", tmp_path / "two.yaml", "--plot", tmp_path / "two.png", "-o", tmp_path / "clean")
     assert run_json("record", tmp_path / "clean" / "two.csv")["pga"] == pytest.approx(1.1)
+
+
+@pytest.mark.parametrize(
+    "steps", [("highpass 10", "lowpass 5"), ("lowpass 5", "highpass 10"), ("highpass 5", "lowpass 5")]
+)
+def test_filters_that_leave_nothing_between_them_are_refused(steps):
+    with pytest.raises(InputError, match=r"highpass: .* Hz is not below the lowpass of 5 Hz"):
+        rk.correct(ACCEL, *steps)
+
+
+def test_a_floor_of_equal_storeys_is_named_by_their_number():
+    said = str(Floor.parse("T1=0.4,z=0.67,n=3"))
+    assert said.endswith("z=0.67,n=3") and Floor.parse(said) == Floor.parse("T1=0.4,z=0.67,n=3")
+    assert str(Floor.parse("T1=0.4,z=0.67,gamma=1.29")).endswith("gamma=1.29")

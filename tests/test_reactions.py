@@ -22,7 +22,9 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Body, Direction, Joint, Mechanism, rotation
-from rocking_cli.core.reactions import at_uplift, impulses, parts, reactions
+from rocking_cli.core.reactions import acceleration, at_uplift, impulses, parts, reactions
+from rocking_cli.structure import load_structure
+from tests.conftest import EXAMPLES
 from tests.reference_mechanics import deviation
 
 G = 9.80665
@@ -481,3 +483,73 @@ def test_a_tendon_whose_ends_meet_at_rest_pulls_along_its_opening():
             reactions(STRUCTURES["tied"], direction, np.array([phi]), np.zeros(1), -2.0) for phi in (0.0, 1e-7)
         )
         assert deviation(at_rest.force, just_after.force) < 1e-5
+
+
+def by_newton(structure, direction, phi, rate, push, joints, slide):
+    """Forces at hinges on their bodies, of two bodies that slide along each other, and phi..: six equations at once.
+
+    `joints`: letter, body and place of each hinge; `slide`: body, and where and along what it slides on the other. The
+    path of each body by differences.
+    """
+    h = 1e-4
+
+    def place(name, z):
+        names = [body.name for body in structure.bodies()]
+        motions = structure.motion(np.array([phi - h, phi, phi + h]), direction)
+        return motions[names.index(name)].carry(z)[0]
+
+    matrix, known = np.zeros((6, 6)), np.zeros(6)
+    for k, body in enumerate(structure.weighed()):
+        z, beside = place(body.name, body.centroid), place(body.name, body.centroid + 1)
+        psi = np.unwrap(np.angle(beside - z))
+        for row, path, mass in ((0, z.real, body.mass), (1, z.imag, body.mass), (2, psi, body.inertia)):
+            dz, ddz = (path[2] - path[0]) / (2 * h), (path[2] - 2 * path[1] + path[0]) / h**2
+            matrix[3 * k + row, 5] = -mass * dz
+            known[3 * k + row] = mass * (ddz * rate**2 + (push, structure.gravity, 0)[row])
+        for column, (_, name, at) in enumerate(joints):
+            if name == body.name:
+                arm = place(name, at)[1] - z[1]
+                matrix[3 * k : 3 * k + 3, 2 * column : 2 * column + 2] = [[1, 0], [0, 1], [-arm.imag, arm.real]]
+        point, line, at, along = slide
+        face = place(line, at + along)[1] - place(line, at)[1]
+        way = 1j * face / abs(face) * (1 if body.name == point else -1)
+        arm = place(point, at)[1] - z[1]
+        matrix[3 * k : 3 * k + 3, 4] = way.real, way.imag, (arm.conjugate() * way).imag
+    found = np.linalg.solve(matrix, known)
+    return {letter: complex(*found[2 * k : 2 * k + 2]) for k, (letter, _, _) in enumerate(joints)}
+
+
+@pytest.mark.parametrize(("name", "joints", "slide"), [
+    ("leaning_slab", [("A", "pier", 1.2), ("B", "slab", -1.2)], ("slab", "pier", 3j, 1j)),
+    ("beam_on_pier", [("A", "pier", 7.0), ("B", "beam", 4j)], ("pier", "beam", 6 + 4j, 1.0)),
+])  # fmt: skip
+@pytest.mark.parametrize(("phi", "rate", "push"), [(0.0, 0.0, -2.5), (0.02, 0.1, -1.0), (0.05, -0.2, 3.0)])
+def test_forces_where_a_body_slides_on_another_that_turns(name, joints, slide, phi, rate, push):
+    structure = load_structure(EXAMPLES / "linkages" / f"{name}.yaml")
+    phi = max(phi, 1e-4)
+    found = reactions(structure, Direction.POSITIVE, np.array([phi]), np.array([rate]), push)
+    want = by_newton(structure, Direction.POSITIVE, phi, rate, push, joints, slide)
+    assert [joint.letter for joint in found.joints] == ["A", "B"] and not found.shared
+    for force, letter in zip(found.force[:, 0], want, strict=True):
+        assert force == pytest.approx(want[letter], rel=1e-4)
+
+
+def test_forces_of_a_joint_too_many_are_the_least_that_balance():
+    """Of all forces at six hinges: their sum is that of the masses, and no others that balance are smaller."""
+    structure = load_structure(EXAMPLES / "linkages" / "portico.yaml")
+    phi, rate, push = np.array([0.03]), np.array([0.2]), -1.0
+    found = reactions(structure, Direction.POSITIVE, phi, rate, push)
+    assert found.shared and not found.is_whole
+    feet = [k for k, joint in enumerate(found.joints) if len(joint.bodies) == 1]
+    assert len(feet) == 3 and found.total == pytest.approx(found.force[feet].sum(axis=0))
+    turning, total = acceleration(structure, Direction.POSITIVE, phi, rate, push), 0j
+    for body, motion in zip(structure.weighed(), structure.motion(phi, Direction.POSITIVE), strict=True):
+        _, dz, ddz = motion.carry(body.centroid)
+        total += body.mass * (dz * turning + ddz * rate**2 + push + 1j * structure.gravity)
+    assert found.total == pytest.approx(total, rel=1e-9)
+    # The only forces that balance by themselves: the columns push along themselves, the outer ones half of the middle.
+    left = structure.motion(phi, Direction.POSITIVE)[[body.name for body in structure.bodies()].index("left")]
+    along = left.carry(5j)[0] - left.carry(0.8 + 0j)[0]
+    by_itself = [share * along for share in (1, 1, -2, -2, 1, 1)]
+    work = sum((each.conj() * force).real for each, force in zip(by_itself, found.force, strict=True))
+    assert abs(work) < 1e-9 * abs(along) * abs(total)

@@ -113,7 +113,7 @@ def test_the_real_usc_record_is_the_same_straight_lines():
     assert len(pairs) == 8095
     at_points = motion.acceleration[np.rint(pairs[:, 0] * 1000).astype(int)]
     np.testing.assert_allclose(at_points, pairs[:, 1] * G / 10, rtol=1e-12)
-    assert motion.pga == pytest.approx(0.2647, abs=1e-9)
+    assert motion.pga_g == pytest.approx(0.2647, abs=1e-9)
     assert np.sqrt((pairs[:, 1] ** 2).mean()) == pytest.approx(0.400, abs=0.001)  # as its header says
 
 

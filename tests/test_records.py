@@ -830,7 +830,7 @@ def test_real_records(name, options, npts, dt, pga, form):
     motion = read_record(record(name), **options)
     assert (motion.name, motion.npts, motion.format, motion.unit) == (name, npts, form, "g")
     assert motion.dt == pytest.approx(dt, rel=1e-9)
-    assert motion.pga == pytest.approx(pga, abs=0.0005)
+    assert motion.pga_g == pytest.approx(pga, abs=0.0005)
 
 
 @NEEDS_RECORDS
@@ -856,7 +856,7 @@ def test_the_example_is_a_plausible_near_fault_motion(make_accel):
     motion = read_record(EXAMPLES / "accel.csv")
     assert (motion.npts, motion.unit, motion.format) == (1201, "g", "text")
     assert motion.dt == pytest.approx(0.01)
-    assert 0.5 <= motion.pga <= 0.6
+    assert 0.5 <= motion.pga_g <= 0.6
     assert motion.acceleration[0] == motion.acceleration[-1] == 0
     velocity = np.cumsum(motion.acceleration) * motion.dt
     assert 0.4 < np.abs(velocity).max() < 1.0  # m/s, from the pulse
@@ -1240,3 +1240,12 @@ def test_a_pipe_is_refused_with_what_to_do(tmp_path):
     found = problem(tmp_path / "pipe")
     assert "a pipe" in found.message
     assert "give - in its place" in found.hint
+
+
+def test_the_interval_of_a_time_column_is_the_number_that_was_written(tmp_path):
+    """1.2/120 of times in steps of 0.01 s ends in ...98 where it is divided."""
+    for npts in (121, 1201, 4001):
+        file = tmp_path / f"{npts}.csv"
+        rows = "".join(f"{3 + 0.01 * k:.2f},{(-1) ** k * 0.1}\n" for k in range(npts))
+        file.write_text(f"t (s),a (g)\n{rows}", encoding="utf-8")
+        assert read_record(file).dt == 0.01

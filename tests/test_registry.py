@@ -165,7 +165,7 @@ class Squared(MotionMeasure):
     name, title, unit, power = "PGA squared", "a test", "g2", 2.0
 
     def of(self, motion):
-        return self.times * motion.pga**2
+        return self.times * motion.pga_g**2
 
 class Divides(MotionMeasure):
     name, title, power = "Divides", "a test", 1.0

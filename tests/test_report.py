@@ -159,7 +159,9 @@ class TestContent:
         assert f"under {pulses[int(np.argmax(peaks))]}" in found["answer"]
 
     def test_how_close_it_is_is_told_by_the_shares(self):
-        found = run_json("report", *FEW, BLOCK, "--pulse", "sine:1g:2s", "--scale", "50")["motions"][0]
+        found = run_json("report", *FEW, BLOCK, "--pulse", "sine:1g:2s", "--scale", "50", "--opening", "1000")[
+            "motions"
+        ][0]
         said = found["answers"]["How close is that?"]
         assert (
             "At least 10 % of the neighbouring motions first overturn the structure at a factor of 0.2 (PGA 10 g), "

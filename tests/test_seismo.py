@@ -111,7 +111,7 @@ def test_channels(made):
     assert hint.endswith("not of an accelerometer")  # the third is listed with what is wrong with it
     for channel in ("2", "hnn"):
         motion = read_record(path, units="g", channel=channel)
-        assert (motion.name, motion.pga) == ("record.dat channel HNN", pytest.approx(2))
+        assert (motion.name, motion.pga_g) == ("record.dat channel HNN", pytest.approx(2))
     assert "no channel 'Z'" in problem(path, channel="Z").message
     assert "records velocity" in problem(path, channel="HHZ").message
 
@@ -180,7 +180,7 @@ def test_counts_are_no_accelerations(made):
     found = problem(path, units="gal")
     assert "a peak of 102 g, if in gal: raw counts" in found.message
     assert "remove_response" in found.hint
-    assert read_record(made("MSEED", ("HNE", VALUES * 100_000)), units="gal").pga > 100  # not whole numbers: as given
+    assert read_record(made("MSEED", ("HNE", VALUES * 100_000)), units="gal").pga_g > 100  # not whole numbers: as given
 
 
 # --- what is wrong with a file --------------------------------------------------------------------------------------

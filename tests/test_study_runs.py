@@ -711,7 +711,7 @@ def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
     motion = GroundMotion("pulse", 0.01, np.concatenate([np.zeros(5), np.sin(np.linspace(0, 6.28, 100)), np.zeros(5)]))
     lam = block.uplift(1)  # type: ignore[arg-type]
     scales = Reference(p=1.0, lambda_=lam, gravity=block.gravity)
-    unit = float(parse_measure("PGA/(g lambda)").relative(motion.pga, scales))
+    unit = float(parse_measure("PGA/(g lambda)").relative(motion.pga_g, scales))
     for a, uplifts in ((0.999, False), (1.001, True)):
         history = respond(block, motion.scaled(a / unit), models=("linear2",))["linear2"]
         assert (history.peak_ratio != 0) == uplifts

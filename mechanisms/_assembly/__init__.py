@@ -18,8 +18,11 @@ from mechanisms._assembly.faults import DoesNotStand as DoesNotStand
 from mechanisms._assembly.faults import NoAnswer as NoAnswer
 from mechanisms._assembly.faults import NothingMoves as NothingMoves
 from mechanisms._assembly.friction import MOST as MOST
+from mechanisms._assembly.friction import USUAL as USUAL
 from mechanisms._assembly.friction import Friction as Friction
 from mechanisms._assembly.friction import friction as friction
+from mechanisms._assembly.friction import sheared as sheared
+from mechanisms._assembly.friction import with_usual as with_usual
 from mechanisms._assembly.leading import leading as leading
 from mechanisms._assembly.limit import Collapse as Collapse
 from mechanisms._assembly.limit import Shared as Shared

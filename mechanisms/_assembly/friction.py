@@ -6,16 +6,19 @@ force. Such a joint is named, because no friction at all would do.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from mechanisms._assembly.blocks import Contact
 from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.problem import Problem
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Rays
 from rocking_cli.core import Reals
 
+USUAL = 0.6  # the friction of joints of masonry
 MOST = 10.0  # a coefficient of friction that no joint has
 SAME = 1e-9  # of the multiplier: what is left as it is
 FINE = 1e-6  # of the coefficient of friction
@@ -67,6 +70,22 @@ def friction(found: Collapse) -> Friction:
         else:
             state, high = less, middle
     return Friction(high, (), *problem.by_contact(problem.weight * state))
+
+
+def with_usual(found: Collapse) -> float | None:
+    """The multiplier with the usual friction in joints without any; None if there are none, 0 if it does not stand."""
+    problem = found.problem
+    if all(each.friction is not None for each in problem.bearings.bearings):
+        return None
+    reached, _, _ = problem.greatest(problem.bearings.rays(usual=USUAL))
+    return max(reached, 0.0) / problem.strength
+
+
+def sheared(found: Friction, contacts: Sequence[Contact]) -> tuple[int, ...]:
+    """Joints without friction that carry more shear in the state shown than the usual friction would let them."""
+    least = SAME * float(np.abs(found.normal).max(initial=0.0))
+    beyond = np.abs(found.shear) > USUAL * np.maximum(found.normal.sum(axis=1), 0.0) + least
+    return tuple(k for k, each in enumerate(contacts) if each.friction is None and beyond[k])
 
 
 def _glued(problem: Problem, multiplier: float) -> tuple[Reals, tuple[int, ...]]:

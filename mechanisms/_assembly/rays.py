@@ -92,13 +92,14 @@ class Bearings:
         rows += [frame.rate(None, guide.body, guide.at, 1j * guide.along / abs(guide.along)) for guide in guides]
         return cls(tuple(bearings), np.array(rows).reshape(-1, 3 * len(frame.names)), tuple(starts))
 
-    def rays(self, most: float | None = None) -> Rays:
-        """The rays of its forces; `most`: no joint may have more friction than that."""
+    def rays(self, most: float | None = None, *, usual: float | None = None) -> Rays:
+        """The rays of its forces; no joint may have more friction than `most`, and one without has `usual`."""
         rows: list[tuple[int, float, int | None]] = []  # force, friction, shear
         free: list[int] = []
         for each, start in zip(self.bearings, self.starts, strict=True):
             shear = start + len(each.points)
-            limits = [mu for mu in (each.friction, most) if mu is not None]
+            own = usual if each.friction is None else each.friction
+            limits = [mu for mu in (own, most) if mu is not None]
             mu = min(limits) if limits else None
             for k in range(start, shear):
                 if mu is None or mu <= 0:

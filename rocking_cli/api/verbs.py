@@ -18,7 +18,7 @@ from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.release import Release
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
@@ -464,6 +464,10 @@ def respond_each(
     ready = [_structure(each) for each in _each(structures)]
     shaking = [_motion(each) for each in _each(motions)]
     factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
+    if factors.ndim > 1:
+        raise InputError(
+            Problem(f"must be one factor or a list of them, got an array of shape {factors.shape}", field="scales")
+        )
     shape = len(ready), len(shaking), factors.size
     chosen = _models(models)
     if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
@@ -762,7 +766,7 @@ def margin(
     ready, around = _structure(structure), Around()
     shaking = [_motion(each) for each in _each(motions)]
     found = {each.name: study.margin(ready.model("nonlinear"), each, polarities, around=around) for each in shaking}
-    rows = [views.Row(each.name, 1.0, each.of_ground.pga, found[each.name]) for each in shaking]
+    rows = [views.Row(each.name, 1.0, each.of_ground.pga_g, found[each.name]) for each in shaking]
     polarity = "both" if len(polarities) > 1 else str(polarities[0])
 
     def columns() -> Columns:

@@ -64,7 +64,7 @@ def respond(
         one = replace(one, vertical=inputs.read_vertical(vertical, reading))
     factor = motion_files.factor(one, measure(one.of_ground), *asked.scaling)
     if factor != 1:
-        terminal.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga:.4g} g at 0 degrees")
+        terminal.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga_g:.4g} g at 0 degrees")
     release = history.release.ratio(structure) if history.release is not None else None
     found = all_around(structure, models, (one, other), factor, release=release, rtol=history.rtol)
 

@@ -119,6 +119,7 @@ def command(
     folder = Path(file).parent if file is not None and file != options.STANDARD_OUTPUT else None
     varied = Varied(structure.mechanism, vary.field, folder)
     span = vary.in_unit(varied.unit)
+    _warn_of_sizes(varied, span)
     shaking = None
     if asked:
         chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, structure.growth)
@@ -136,6 +137,20 @@ def command(
     terminal.show(view(found, shaking), as_json=output.as_json)
     if bad:
         ctx.exit(INCOMPLETE)
+
+
+def _warn_of_sizes(varied: Any, span: tuple[float, float]) -> None:
+    """Warn where a range looks as if it were given in another unit."""
+    from rocking_cli.core.size import doubtful_size
+    from rocking_cli.errors import RockingError
+
+    for value in span:
+        try:
+            doubt = doubtful_size(varied.at(value))
+        except RockingError:  # the scan says which values cannot be built
+            continue
+        if doubt is not None and doubt != doubtful_size(varied.mechanism):
+            terminal.warning(f"at {varied.field} = {value:g} {varied.unit}: {doubt}".replace(" :", ":"))
 
 
 def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Shaking:

@@ -59,7 +59,7 @@ def command(
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 24-25.
     """
     from rocking_cli.cli import structures
-    from rocking_cli.errors import RockingError
+    from rocking_cli.errors import RockingError, about
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.linearisation import compare
     from rocking_cli.views.error import view
@@ -70,7 +70,7 @@ def command(
     try:
         curves, asked = compare(structure.mechanism, blocks, amplitudes, accelerations)
     except RockingError as error:
-        raise type(error)(f"{structure.name}: {error}") from error
+        raise type(error)(about(structure.name, error)) from error
     if plot is not None:
         from rocking_cli.plotting.linearisation import draw_linearisation
 

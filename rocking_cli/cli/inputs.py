@@ -47,7 +47,7 @@ def introduce(what: str, motion: GroundMotion) -> None:
     ground = motion.of_ground
     terminal.note(
         f"{what}: {motion.name} ({motion.format}), {ground.npts} points, dt = {ground.dt:g} s, "
-        f"in {motion.unit}, PGA = {ground.pga:.4g} g{motion_files.done(motion)}"
+        f"in {motion.unit}, PGA = {ground.pga_g:.4g} g{motion_files.done(motion)}"
     )
 
 

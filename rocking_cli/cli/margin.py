@@ -90,5 +90,5 @@ def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], aroun
         for motion, factor, *_ in chosen:
             scaled = motion.scaled(factor)
             found = margin(model, scaled, polarities, around=around, progress=progress)
-            rows.append(Row(motion.name, factor, scaled.of_ground.pga, found))
+            rows.append(Row(motion.name, factor, scaled.of_ground.pga_g, found))
     return rows

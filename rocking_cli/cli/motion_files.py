@@ -242,14 +242,14 @@ def _introduce(found: Sequence[Scaled]) -> None:
     """Report the ground motions."""
     if len(found) <= FEW:
         for motion, by, *_ in found:
-            pga = motion.of_ground.pga
+            pga = motion.of_ground.pga_g
             scaled = f", scaled by {by:.6g}: PGA = {abs(by) * pga:.4g} g" if by != 1 else ""
             terminal.note(
                 f"motion: {motion.name} ({motion.format}), {motion.npts} points, dt = {motion.dt:.6g} s, "
                 f"PGA = {pga:.4g} g{scaled}{done(motion)}"
             )
         return
-    peaks = [abs(each.factor) * each.motion.of_ground.pga for each in found]
+    peaks = [abs(each.factor) * each.motion.of_ground.pga_g for each in found]
     scaled = " as scaled" if any(each.factor != 1 for each in found) else ""
     terminal.note(f"motions: {len(found)}, PGA from {min(peaks):.3g} to {max(peaks):.3g} g{scaled}")
 

@@ -32,6 +32,10 @@ class CollapseMechanism:
     rest, lifted, slides, glued : sequence of str
         What does not move; joints that open at both ends, that slide, and that carry shear without a normal force in
         the state shown, each by the two that it is of.
+    with_usual : float or None
+        Lambda with the friction of masonry in joints that have none; None if all have some.
+    no_model : str
+        Why it cannot be followed further than its start, as a sentence without a full stop; empty if it can.
     friction_needed : float or None
         The least coefficient of friction in every joint that leaves lambda as it is; None: no such.
     valid_to : float or None
@@ -52,6 +56,8 @@ class CollapseMechanism:
     lifted: Sequence[str]
     slides: Sequence[str]
     glued: Sequence[str]
+    with_usual: float | None
+    no_model: str
     friction_needed: float | None
     valid_to: float | None
     opens: str

@@ -54,6 +54,8 @@ class Contact:
         the second piece level, or what makes the two pieces one.
     name : str
         What to call it; by default the names of both pieces. The same joint has one name in both directions.
+    letter : str
+        The letter of a hinge in drawings, see `Joint`; empty if it has none.
     """
 
     pieces: tuple[str | None, str | None]
@@ -64,6 +66,7 @@ class Contact:
     roll: float = 0.0
     held: Held | None = None
     name: str = ""
+    letter: str = ""
 
     @property
     def label(self) -> str:
@@ -87,7 +90,8 @@ def of_joints(joints: Sequence[Joint], friction: float | None) -> list[Contact]:
         if joint.is_guide:
             found.append(Contact((None, borne), (joint.point,), 1j * joint.slide / abs(joint.slide), held="slide"))
             continue
-        found.append(Contact((bears, borne), (joint.point,), joint.normal, joint.face, friction, joint.roll))
+        at = (joint.point,)
+        found.append(Contact((bears, borne), at, joint.normal, joint.face, friction, joint.roll, letter=joint.letter))
         if joint.level:
-            found.append(Contact((bears, borne), (joint.point,), held="level"))
+            found.append(Contact((bears, borne), at, held="level"))
     return found

@@ -439,6 +439,14 @@ class Mechanism(Described, ABC):
         """Return what its own fields attach beside loads and ties, such as the floor on a wall; by default nothing."""
         return ()
 
+    def cautions(self) -> Sequence[str]:
+        """What to bear in mind with its results, a text each: the `caution` of its kind, and its own."""
+        return [text for text in (self.caution, self.own_caution()) if text]
+
+    def own_caution(self) -> str:
+        """What to bear in mind with the results of this very structure; by default nothing."""
+        return ""
+
     def extras(self, direction: Direction) -> Sequence[Extra]:
         """What it found on the way and users want to know, such as where it hinges; shown by `equiv`."""
         return ()

@@ -17,9 +17,11 @@ from rocking_cli.core.attachments import followed
 from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Points, Reals
 from rocking_cli.core.mechanism import Mechanism
+from rocking_cli.core.released import Pieces
 
 LOOKED_AT = (0.21, 0.47)  # of the kinematic limit: where it is seen which bodies move as one
 AS_ONE = 1e-9  # of the largest displacement there
+BALANCED = 1e-6  # of the largest force needed: what no forces at the joints balance
 COUPLE = 0j  # among the forces of a joint: no force at all
 WHOLE = Joint("", 0j, ())
 """Stands for all joints together where the forces at each are not known."""
@@ -37,11 +39,15 @@ class Reactions:
         Fx + i Fy on the last of the bodies of each joint [N].
     across : ndarray of complex, shape (k, n)
         The normal of the face of each, of length 1.
+    shared : bool
+        Whether there are too many joints for statics alone: then the forces are the smallest ones, in the sense of
+        least squares, of all that balance the bodies.
     """
 
     joints: Sequence[Joint]
     force: Points
     across: Points
+    shared: bool = False
 
     @property
     def normal(self) -> Reals:
@@ -57,6 +63,12 @@ class Reactions:
     def is_whole(self) -> bool:
         """Whether only the sum over all joints is known."""
         return self.joints[0] is WHOLE
+
+    @property
+    def total(self) -> Points:
+        """Fx + i Fy of the ground, and of what rests, on all that moves [N], shape (n,)."""
+        alone = [self.is_whole or len(joint.bodies) == 1 for joint in self.joints]
+        return np.asarray(self.force[alone].sum(axis=0))
 
     def _where_faced(self, of: Reals) -> Reals:
         guides = np.array([joint.is_guide for joint in self.joints])
@@ -103,7 +115,12 @@ def reactions(
             )
         for push in thing.forces(direction, moving.follow):
             moving.demand(push.spot.body, moving.follow(push.spot).z, -push.force)
-    return moving.at_joints() or moving.over_the_whole()
+    found = moving.at_joints()
+    if found is None and mechanism.contacts(direction) and not mechanism.joints(direction):
+        pieces = Pieces(mechanism, direction, phi)
+        terms = np.stack([np.ones_like(phi), ground.real, rate**2, ground.imag], axis=-1)
+        found = _at_contacts(pieces, np.einsum("nqk,nk->nq", pieces.demands(), terms))
+    return found or moving.over_the_whole()
 
 
 def acceleration(
@@ -160,6 +177,12 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
             jump = eta * moving.follow(thing.spot).dz + came(thing.spot).dz
             impulse = _point(thing.mass * thing.horizontal * jump.real, thing.mass * thing.vertical * jump.imag)
             moving.demand(thing.spot.body, moving.follow(thing.spot).z, impulse)
+    if mechanism.contacts(ended.opposite) and not mechanism.joints(ended.opposite):
+        pieces = Pieces(mechanism, ended.opposite, rest)
+        before_it = Pieces(mechanism, ended, rest)
+        found = _at_contacts(pieces, eta * pieces.momentum(pieces.dq) + before_it.momentum(before_it.dq))
+        if found is not None:
+            return found
     joints = mechanism.joints(ended.opposite)
     if len(joints) == 1 or isclose(eta, mechanism.restitution_from_kinematics(ended), rel_tol=1e-9):
         found = moving.at_joints()
@@ -167,6 +190,31 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
             return found
     level = all(abs(joint.normal - 1j) < AS_ONE for joint in joints if len(joint.bodies) == 1)
     return moving.over_the_whole() if level and not any(joint.is_guide for joint in joints) else None
+
+
+def _at_contacts(pieces: Pieces, demand: Reals) -> Reactions | None:
+    """The forces at the contacts from three equations for each piece; None where they do not balance what is needed."""
+    contacts = pieces.contacts
+    jacobian, rows = pieces.rates(contacts)
+    balance, needed = (jacobian / pieces.scale).swapaxes(1, 2), demand / pieces.scale
+    values = np.einsum("nrq,nq->nr", np.linalg.pinv(balance), needed)
+    off = np.abs(np.einsum("nqr,nr->nq", balance, values) - needed)
+    if off.max(initial=0.0) > BALANCED * np.abs(needed).max(initial=0.0):
+        return None
+    joints: list[Joint] = []
+    force: list[Points] = []
+    across: list[Points] = []
+    for contact, (normal, shear) in zip(contacts, rows, strict=True):
+        if not contact.letter or shear is None:
+            continue
+        names = tuple(name for name in contact.pieces if name is not None)
+        joints.append(Joint(contact.letter, contact.points[0], names, normal=contact.normal, face=contact.face))
+        across.append(pieces.normal(contact))
+        force.append((values[:, list(normal)].sum(axis=1) - 1j * values[:, shear]) * across[-1])
+    if not joints:
+        return None
+    redundant = jacobian.shape[1] >= jacobian.shape[2]
+    return Reactions(joints, np.stack(force), np.stack(across), redundant)
 
 
 def parts(mechanism: Mechanism, direction: Direction) -> Mapping[str, int]:

@@ -164,6 +164,7 @@ class Pieces:
 
     def __init__(self, mechanism: Mechanism, direction: Direction, phi: Reals) -> None:
         self._mechanism, self._direction, self.phi = mechanism, direction, phi
+        self.contacts: Sequence[Contact] = mechanism.contacts(direction) or ()
         motions = {
             body.name: motion for body, motion in zip(mechanism.bodies(), mechanism.motion(phi, direction), strict=True)
         }
@@ -284,8 +285,7 @@ class Pieces:
         found: list[Reals] = []
         rows: list[tuple[tuple[int, ...], int | None]] = []
         for contact in contacts:
-            turned = self._motions[contact.face].psi if contact.face is not None else np.zeros(self.phi.size)
-            normal = contact.normal * np.exp(1j * turned)
+            normal = self.normal(contact)
             if contact.held is not None:
                 found += self._of_held(contact, normal)
                 rows.append(((), None))
@@ -297,6 +297,11 @@ class Pieces:
             found.append(self._between(contact, middle, -1j * normal))
             rows.append((tuple(range(first, first + len(points))), len(found) - 1))
         return np.stack(found, axis=1) if found else np.zeros((self.phi.size, 0, 3 * len(self._parts))), rows
+
+    def normal(self, contact: Contact) -> Points:
+        """The normal of its face as it has turned, shape (n,)."""
+        turned = self._motions[contact.face].psi if contact.face is not None else np.zeros(self.phi.size)
+        return np.asarray(contact.normal * np.exp(1j * turned))
 
     def _of_held(self, contact: Contact, normal: Points) -> list[Reals]:
         (at,) = (self._carried(contact.pieces[1], point) for point in contact.points[:1])

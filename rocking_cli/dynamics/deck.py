@@ -98,7 +98,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
 
 
 def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> Deck:
-    """Lay out models and ground motions (None: no shaking) for the kernel; a single one is not copied."""
+    """Lay out models and ground motions (None: no shaking) for the kernel."""
     from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 
     structures, records = [], []
@@ -186,4 +186,6 @@ def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:
 
 
 def _joined(arrays: Sequence[NDArray[Number]]) -> NDArray[Number]:
-    return np.ascontiguousarray(arrays[0] if len(arrays) == 1 else np.concatenate(arrays))
+    only = arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
+    # The kernels are compiled for arrays that can be written to, which those of a motion cannot.
+    return np.ascontiguousarray(only) if only.flags.writeable else only.copy()

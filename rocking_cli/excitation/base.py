@@ -70,7 +70,7 @@ class GroundMotion:
     dt : float
         Interval between samples [s], > 0.
     acceleration : ndarray, shape (npts,)
-        Ground acceleration [m/s2] at t = 0, dt, 2 dt, ...
+        Ground acceleration [m/s2] at t = 0, dt, 2 dt, ...; a copy is kept, which cannot be written to.
     unit : str
         Unit the acceleration was recorded in, for the reader's eyes only.
     format : str
@@ -111,7 +111,7 @@ class GroundMotion:
     origin: Origin = NOT_SAID
 
     def __post_init__(self) -> None:
-        samples = np.ascontiguousarray(self.acceleration, dtype=np.float64)
+        samples = _own(self.acceleration, np.float64)
         if samples.ndim != 1 or samples.size < 2:
             raise InputError(f"{self.name}: a ground motion needs at least two samples, this has {samples.size}")
         if not np.isfinite(samples).all():
@@ -121,6 +121,8 @@ class GroundMotion:
         if self.every < 1:
             raise InputError(f"{self.name}: a history keeps one of at least 1 sample, got {self.every}")
         object.__setattr__(self, "acceleration", samples)
+        if self.points is not None:
+            object.__setattr__(self, "points", _own(self.points, np.intp))
 
     @property
     def npts(self) -> int:
@@ -150,7 +152,7 @@ class GroundMotion:
         return from_zero(dt * (v[:-1] + dt * (2 * a[:-1] + a[1:]) / 6))
 
     @property
-    def pga(self) -> float:
+    def pga_g(self) -> float:
         """Peak ground acceleration, in units of standard gravity."""
         # To 15 digits: the way through m/s2 and back has changed the last bit of what a record in g says.
         return float(f"{np.abs(self.acceleration).max() / STANDARD_GRAVITY:.15g}")
@@ -212,6 +214,15 @@ class GroundMotion:
         vertical = self.vertical.scaled(abs(factor)) if self.vertical is not None else None
         ground = self.ground.scaled(factor) if self.ground is not None else None
         return replace(self, name=name, acceleration=factor * self.acceleration, vertical=vertical, ground=ground)
+
+
+def _own(values: ArrayLike, kind: type[np.generic]) -> NDArray[Any]:
+    """A copy of values that nobody can write to; no second one of what is such a copy already."""
+    if isinstance(values, np.ndarray) and values.base is None and not values.flags.writeable and values.dtype == kind:
+        return values
+    copied = np.array(values, dtype=kind, order="C")
+    copied.flags.writeable = False
+    return copied
 
 
 def from_zero(steps: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -93,7 +93,7 @@ def measure(motion: GroundMotion) -> Measures:
         squared = total * (2 * STANDARD_GRAVITY) / pi
         times = [_time_of(motion, built, share * total) if total > 0 else None for share in SIGNIFICANT]
         found = Measures(
-            pga=motion.pga,
+            pga=motion.pga_g,
             pgv=_peak_velocity(motion, v),
             pgd=_peak_displacement(motion, v, u),
             arias=total,
@@ -106,7 +106,7 @@ def measure(motion: GroundMotion) -> Measures:
             mean_period=2 * pi * (squared / steepness) ** 0.5 if steepness > 0 else None,
         )
     if not all(isfinite(value) for value in (found.pgv, found.pgd, found.arias)):
-        raise InputError(f"{motion.name}: accelerations of {motion.pga:.3g} g are beyond the range of numbers")
+        raise InputError(f"{motion.name}: accelerations of {motion.pga_g:.3g} g are beyond the range of numbers")
     return found
 
 

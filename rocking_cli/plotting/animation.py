@@ -315,7 +315,7 @@ def animation_page(film: Film, title: str, speed: float = 1.0) -> str:
         speed=speed,
         moment=film.start,
     )
-    data["about"] = f"{film.motion.name}, PGA {film.motion.of_ground.pga:.3g} g; {model} model"
+    data["about"] = f"{film.motion.name}, PGA {film.motion.of_ground.pga_g:.3g} g; {model} model"
     parts = {
         "TITLE": html.escape(title), "STYLE": asset("motion.css"), "SCRIPT": asset("motion.js"), "DATA": as_script(data)
     }  # fmt: skip

@@ -150,7 +150,7 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
         axes.plot(t, pulse.acceleration(t) / STANDARD_GRAVITY, **style.PULSES[0])
     axes.set_ylabel("ground [g]", fontsize=style.LABEL)
     what = "floor, peak" if motion.ground is not None else "PGA"
-    named = f"{motion.name}, {what} {motion.pga:.3g} g"
+    named = f"{motion.name}, {what} {motion.pga_g:.3g} g"
     if pulse is not None:
         named += f"; bold: its {pulse.pulse.name} pulse, {pulse.pulse.amplitude / STANDARD_GRAVITY:.3g} g"
     if motion.vertical is not None:
@@ -158,7 +158,7 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
         part = up.acceleration[: int(min(end, up.duration) / up.dt) + 2] / STANDARD_GRAVITY
         seen = visible(part)
         axes.plot(seen * up.dt, part[seen], color=style.FAINT, linewidth=style.CURVE, zorder=1)
-        named += f"; grey: {up.name}, vertical, {up.pga:.3g} g"
+        named += f"; grey: {up.name}, vertical, {up.pga_g:.3g} g"
     style.make_room(axes)
     style.note(axes, named)
     style.tidy(axes)

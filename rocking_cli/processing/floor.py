@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import pi
+from math import isclose, pi
 from typing import Self
 
 from rocking_cli.errors import InputError, Problem
@@ -54,7 +54,12 @@ class Floor:
             raise _refused(f"gamma must be a positive number, {MOST:g} at most, got {self.participation:g}")
 
     def __str__(self) -> str:
-        given = {"T1": self.period, "xi": self.damping, "z": self.height, "gamma": self.participation}
+        given = {"T1": self.period, "xi": self.damping, "z": self.height}
+        n = round(self.participation / (3 - 2 * self.participation)) if self.participation < 1.5 else 0
+        if 1 <= n <= STOREYS and isclose(_of_storeys(n), self.participation, rel_tol=1e-12):
+            given["n"] = float(n)  # 9/7 has no end
+        else:
+            given["gamma"] = self.participation
         return ",".join(f"{key}={exact(value)}" for key, value in given.items())
 
     @classmethod
@@ -80,7 +85,7 @@ class Floor:
             n = values["n"]
             if not (1 <= n <= STOREYS and n == round(n)):
                 raise _refused(f"n is the number of storeys, got {n:g}")
-            values["gamma"] = 3 * n / (2 * n + 1)
+            values["gamma"] = _of_storeys(n)
         return cls(values["T1"], values.get("xi", DAMPING), values["z"], values["gamma"])
 
     def of(self, ground: GroundMotion) -> GroundMotion:
@@ -105,6 +110,11 @@ class Floor:
             processing=(*ground.processing, f"floor {self}"),
             ground=ground,
         )
+
+
+def _of_storeys(n: float) -> float:
+    """The participation factor of n equal storeys."""
+    return 3 * n / (2 * n + 1)
 
 
 def _pairs(text: str) -> dict[str, object]:

@@ -192,7 +192,7 @@ def _peak(motion: GroundMotion, period: float, damping: float) -> float:
     after = _free_peak(float(x[-1]), float(v[-1]), period, damping)
     found = max(float(np.abs(x).max()), float(np.abs(between).max(initial=0.0)), after)
     if not isfinite(found):
-        raise InputError(f"{motion.name}: accelerations of {motion.pga:.3g} g are beyond the range of numbers")
+        raise InputError(f"{motion.name}: accelerations of {motion.pga_g:.3g} g are beyond the range of numbers")
     return found
 
 

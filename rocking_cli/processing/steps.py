@@ -363,6 +363,7 @@ def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool 
     """
     if not steps:
         return motion
+    _check_band(steps)
     from rocking_cli.excitation.doubts import of_samples
 
     raw = motion
@@ -377,6 +378,15 @@ def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool 
         remarks = tuple(each for each in remarks if each.kind != "resolution")
     done = (*raw.processing, *map(str, steps))
     return replace(motion, vertical=vertical, ground=ground, remarks=remarks, processing=done)
+
+
+def _check_band(steps: Sequence[Step]) -> None:
+    """Refuse filters that leave nothing between them."""
+    slowest = max((step.frequency for step in steps if isinstance(step, Highpass)), default=None)
+    fastest = min((step.frequency for step in steps if isinstance(step, Lowpass)), default=None)
+    if slowest is not None and fastest is not None and slowest >= fastest:
+        message = f"{slowest:g} Hz is not below the lowpass of {fastest:g} Hz: nothing is left of the motion"
+        raise InputError(Problem(message, field=Highpass.name, hint="exchange the two frequencies"))
 
 
 def of_vertical(steps: Sequence[Step]) -> tuple[Step, ...]:

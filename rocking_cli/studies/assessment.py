@@ -150,7 +150,7 @@ class MotionResult:
     @property
     def pga_of_ground(self) -> float:
         """Peak acceleration of the ground as scaled [standard gravity], below the floor if there is one."""
-        return abs(self.given.factor) * self.given.motion.of_ground.pga
+        return abs(self.given.factor) * self.given.motion.of_ground.pga_g
 
     @property
     def scaled_much(self) -> bool:

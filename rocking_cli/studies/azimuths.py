@@ -96,7 +96,7 @@ def all_around(
         model.name: found.by_field(lambda values, part=part: values[part])
         for model, part in zip(followed, each, strict=True)
     }
-    pga = np.array([motion.pga for motion in motions])
+    pga = np.array([motion.pga_g for motion in motions])
     checked = all(model.is_linear or model.joints is not None for model in followed)
     return Around((pair[0].name, pair[1].name), scale, azimuths, pga, outcomes, checked)
 

@@ -69,7 +69,8 @@ class Contact:
         The largest horizontal force of the ground on the structure while it rocks, in either sense [N], per unit mass
         of a structure without masses; of guides that hold it sideways nothing. What rests counts as ground.
     least_normal : float
-        The smallest N of any joint while it rocks [N], per unit mass of a structure without masses.
+        The smallest N of any joint, or of all where `whole` or `shared`, while it rocks [N], per unit mass of a
+        structure without masses.
     impact_friction : float
         The largest |dP_x|/dP_y of any impact; NaN where it does not follow, see `rocking_cli.core.reactions.impulses`.
     lost : float
@@ -78,6 +79,9 @@ class Contact:
         Which.
     whole : bool
         Whether the joints are not known: then there are sums over the whole structure, on level ground.
+    shared : bool
+        Whether statics alone does not say what each joint bears: then friction is an estimate by least squares, and
+        normal forces are sums over the whole.
     friction : float or None
         What there is.
     slides : float
@@ -117,6 +121,7 @@ class Contact:
     demand: Reals
     opens: float | None = None
     opens_joint: str = ""
+    shared: bool = False
     followed: bool = False
     known_to: float = NONE
 
@@ -209,7 +214,8 @@ class Contacts:
         normal = np.where(np.abs(found.force) > IDLE * np.abs(rest.force).max(), found.normal, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
             needed = np.where(normal > bears, np.abs(found.shear) / normal, 0.0)
-            each = np.stack([needed, -normal, normal / self._capacity(found)])
+            pull = np.broadcast_to(-found.total.imag, normal.shape) if found.shared else -normal
+            each = np.stack([needed, pull, normal / self._capacity(found)])
         each = np.where(np.isnan(each), -np.inf, each)
         joint = each.argmax(axis=1)
         return np.take_along_axis(each, joint[:, None], axis=1)[:, 0], joint
@@ -251,6 +257,7 @@ class Contacts:
             else None,
             times=time,
             demand=most[DEMAND],
+            shared=any(found.shared for found in self._at_uplift.values()),
         )
 
     def _lost(self, history: History, states: _States, pull: Reals, joint: Places) -> tuple[float, str]:
@@ -258,14 +265,20 @@ class Contacts:
         moments: list[tuple[float, str]] = []
         pulls = np.flatnonzero(pull >= 0)
         if pulls.size:
-            moments.append((float(states.time[pulls[0]]), self._letter(states, joint, int(pulls[0]))))
+            first = int(pulls[0])
+            shared = self._at_uplift[Direction(int(states.sign[first]))].shared
+            moments.append((float(states.time[first]), "" if shared else self._letter(states, joint, first)))
         if history.check is not None and history.check.reason == "weightless" and states.rocks.any():
             last = int(np.flatnonzero(states.rocks)[-1])
             moments.append((history.known_to, self._letter(states, joint, last)))
-        for direction, first in _ended(history).items():
+        for direction, hit in _ended(history).items():
             found = self._impulses[direction]
-            if found is not None and (thrown := found.normal[:, 0] < -IDLE * np.abs(found.force).max()).any():
-                moments.append((first, found.joints[int(thrown.argmax())].letter))
+            if (
+                found is not None
+                and not found.shared
+                and (thrown := found.normal[:, 0] < -IDLE * np.abs(found.force).max()).any()
+            ):
+                moments.append((hit, found.joints[int(thrown.argmax())].letter))
         return min(moments, default=(NONE, ""))
 
     def _letter(self, states: _States, joint: Places, k: int) -> str:
@@ -284,7 +297,7 @@ class Contacts:
     def _capacity(self, found: Reactions) -> Reals:
         """What each joint bears at most [N], shape (k, 1); NaN where it is not given."""
         strength, depth = self.mechanism.strength, self.mechanism.depth
-        if not isinstance(strength, Strength) or depth is None or found.is_whole:
+        if not isinstance(strength, Strength) or depth is None or found.is_whole or found.shared:
             return np.full((len(found.joints), 1), np.nan)
         alike = self.mechanism.alike()
         counts = [max(alike.get(name, 1) for name in joint.bodies) for joint in found.joints]

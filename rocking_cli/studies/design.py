@@ -166,6 +166,8 @@ class Design:
         Where there is no such structure.
     behind : sequence of (Neighbours or None)
         The neighbours of the motion that governs at each value; None of a metric that needs no motions.
+    caution : str
+        What to bear in mind with the lambda of the structure as given; empty if nothing.
     """
 
     structure: str
@@ -180,6 +182,7 @@ class Design:
     value: float | None
     not_built: Sequence[NotBuilt] = ()
     behind: Sequence[Neighbours | None] = ()
+    caution: str = ""
 
     @property
     def everywhere(self) -> bool:
@@ -277,7 +280,7 @@ def design(
     name = varied.mechanism.name or varied.mechanism.mechanism
     return Design(
         name, varied.field, varied.unit, aim, varied.value, values, found, holds, monotone, value,
-        _not_built(values, reasons), behind,
+        _not_built(values, reasons), behind, varied.mechanism.own_caution(),
     )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from rocking_cli.dynamics.model import ModelName, build_model, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.prepared import with_restitution
 from rocking_cli.dynamics.verdict import CLOSE
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem, about
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
@@ -48,6 +48,8 @@ class Member:
         The structure's own.
     history : History
         Its nonlinear response.
+    caution : str
+        What to bear in mind with its lambda; empty if nothing.
     """
 
     name: str
@@ -57,6 +59,7 @@ class Member:
     eta: float
     own_eta: float
     history: History
+    caution: str = ""
 
     @property
     def amplitude(self) -> float:
@@ -189,7 +192,7 @@ def _equivalence(mechanism: Mechanism) -> Equivalence:
     try:
         return equivalent_block(mechanism)
     except MechanismError as error:
-        raise MechanismError(f"{_name(mechanism)}: {error}") from error
+        raise MechanismError(about(_name(mechanism), error)) from error
 
 
 def _lifted_first(
@@ -233,10 +236,11 @@ def _member(
     try:
         history = follow(build_model(shaken, "nonlinear"), own.sampled().scaled(polarity), tail=_tail(own, block.p))
     except MechanismError as error:
-        raise MechanismError(f"{_name(mechanism)}: {error}") from error
+        raise MechanismError(about(_name(mechanism), error)) from error
     return Member(
-        _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history
-    )
+        _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history,
+        mechanism.own_caution(),
+    )  # fmt: skip
 
 
 def _tail(pulse: Pulse, p: float) -> float:

@@ -21,7 +21,7 @@ from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.names import percent
+from rocking_cli.names import peaks_over, percent
 
 Reals = NDArray[np.float64]
 
@@ -257,15 +257,13 @@ def neighbours(
     peaks = np.where(outcome[1:] > 0, np.inf, found.peak_ratio[1:])
     # A value that was reached, never one between two: half of infinity is no rotation.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
-    free = model.ends_at_limit
-    over = "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"
     return Neighbours(
         around,
         model.name,
         float(found.overturned[1:].mean()),
         (low, middle, high),
         float((outcome[1:] == outcome[0]).mean()),
-        over=over,
+        over=peaks_over(model.ends_at_limit),
         unknown=None if unchecked else float(found.unknown[1:].mean()),
     )
 

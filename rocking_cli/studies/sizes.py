@@ -16,7 +16,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.model import Model, ModelName, build_model
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem, about
 
 ALIKE = 1e-7  # relative difference, of what shape alone decides where it does, that solvers and rounding may make
 TRIED = ((0.1, 0.5, 0.9), (10.0, 2.0, 1.1))  # scales at which that is looked at: of each row the first that there is
@@ -58,7 +58,7 @@ class Sizes:
                 self._known[scale] = equivalent_block(self.at(scale))
             except MechanismError as error:
                 kind = NoEquivalentBlock if isinstance(error, NoEquivalentBlock) else MechanismError
-                raise kind(f"{self._named(scale)}: {error}") from error
+                raise kind(about(self._named(scale), error)) from error
         return self._known[scale]
 
     def block(self, scale: float) -> EquivalentBlock:

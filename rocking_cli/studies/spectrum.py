@@ -43,6 +43,8 @@ class Shape:
         Whether loads or ties are given, whose places alone grow with it.
     bodies : int
         Number of its bodies.
+    caution : str
+        What to bear in mind with its lambda; empty if nothing.
     """
 
     structure: PulsedModel
@@ -50,6 +52,7 @@ class Shape:
     own: Sizes | None = None
     hung: bool = False
     bodies: int = 1
+    caution: str = ""
 
     @property
     def leaves_out_joints(self) -> bool:
@@ -98,7 +101,9 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, f
     given = mechanism if eta is None else with_restitution(mechanism, eta)
     sizes = Sizes(given, model, found.direction)
     own = None if sizes.are_alike() else sizes
-    return Shape(found, own=own, hung=bool(mechanism.attached), bodies=len(mechanism.bodies()))
+    return Shape(
+        found, own=own, hung=bool(mechanism.attached), bodies=len(mechanism.bodies()), caution=mechanism.own_caution()
+    )
 
 
 def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> Shape:

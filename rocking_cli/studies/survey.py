@@ -97,6 +97,8 @@ class Surveyed:
         Why no single block is equivalent to it.
     doubt : str or None
         What is doubtful about its size.
+    caution : str or None
+        What to bear in mind with its lambda.
     under : Under, optional
         What ground motions do to it, if there are any.
     ratio : float
@@ -118,6 +120,7 @@ class Surveyed:
     eta: float
     no_block: str | None = None
     doubt: str | None = None
+    caution: str | None = None
     under: Under | None = None
     ratio: float = nan
 
@@ -335,6 +338,7 @@ def _alone(place: int, entry: Entry, structure: Prepared, site: SiteFile | None)
         structure.etas[k],
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
         doubtful_size(mechanism),
+        mechanism.own_caution() or None,
         ratio=_ratio(structure, site) if site is not None else nan,
     )
 
@@ -350,7 +354,7 @@ def _ratio(structure: Prepared, site: SiteFile) -> float:
 def _may_lift(structure: Prepared, motions: Sequence[GroundMotion]) -> bool:
     """Whether any of the motions could lift a structure: where none can, its equation of motion is not needed."""
     least = min(structure.uplift)
-    return any(each.vertical is not None or each.pga >= least * (1 - 1e-9) for each in motions)
+    return any(each.vertical is not None or each.pga_g >= least * (1 - 1e-9) for each in motions)
 
 
 def _over(structure: Prepared) -> str:

@@ -163,8 +163,7 @@ def governs(content: Assessment) -> str:
 
 def _over(content: Assessment) -> str:
     """Return what a peak is divided by, in words."""
-    free = [side.phi_cr is None for side in content.structure.statics]
-    return "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"
+    return names.peaks_over([side.phi_cr is None for side in content.structure.statics])
 
 
 def doubts(content: Assessment) -> list[str]:
@@ -174,8 +173,7 @@ def doubts(content: Assessment) -> list[str]:
         said.append(
             f"The mechanism {content.mechanism.mechanism} has not been verified: check its results independently."
         )
-    if content.mechanism.caution:
-        said.append(content.mechanism.caution)
+    said += content.mechanism.cautions()
     size = doubtful_size(content.mechanism)
     if size is not None:
         said.append(f"Check the sizes and their units: {size}{'' if size.endswith('?') else '.'}")

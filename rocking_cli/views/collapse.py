@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
+from rocking_cli.studies.contact import MASONRY
 from rocking_cli.views.view import Table, View, heading, number
 
 
@@ -16,6 +17,7 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
         parts += [_hinges(direction, each), *_sentences(mechanism, direction, each)]
         if each.thrust:
             parts.append(_thrust(direction, each))
+    parts += [f"Caution: {text}" for text in mechanism.cautions()]
     parts.append(
         "The forces shown are one equilibrium state with the least friction; where parts remain at rest, other "
         "states exist. lambda is both the greatest acceleration that can be carried without tension (static theorem) "
@@ -45,6 +47,8 @@ def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechan
             "starts; no rocking model is available for it. The flow rule is associated, which overestimates lambda "
             "where sliding joints also open."
         )
+    if found.no_model:
+        said.append(f"It has no rocking model: {found.no_model}.")
     if found.friction_needed is not None:
         given = mechanism.friction
         held = "" if given is None else f"; {given:g} is given"
@@ -56,12 +60,18 @@ def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechan
             f"No coefficient of friction is sufficient: {', '.join(found.glued)} would have to carry shear without "
             "compression. Give `friction`: 0 for a joint that carries no shear."
         )
+    if found.with_usual is not None:
+        said.append(
+            f"With a coefficient of friction of {MASONRY:g} in joints that are given none, lambda is "
+            f"{number(found.with_usual)} g."
+        )
     if found.valid_to is not None and found.held_by is not None:
         said.append(
             f"In displaced equilibrium (at acceleration G/B), this mechanism is valid up to {number(found.valid_to)} "
-            f"rad, where {number(found.held_by, 4)} g holds it and the joint between {found.opens} also opens."
+            f"rad, where {number(found.held_by, 4)} g holds it and the joint between {found.opens} also opens. "
+            "Beyond it joints may open or slide."
         )
-    elif not found.slides:
+    elif found.lead:
         said.append(
             "In displaced equilibrium (at acceleration G/B), this mechanism is valid up to its critical rotation."
         )
@@ -103,6 +113,8 @@ def data(found: CollapseMechanism) -> dict[str, Any]:
         "lifted": list(found.lifted),
         "slides": list(found.slides),
         "glued": list(found.glued),
+        "lambda_with_usual": found.with_usual,
+        "no_model": found.no_model or None,
         "lead": found.lead or None,
         "friction_needed": found.friction_needed,
         "valid_to": found.valid_to,

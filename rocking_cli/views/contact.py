@@ -52,11 +52,11 @@ COLUMNS = (
 
 def contact_row(found: Contact, mechanism: Mechanism) -> list[str]:
     """Return the demands as cells of a table row."""
-    unit = "N" if mechanism.has_mass else "N/kg"
+    per, unit = (1000, "kN") if mechanism.has_mass else (1, "N/kg")
     numbers = [number(each, 3) for each in (found.time, found.duration, found.impact_friction)]
-    least = f"{number(found.least_normal, 4)} {unit}" if not isnan(found.least_normal) else number(NONE)
+    least = f"{number(found.least_normal / per, 4)} {unit}" if not isnan(found.least_normal) else number(NONE)
     lost = f"at {number(found.lost, 4)} s" if not isnan(found.lost) else "never"
-    shear = f"{number(found.base_shear, 4)} {unit}" if not isnan(found.base_shear) else number(NONE)
+    shear = f"{number(found.base_shear / per, 4)} {unit}" if not isnan(found.base_shear) else number(NONE)
     return [number(found.friction_needed, 3), found.joint or "-", *numbers, shear, least, lost]
 
 
@@ -96,6 +96,11 @@ def contact_words(found: Contact, mechanism: Mechanism) -> str:
         said.append(
             "The positions of its joints are not known: the forces are sums over the whole structure, on level ground."
         )
+    elif sums == "shared":
+        said.append(
+            "Statics alone does not determine the force at each joint, as there are more joints than needed: the "
+            "friction required is a least-squares estimate, and the normal force is the sum over the whole structure."
+        )
     elif sums is not None:
         said.append(f"Forces are sums over all {sums}.")
     return " ".join(said)
@@ -127,9 +132,14 @@ def _where(letter: str) -> str:
 
 
 def _sums(found: Contact, mechanism: Mechanism) -> str | None:
-    """Return what the forces are summed over: the whole structure, identical bodies, or nothing (None)."""
+    """Return what the forces are summed over: the whole structure, identical bodies, or nothing (None).
+
+    `shared` is a least-squares estimate where statics alone does not determine the force at each joint.
+    """
     if found.whole:
         return "whole"
+    if found.shared:
+        return "shared"
     joints = mechanism.joints(mechanism.directions[0])
     of_several = {name for joint in joints if joint.level for name in joint.bodies}
     return next((name for name in mechanism.alike() if name in of_several), None)

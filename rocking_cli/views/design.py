@@ -119,6 +119,8 @@ def doubts(found: Design, shaking: Shaking | None) -> list[str]:
         span = _with_unit(found, each.low)
         span = f"At {span}" if each.low == each.high else f"From {span} to {_with_unit(found, each.high)}"
         said.append(f"{span} {found.aim.metric.name} could not be computed: {one_line(each.reason)}.")
+    if found.caution:
+        said.append(f"Caution, of the structure as given: {found.caution}")
     if found.aim.metric.shaken and shaking is not None:
         said.append(
             f"One time history is one sample: at each value, {shaking.around.count} neighbouring motions are "

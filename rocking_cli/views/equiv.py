@@ -30,7 +30,7 @@ def view(structure: Prepared) -> View:
         "hung": hung_data(mechanism),
         "per_unit_mass": not mechanism.has_mass,
         "restitution": restitution_source(mechanism),
-        "caution": mechanism.caution or None,
+        "caution": " ".join(mechanism.cautions()) or None,
         "misleading": structure.misleading,
         "directions": {side.direction.label: _data(side) | _extras(mechanism, side) for side in sides},
     }
@@ -61,7 +61,7 @@ def view(structure: Prepared) -> View:
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     said += [f"P{mechanism.crushed[1:]}."] if mechanism.crushed else []
-    said += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
+    said += [f"Caution: {text}" for text in mechanism.cautions()]
     return View(data, [table, *said])
 
 

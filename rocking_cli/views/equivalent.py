@@ -56,6 +56,7 @@ def view(found: EquivalentResponses, verdict: str) -> View:
     rows.append(["linear block", "", "", f"{found.members[0].eta:.4g}", _peak(found.alone)])
     heads = ["", "a_g [g]", "T [s]", "eta", "peak / phi_cr"]
     cautions = [unchecked(each.name) for each in found.members if each.history.check is None]
+    cautions += [f"Caution: {each.name}: {each.caution}" for each in found.members if each.caution]
     return View(data, [Table(title(found), heads, rows, numbers=(1, 2, 3, 4)), verdict, *cautions])
 
 

@@ -46,7 +46,7 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
         *_doubtful(rows),
     ]
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
-    parts += [f"Caution: {mechanism.caution}"] if mechanism.caution else []
+    parts += [f"Caution: {text}" for text in mechanism.cautions()]
     if not all(row.margin.checked for row in rows):
         parts.append(f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}")
     return View(_data(mechanism, rows, polarity, around), parts)

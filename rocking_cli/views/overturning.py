@@ -264,6 +264,7 @@ def _joints(structures: Sequence[PulsedModel], mechanisms: Sequence[Mechanism]) 
     return [
         *([NO_JOINTS] if left_out else []),
         *(unchecked(each.name if several else "") for each in structures if not each.checked),
+        *(f"Caution: {each.name}: {text}" for each in mechanisms if (text := each.own_caution())),
     ]
 
 

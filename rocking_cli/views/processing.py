@@ -23,5 +23,5 @@ def data(motion: GroundMotion) -> dict[str, Any]:
     """Return the steps in order, as they would be given again, and for a floor the peak of its own motion [g]."""
     found: dict[str, Any] = {"processing": list(motion.processing)}
     if motion.ground is not None:
-        found["floor_pga"] = motion.pga
+        found["floor_pga"] = motion.pga_g
     return found

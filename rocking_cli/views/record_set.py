@@ -71,7 +71,7 @@ def data(results: Results) -> dict[str, Any]:
                 "name": found.candidates.motions[k].name,
                 **found.candidates.motions[k].origin._asdict(),
                 "factor": factor,
-                "pga": factor * found.candidates.motions[k].of_ground.pga,
+                "pga": factor * found.candidates.motions[k].of_ground.pga_g,
             }
             for k, factor in _chosen(found)
         ],
@@ -175,7 +175,7 @@ def _records(results: Results) -> Table:
     for k, factor in _chosen(found):
         motion = found.candidates.motions[k]
         event, station = (cut(each or ABSENT, NAME) for each in (motion.origin.event, motion.origin.station))
-        rows.append([motion.name, event, station, f"{factor:.4g}", f"{factor * motion.of_ground.pga:.3g}"])
+        rows.append([motion.name, event, station, f"{factor:.4g}", f"{factor * motion.of_ground.pga_g:.3g}"])
     heads = ["record", "earthquake", "station", "factor", "PGA as\nscaled [g]"]
     return Table(title(results), heads, rows, numbers=(3, 4))
 

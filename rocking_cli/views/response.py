@@ -110,7 +110,7 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
         "npts": motion.npts,
         "dt": motion.dt,
         "unit": motion.unit,
-        "pga": motion.of_ground.pga,
+        "pga": motion.of_ground.pga_g,
         "format": motion.format,
         **processing.data(motion),
     }
@@ -304,7 +304,7 @@ def view(
         parts += ["", *_tables(alone, {1: found.to_pulse}, {}, of_pulse)]
         parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse, found.fit.pulse.title))
     first = next(iter(found.runs.values()))
-    caution = [f"Caution: {mechanism.caution}"] if mechanism.caution else []
+    caution = [f"Caution: {text}" for text in mechanism.cautions()]
     if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in _apart(shown, found.runs)]

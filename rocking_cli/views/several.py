@@ -11,7 +11,7 @@ from rocking_cli.dynamics.holding import NOT_CHECKED, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.names import percent
+from rocking_cli.names import peaks_over, percent
 from rocking_cli.studies.contact import Contact
 from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
 from rocking_cli.studies.response import Answer, Histories
@@ -34,7 +34,7 @@ class Several:
 
     def __init__(self, structure: Prepared, models: Sequence[ModelName]) -> None:
         self._title = heading(structure.mechanism)
-        self._over = "phi_cr" if not any(side.phi_cr is None for side in structure.statics) else "limit"
+        self._free = [side.phi_cr is None for side in structure.statics]
         self._restitution = restitution_used(structure)
         self._models = models
         self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
@@ -50,7 +50,7 @@ class Several:
     def add(self, found: Answer) -> None:
         """Add the response to one motion."""
         assert found.given is not None
-        pga = f"{abs(found.given.factor) * found.given.motion.of_ground.pga:.4g}"
+        pga = f"{abs(found.given.factor) * found.given.motion.of_ground.pga_g:.4g}"
         severities = []
         for sign, histories in found.runs.items():
             reversed_ = ", reversed" if sign < 0 and len(found.runs) > 1 else ""
@@ -80,7 +80,7 @@ class Several:
 
     def parts(self) -> Iterator[Table | str]:
         """The table, how many motions overturn it, and which governs."""
-        heads = [f"peak phi/{self._over}\nunder", "PGA\n[g]", *self._models]
+        heads = [f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", "PGA\n[g]", *self._models]
         rows = self._rows
         if self._around is None:
             rows = [row[:-3] for row in rows]
@@ -93,7 +93,7 @@ class Several:
         yield f"By the {self._best} model, {self._outcomes()}."
         if self._around is not None:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {self._around.words}."
-        yield governing(self._worst)
+        yield governing(self._worst, peaks_over(self._free))
         yield from self._joints()
         yield from models_used(self._models)
         yield self._restitution

@@ -71,7 +71,7 @@ def _all(results: Results) -> dict[str, Any]:
         "fractiles": list(results.fractiles),
         "motions": [
             {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt}
-            | {"pga": motion.of_ground.pga, "scale": factor, **processing.data(motion)}
+            | {"pga": motion.of_ground.pga_g, "scale": factor, **processing.data(motion)}
             for motion, factor, *_ in results.motions
         ],
         "spectra": [_data(results, each) for each in results.spectra],
@@ -82,8 +82,9 @@ def _joints(results: Results) -> list[str]:
     """Say what is not checked of the joints of the structures; nothing if all of them are."""
     said = [NO_JOINTS] if any(each.shape.leaves_out_joints for each in results.spectra) else []
     several = len(results.spectra) > 1
+    said += [unchecked(each.shape.structure.name if several else "") for each in results.spectra if not each.checked]
     return said + [
-        unchecked(each.shape.structure.name if several else "") for each in results.spectra if not each.checked
+        f"Caution: {each.shape.structure.name}: {each.shape.caution}" for each in results.spectra if each.shape.caution
     ]
 
 

@@ -16,6 +16,7 @@ from rocking_cli.views.view import ABSENT, Table, View, number
 
 TOP = 20
 NAME = 30  # characters of a name in the table
+CAUTIONED = 3  # structures whose cautions are printed
 BLOCK = 10_000  # rows of a file written at a time
 FORMULA = ("=", "+", "-", "@")
 """First characters of a text that a spreadsheet would read as a formula."""
@@ -79,6 +80,7 @@ def _row(rank: int, each: Surveyed) -> dict[str, Any]:
         "eta": each.eta,
         "no_block": each.no_block,
         "doubt": each.doubt,
+        "caution": each.caution,
     }
 
 
@@ -180,6 +182,10 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
             "`rocking margin` to see how close the result is."
         )
         said += _not_known(rows)
+    cautioned = [each for each in rows if each.caution is not None]
+    said += [f"Caution: {each.name}: {each.caution}" for each in cautioned[:CAUTIONED]]
+    if len(cautioned) > CAUTIONED:
+        said.append(f"{len(cautioned) - CAUTIONED:,} more structures have such a caution: JSON lists them all.")
     without = [each for each in rows if each.no_block is not None]
     if without:
         said.append(

@@ -30,7 +30,7 @@ def view(found: Verification, site: str | None = None) -> View:
     parts += found.remarks
     all_workings = [*found.workings, *(line for each in sides.values() for line in each.workings)]
     parts.append(words.standing(all_workings))
-    parts += [f"Caution: {found.mechanism.caution}"] if found.mechanism.caution else []
+    parts += [f"Caution: {text}" for text in found.mechanism.cautions()]
     return View(lambda: data(found), [part for part in parts if part])
 
 

@@ -59,7 +59,7 @@ def heading(mechanism: Mechanism) -> str:
 
 def number(value: float | None, digits: int = 6) -> str:
     """A number as people read it; a dash if it does not exist."""
-    return ABSENT if value is None or isnan(value) else f"{value:.{digits}g}"
+    return ABSENT if value is None or isnan(value) else f"{value + 0.0:.{digits}g}"  # a sum that is never -0
 
 
 def in_degrees(phi: float) -> str:

@@ -58,7 +58,7 @@ def even_interval(time: NDArray[np.float64]) -> float:
         hint = "the first column must be the time, increasing; printed times need enough decimals to tell rows apart"
         raise UnevenTimeError(f"time does not increase: {time[row]:g} s {what}", hint, row)
 
-    dt = float((time[-1] - time[0]) / (len(time) - 1))
+    dt = float(f"{(time[-1] - time[0]) / (len(time) - 1):.15g}")  # the last bit is that of the division
     if dt < _LEAST:
         hint = "the first column must be the time, in seconds"
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)

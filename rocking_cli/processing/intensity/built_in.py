@@ -32,7 +32,7 @@ class PeakAcceleration(MotionMeasure):
 
     def of(self, motion: GroundMotion) -> float:
         """Over standard gravity."""
-        return motion.pga
+        return motion.pga_g
 
 
 class PeakVelocity(MotionMeasure):
