@@ -414,7 +414,8 @@ class Recomputed:
             return d
         if name in ("d_[SLV]", "d_[SLC]"):
             share = {"d_[SLV]": 0.4, "d_[SLC]": 0.6}[name] * v["d_[0]^[*]"]
-            return share if "min" not in each.formula else min(share, number(each.numbers.split("; ")[1].rstrip(")")))
+            others = each.numbers.rstrip(")").split("; ")[1:] if "min" in each.formula else []
+            return min(share, *map(number, others)) if others else share
         if name.startswith("a^[*]_"):
             if "lin" in name:
                 return v["a_[0]^[*]"] * (1 - v[f"d_[{self.state}]"] / v["d_[0]^[*]"])

@@ -226,11 +226,51 @@ class TestCurves:
         found, free = verified(block), verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[floor]))
         phi = found.exact.rotation(found.states["SLC"].d)
         assert 5.0 * sin(phi) + 0.5 * (1 - cos(phi)) == pytest.approx(0.3, rel=1e-9)
-        assert found.states["SLC"].d < free.states["SLC"].d and found.states["SLV"] == free.states["SLV"]
-        assert any("loses its seat of 0.3 m" in each for each in found.remarks)
-        assert found.straight_states["SLC"].d == found.states["SLC"].d
+        assert found.states["SLV"].d == found.states["SLC"].d < free.states["SLV"].d < free.states["SLC"].d
+        (said,) = [each for each in found.remarks if "loses its seat of 0.3 m" in each]
+        assert "which limits d_SLV and d_SLC" in said and "che limita d_SLV e d_SLC" in said_in("it", said)
+        assert [each.d for each in found.straight_states.values()] == [each.d for each in found.states.values()]
+        middle = verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[{**floor, "seat": 0.45}]))
+        assert middle.states["SLV"] == free.states["SLV"] and middle.states["SLC"].d < free.states["SLC"].d
+        assert any("which limits d_SLC." in each for each in middle.remarks)
         wide = verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[{**floor, "seat": 0.9}]))
         assert wide.states == free.states and not any("loses its seat" in each for each in wide.remarks)
+
+    def test_a_roof_that_has_fallen_passes_no_limit_state(self):
+        """By hand: the top of the block goes 0.15 m, and its centroid h/2 sin(phi) + b (1 - cos(phi))."""
+        roof = {"name": "roof", "mass": 3000.0, "at": [0.0, 8.0], "floor": "sliding", "seat": 0.15}
+        found = verified(rk.Block(**TIED, loads=[roof]), SLC={k: v for k, v in SITE.items() if k != "FC"})
+        phi = _slid(0.3, 8.0, 0.15)
+        d = 4 * sin(phi) + 0.3 * (1 - cos(phi))
+        W, R = 0.6 * 8.0 * 5.0 * 18000, 3000.0 * G / 2  # the other half rests elsewhere
+        end = atan(0.3 * (W + R) / (W * 4.0 + R * 8.0))
+        assert 0.4 * found.d0 == pytest.approx(0.4 * (4 * sin(end) + 0.3 * (1 - cos(end))), rel=1e-9)
+        assert d == pytest.approx(0.075026, abs=6e-7) and 0.4 * found.d0 > 1.5 * d
+        assert [each.d for each in found.states.values()] == pytest.approx([d, d], rel=1e-9)
+        assert not found.passes("SLV") and not found.states["SLC"].passes
+
+    def test_a_facade_whose_roof_loses_its_seat_by_hand(self):
+        """The nonlinear method by hand on a short seat: zeta_E is 0.83, and not the 2.22 of 0.4 d0*."""
+        forces = [("thrust", 24e3, [-0.10, 9.5]), ("ties", -202.5e3, [-0.35, 7.0])]
+        loads = [{"name": name, "force": [force, 0.0], "at": at} for name, force, at in forces]
+        roof = {"name": "roof", "mass": 9789.0, "at": [-0.10, 9.5], "seat": 0.10}
+        facade = {"width": 0.7, "height": 9.5, "density": 1937.46, "depth": 8.0}
+        block = rk.Block(**facade, one_sided="positive", rebound=0.4, loads=[roof, *loads])
+        found = verified(block, **{**AT_HAZARD, "CU": 1.5, "hazard": CLASS_III})
+        b, W, R = 0.35, 0.7 * 9.5 * 8.0 * 1937.46 * G, 9789.0 * G
+        phi = root(lambda x: 9.5 * sin(x) - 0.45 * (cos(x) - 1) - 0.10, 0.0, 0.5)
+        z = np.array([complex(-b, 4.75), complex(-0.45, 9.5), complex(-0.45, 9.5), complex(-2 * b, 7.0)])
+        at = z * np.exp(-1j * phi)
+        up, across = (-at.real, at.imag)  # per unit rotation about the foot
+        V = W * up[0] + R * up[1] - 24e3 * across[2] + 202.5e3 * across[3]
+        a = V / (W * across[0] + R * across[1]) * G / 1.35
+        d = (W * (at - z)[0].real + R * (at - z)[1].real) / (W + R)
+        T = 1.68 * pi * sqrt(d / a)
+        ground = Hazard(CLASS_III, "C", "T1").spectrum(-75 / log(0.9))
+        demand = ground.acceleration(T, 0.08) * (T / 2 / pi) ** 2
+        slv = found.states["SLV"]
+        assert [slv.d, slv.T, slv.demand] == pytest.approx([d, T, demand], rel=1e-6)
+        assert found.counts.zeta == pytest.approx(0.83, abs=0.005) and not found.passes("SLV")
 
     def test_the_period_of_an_element_by_its_size(self):
         element = {"kind": "cantilever", "L": 1.2, "t": 0.3, "w": 18e3, "E": 1.2e9}
@@ -473,6 +513,7 @@ class TestMethods:
 
 
 TABLE = [[30, 0.060, 2.45, 0.27], [101, 0.105, 2.40, 0.29], [475, 0.200, 2.45, 0.32], [2475, 0.330, 2.55, 0.36]]
+CLASS_III = [[45, 0.066, 2.36, 0.28], [75, 0.084, 2.35, 0.285], [712, 0.21, 2.42, 0.31], [1463, 0.265, 2.46, 0.32]]
 AT_HAZARD = {**dict.fromkeys(("ag", "F0", "TC", "S")), "hazard": TABLE, "VN": 50.0, "CU": 1.0, "soil": "C"}
 
 

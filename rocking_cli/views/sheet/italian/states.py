@@ -134,15 +134,13 @@ class Writer:
     def _allowed(self, rule: Rule, at: State) -> Working:
         """The displacement that a limit state allows."""
         say, curve, s = self.say, self.curve, rule.state
-        if rule.at_breaks and curve.broken is not None:
-            put = say.put("min({share} · {d0}; {d})", share=rule.share, d0=curve.d0, d=curve.broken)
-            formula = say.formula(f"min({rule.share:g} d_[0]^[*]; d_[t])")
-        elif rule.at_seats and curve.seat is not None:
-            put = say.put("min({share} · {d0}; {d})", share=rule.share, d0=curve.d0, d=curve.seat.d)
-            formula = say.formula(f"min({rule.share:g} d_[0]^[*]; d_[a])")
-        else:
-            put = say.put("{share} · {d0}", share=rule.share, d0=curve.d0)
-            formula = say.formula(f"{rule.share:g} d_[0]^[*]")
+        ends = {"t": curve.broken if rule.at_breaks else None, "a": curve.seat.d if curve.seat is not None else None}
+        known = {name: d for name, d in ends.items() if d is not None}
+        formula, put = f"{rule.share:g} d_[0]^[*]", "{share} · {d0}"
+        if known:
+            formula = f"min({'; '.join([formula, *(f'd_[{name}]' for name in known)])})"
+            put = f"min({'; '.join([put, *(f'{{{name}}}' for name in known)])})"
+        formula, put = say.formula(formula), say.put(put, share=rule.share, d0=curve.d0, **known)
         return Working(f"d_[{s}]", say.say("d_state", state=s), formula, put, at.d, "m", "C8.7.1.2.1.6")
 
     def _period_and_demand(self, rule: Rule, at: State, name: str, a: float) -> Iterator[Working]:

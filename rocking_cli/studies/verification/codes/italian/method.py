@@ -39,7 +39,7 @@ class _Case:
         d = rule.share * curve.d0
         if rule.at_breaks and curve.broken is not None:
             d = min(d, curve.broken)
-        if rule.at_seats and curve.seat is not None:
+        if curve.seat is not None:
             d = min(d, curve.seat.d)
         a = with_elastic_branch(curve.acceleration(d), d, site.own_period)
         T = rule.factor * pi * sqrt(d / a)

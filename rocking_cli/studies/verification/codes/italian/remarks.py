@@ -14,10 +14,10 @@ ENGLISH = {
         "account."
     ),
     "seats": (
-        "The code also limits d_SLC by the loss of support of parts such as beams. This is not checked for loads "
-        "without a `seat` (length of support), and at least one load has none: give it."
+        "The code also limits d_SLV and d_SLC by the loss of support of parts such as beams. This is not checked for "
+        "loads without a `seat` (length of support), and at least one load has none: give it."
     ),
-    "seat": "The load {name} loses its seat of {length:.3g} m at d = {d:.4g} m, which limits d_SLC.",
+    "seat": "The load {name} loses its seat of {length:.3g} m at d = {d:.4g} m, which limits {limited}.",
     "no_soil": (
         "No soil class is given: at long periods, displacements are not reduced to the ground displacement, which is "
         "conservative."
@@ -83,10 +83,10 @@ ITALIAN = {
     "missing": "Il file del sito non assegna {states}: per tali stati limite non si esegue alcuna verifica.",
     "confidence": "FC = {FC:g}: vale {least:g}, quello di LC1, finché non si considera la resistenza a compressione.",
     "seats": (
-        "La norma limita d_SLC anche per la perdita dell'appoggio di elementi quali le travi: di un carico si può "
+        "La norma limita d_SLV e d_SLC anche per la perdita dell'appoggio di elementi quali le travi: di un carico si può "
         "assegnare l'appoggio (`seat`), e qui di qualcuno manca."
     ),
-    "seat": "Il carico {name} perde il suo appoggio di {length:.3g} m a d = {d:.4g} m: d_SLC termina in quel punto.",
+    "seat": "Il carico {name} perde il suo appoggio di {length:.3g} m a d = {d:.4g} m, che limita {limited}.",
     "no_soil": (
         "La categoria di sottosuolo non è assegnata: ai lunghi periodi gli spostamenti non si riducono a quelli del "
         "terreno, a favore di sicurezza."

@@ -128,9 +128,10 @@ def _of_break(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
 
 def _of_seat(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     seat = curve.seat
-    if seat is None or states["SLC"].d != seat.d:
+    limited = [f"d_{state}" for state, at in states.items() if seat is not None and at.d == seat.d]
+    if seat is None or not limited:
         return []
-    return [_told("seat", name=seat.load, length=seat.length, d=seat.d)]
+    return [_told("seat", name=seat.load, length=seat.length, d=seat.d, limited=_named(limited))]
 
 
 def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:

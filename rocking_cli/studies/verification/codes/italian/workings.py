@@ -177,7 +177,7 @@ def _of_states(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -
     for rule in RULES:
         at, s = states[rule.state], rule.state
         broken = rule.at_breaks and curve.broken is not None and at.d == curve.broken
-        off = rule.at_seats and curve.seat is not None and at.d == curve.seat.d
+        off = curve.seat is not None and at.d == curve.seat.d
         formula = "displacement of a break" if broken else "loss of a seat" if off else f"{rule.share:g} d0*"
         put = "" if broken or off else f"{rule.share:g} x {_n(curve.d0)}"
         yield Working(f"d_{s}", f"displacement capacity at {s}", formula, put, at.d, "m", "C8.7.1.2.1.6")
