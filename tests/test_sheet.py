@@ -65,6 +65,7 @@ CASES = {
         SITE + SLC,
     ),
     "parapet on a floor": ("mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n", SITE + FLOOR + "T0: 0.5\n"),
+    "wall that does not begin to rock": (WALL, SITE + "SLC: {ag: 0.24, F0: 2.5, TC: 0.55, S: 1.2}\n"),
     "table": (FACADE, TABLE),
     "table and floor": (WALL, TABLE + FLOOR),
     "arch": (ARCH, SITE),
@@ -544,6 +545,18 @@ def test_a_document_has_the_steps_and_tables_of_the_page(name, sheets):
     steps = [[each for each in items if isinstance(each, Step)] for items in (page, document)]
     assert steps[0] == steps[1] and len(steps[0]) > 40
     assert Recomputed([each for each in document if not isinstance(each, list) or len(each[1]) > 2]).count > 25
+
+
+def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too(sheets):
+    data, out = sheets("wall that does not begin to rock")
+    assert data["directions"]["positive"]["states"]["SLC"]["passes"]
+    items = of_html(out)
+    states = next(each for each in items if isinstance(each, list) and "limit states" in each[0])
+    row = next(each for each in states[2:] if each[0] == "SLC")
+    assert number(row[4]) < 1 and row[5] == "satisfied"
+    words = Page(out.read_text(encoding="utf-8")).words
+    assert "SLC: the verification is satisfied. ζ_[E] = 1.029; the damage method governs" in words
+    assert "at SLC: below 1, but satisfied, as rocking does not start" in words
 
 
 @pytest.mark.parametrize("suffix", [".html", ".docx"])

@@ -467,7 +467,7 @@ class TestMethods:
         """Every a_g is put back into the site: then the displacement demand is the displacement capacity."""
         found = verified(mechanism, **site)
         for key, ratio in a_g(found).items():
-            if key in ("nonlinear_SLC", "SLD"):
+            if key in ("damage_SLC", "nonlinear_SLC", "SLD"):
                 assert ratio is None
                 continue
             again = verified(mechanism, **{**site, "ag": ratio})
@@ -499,6 +499,18 @@ class TestMethods:
         assert again.states["SLC"].ratio == pytest.approx(1.0, rel=1e-9)
         assert found.methods["SLD"].a_g == pytest.approx(found.a0 / (1.5 * G), rel=1e-12)
         assert found.methods["SLD"].zeta == pytest.approx(found.a0 / (1.5 * 0.05 * G), rel=1e-12)
+
+    def test_what_does_not_begin_to_rock_passes_at_collapse_too(self):
+        """A wall of 0.3 x 3 m starts to rock at a0*/(S g) = 0.2469 g, above the 0.24 g of SLC, whatever its d_SLC."""
+        slc = {"ag": 0.24, "F0": 2.5, "TC": 0.55, "S": 1.2}
+        wall = rk.Wall(thickness=0.3, height=3.0, density=1800.0, depth=1.0)
+        found = verified(wall, SLC=slc)
+        start = 2 * (0.3 / 1.5) / 1.35 / 1.2  # lambda = 2 tan(alpha) of its halves, e* = 1
+        assert found.methods["damage_SLC"].a_g == pytest.approx(start, rel=1e-12)
+        assert found.states["SLC"].ratio < 1 and found.passes("SLC") and found.governing["SLC"] == "damage_SLC"
+        shaken = verified(wall, SLC={**slc, "ag": 0.25})
+        assert not shaken.passes("SLC") and shaken.methods["damage_SLC"].zeta < 1
+        assert verified(FACADE, SLC=slc).governing == {"SLV": "nonlinear", "SLC": "nonlinear_SLC"}
 
     def test_the_workings_hold_the_numbers(self):
         found = verified(OPPENHEIM, SLC={k: v for k, v in SITE.items() if k != "FC"})

@@ -46,8 +46,10 @@ def test_json_has_exactly_its_form(files):
             "dynamic",
         ]  # fmt: skip
         assert list(side["states"]) == ["SLV", "SLC"]
-        assert list(side["states"]["SLV"]) == ["d", "a", "T", "demand", "ratio"]
-        assert list(side["a_g"]) == ["damage", "linear", "nonlinear", "nonlinear_SLC"]
+        assert list(side["states"]["SLV"]) == ["d", "a", "T", "demand", "ratio", "governs", "passes"]
+        assert [side["states"]["SLV"][key] for key in ("governs", "passes")] == ["nonlinear", False]
+        assert [side["states"]["SLC"][key] for key in ("governs", "passes")] == [None, None]
+        assert list(side["a_g"]) == ["damage", "linear", "nonlinear", "damage_SLC", "nonlinear_SLC"]
         assert side["dynamic"] is None and side["M_star"] is None  # without masses
         slv = side["states"]["SLV"]
         assert slv["ratio"] == pytest.approx(slv["d"] / slv["demand"])
@@ -123,6 +125,9 @@ class TestWords:
         assert said[0].startswith("SLC: passes.") and said[1].startswith("SLD: passes.")
         said = list(words.beyond_first(positive(FACADE, SLC={**ground, "ag": 0.9}, SLD=ground), "SLV"))
         assert said[0].startswith("SLC: fails.") and said[1].startswith("SLD: fails.")
+        still = {"ag": 0.24, "F0": 2.5, "TC": 0.55, "S": 1.2}
+        (said,) = words.beyond_first(positive(WALL, SLC=still), "SLV")
+        assert said.startswith("SLC: passes. The damage method governs: the structure does not start to rock below a_g")
 
     @pytest.mark.parametrize(
         ("site", "said"),
@@ -179,7 +184,7 @@ class TestInPython:
     def test_it_is_the_answer_of_the_command(self, files, tmp_path):
         answer = rk.verify("b.yaml", "site.yaml", control=(0.3, 8.0, "block"))
         assert answer.to_dict() == run_json("verify", "b.yaml", "--site", "site.yaml", "--control", "0.3,8,block")
-        assert len(answer.to_frame()) == 10
+        assert len(answer.to_frame()) == 12
         answer.plot(tmp_path / "a.png")
         assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
         assert repr(answer).startswith("<verification: ")

@@ -126,7 +126,7 @@ def _methods(each: Verified) -> Table:
             continue
         line = each.straight_methods[key]
         years = [_years(method)] if known else []
-        governs = "governs" if key == each.governs else ""
+        governs = "governs" if key in each.governing.values() else ""
         rows.append(
             [
                 method.title,
@@ -192,7 +192,7 @@ def _data(each: Verified) -> dict[str, Any]:
         "M_star": each.M,
         "a0_star": each.a0,
         "d0_star": each.d0,
-        "states": {name: _state(at) for name, at in each.states.items()},
+        "states": {name: _state(each, name, at) for name, at in each.states.items()},
         **({"ties": _ties(each)} if elastic(each.chain.mechanism) else {}),
         "a_g": {key: method.a_g for key, method in each.methods.items() if key != "SLD"},
         "zeta": {key: method.zeta for key, method in each.methods.items()},
@@ -202,8 +202,10 @@ def _data(each: Verified) -> dict[str, Any]:
     }
 
 
-def _state(at: State) -> dict[str, float | None]:
-    return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio}
+def _state(each: Verified, name: str, at: State) -> dict[str, Any]:
+    passes = each.passes(name)
+    by = {"governs": each.governing[name] if passes is not None else None, "passes": passes}
+    return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio, **by}
 
 
 def _ties(each: Verified) -> dict[str, dict[str, float]]:

@@ -175,8 +175,10 @@ class Verified:
         The limit states on the exact curve, and on the straight line.
     methods, straight_methods : mapping of str to Method
         What each method says on either.
+    governing : mapping of str to str
+        The method that governs at each limit state.
     governs : str
-        The method that counts.
+        The method that governs at the first one.
     workings : sequence of Working
         How its numbers came about.
     remarks : sequence of str
@@ -195,6 +197,7 @@ class Verified:
     straight_states: Mapping[str, State]
     methods: Mapping[str, Method]
     straight_methods: Mapping[str, Method]
+    governing: Mapping[str, str]
     governs: str
     workings: Sequence[Working]
     remarks: Sequence[str]
@@ -207,12 +210,12 @@ class Verified:
 
     @property
     def counts(self) -> Method:
-        """The method that governs."""
+        """The method that governs at the first limit state."""
         return self.methods[self.governs]
 
     def passes(self, state: str) -> bool | None:
         """Whether it passes at a limit state by what governs; None where the site does not give it."""
-        held = self.counts.passes
+        held = self.methods[self.governing[state]].passes
         return None if held is None else held or bool(self.states[state].passes)
 
 

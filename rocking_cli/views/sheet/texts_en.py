@@ -196,9 +196,13 @@ TEXTS = {
     "a_elastic": "not above the elastic branch of T_[0]",
     "T": "period at {state}",
     "passes": "displacement capacity over demand at {state}: satisfied, at least 1",
+    "passes_still": (
+        "displacement capacity over demand at {state}: below 1, but satisfied, as rocking does not start (damage method)"
+    ),
     "fails": "displacement capacity over demand at {state}: not satisfied, below 1",
     # methods
     "method_damage": "Damage: onset of rocking",
+    "method_damage_SLC": "Damage: onset of rocking, at SLC",
     "method_linear": "Linear method: behaviour factor q",
     "method_nonlinear": "Nonlinear method, displacement at SLV",
     "method_nonlinear_SLC": "Nonlinear method, displacement at SLC",

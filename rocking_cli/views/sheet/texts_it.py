@@ -225,9 +225,14 @@ TEXTS = {
     "a_elastic": "non oltre il ramo elastico di T_[0]",
     "T": "periodo allo {state}",
     "passes": "spostamento ammesso diviso domanda allo {state}: verifica soddisfatta, almeno 1",
+    "passes_still": (
+        "spostamento ammesso diviso domanda allo {state}: minore di 1, ma verifica soddisfatta, perché il meccanismo "
+        "non si attiva"
+    ),
     "fails": "spostamento ammesso diviso domanda allo {state}: verifica non soddisfatta, minore di 1",
     # methods
     "method_damage": "Attivazione del meccanismo",
+    "method_damage_SLC": "Attivazione del meccanismo, verifica a SLC",
     "method_linear": "Metodo lineare: fattore di comportamento q",
     "method_nonlinear": "Metodo non lineare, verifica a SLV",
     "method_nonlinear_SLC": "Metodo non lineare, verifica a SLC",

@@ -16,7 +16,7 @@ from rocking_cli.views.sheet.italian.site import hazard_at, is_close
 from rocking_cli.views.sheet.italian.states import LINE
 from rocking_cli.views.sheet.language import Language
 
-STATE = {"damage": "SLV", "linear": "SLV", "nonlinear": "SLV", "nonlinear_SLC": "SLC", "SLD": "SLD"}
+STATE = {"damage": "SLV", "damage_SLC": "SLC", "linear": "SLV", "nonlinear": "SLV", "nonlinear_SLC": "SLC", "SLD": "SLD"}
 RULE = {"nonlinear": RULES[0], "nonlinear_SLC": RULES[1]}
 
 

@@ -23,7 +23,9 @@ from rocking_cli.studies.verification.ties import elastic, lasting
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"
-DAMAGE, LINEAR, NONLINEAR, AT_COLLAPSE = "damage", "linear", "nonlinear", "nonlinear_SLC"
+DAMAGE, LINEAR, NONLINEAR = "damage", "linear", "nonlinear"
+OF_STATE = {"SLV": (DAMAGE, NONLINEAR), "SLC": (f"{DAMAGE}_SLC", f"{NONLINEAR}_SLC")}
+"""Of each limit state its two methods, by whether rocking starts and by displacement; the larger capacity governs."""
 
 
 @dataclass(frozen=True)
@@ -68,14 +70,16 @@ class _Case:
             DAMAGE: self.method("onset of rocking at SLV", "C8.7.1.6-9", "SLV", self.forces, a0),
             LINEAR: self.method("linear (q a0*) at SLV", "C8.7.1.6-9", "SLV", self.forces, q * a0),
         }
-        for key, rule in zip((NONLINEAR, AT_COLLAPSE), RULES, strict=True):
-            at = states[rule.state]
+        for rule in RULES:
+            at, (damage, nonlinear) = states[rule.state], OF_STATE[rule.state]
+            title = f"onset of rocking at {rule.state}"
+            found.setdefault(damage, self.method(title, "C8.7.1.6-9", rule.state, self.forces, a0))
 
             def asked(spectrum: Spectrum, T: float = at.T, damping: float = rule.damping) -> float:
                 return spectrum.displacement(T, damping)
 
             title = f"nonlinear at {rule.state}"
-            found[key] = self.method(title, "C8.7.1.2.1.6", rule.state, asked, at.d)
+            found[nonlinear] = self.method(title, "C8.7.1.2.1.6", rule.state, asked, at.d)
         found["SLD"] = self.method("onset of rocking at SLD", "C8.7.1.6-9", "SLD", self.forces, a0)
         return found
 
@@ -132,13 +136,14 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         straight_states=on_line,
         methods=methods,
         straight_methods=line.methods(on_line),
-        governs=_governs(methods),
+        governing={state: _governs(methods, *pair) for state, pair in OF_STATE.items()},
+        governs=_governs(methods, DAMAGE, NONLINEAR),
         workings=workings.of_direction(exact, states, methods, ground),
         remarks=remarks,
     )
 
 
-def _governs(methods: Mapping[str, Method]) -> str:
-    """The method that counts: the nonlinear one is never below damage."""
-    damage, nonlinear = methods[DAMAGE].a_g, methods[NONLINEAR].a_g
-    return DAMAGE if damage is not None and nonlinear is not None and damage > nonlinear else NONLINEAR
+def _governs(methods: Mapping[str, Method], damage: str, nonlinear: str) -> str:
+    """The method that governs of the two of a limit state: the nonlinear one is never below damage."""
+    start, moved = methods[damage].a_g, methods[nonlinear].a_g
+    return damage if start is not None and moved is not None and start > moved else nonlinear

@@ -210,6 +210,7 @@ def _of_demand(rule: Rule, at: State, demand: float, ground: Ground) -> Working:
 FORMULAS = {
     "damage": "demand of a_g equals a0*",
     "linear": "demand of a_g equals q a0*",
+    "damage_SLC": "demand of a_g equals a0*, by the ground of SLC",
     "nonlinear": "S_De(T_SLV) of a_g equals d_SLV",
     "nonlinear_SLC": "S_De(T_SLC) of a_g equals d_SLC",
     "SLD": "demand of a_g equals a0*, by F0, TC and S of SLD",
