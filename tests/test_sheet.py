@@ -46,6 +46,8 @@ WALL = "mechanism: wall\nname: wall\nthickness: 0.3\nheight: 3\n"
 ARCH = (EXAMPLES / "arch.yaml").read_text(encoding="utf-8")
 FRAME = (EXAMPLES / "frame.yaml").read_text(encoding="utf-8")
 
+PARAPET = "mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n"
+
 CASES = {
     "facade": (FACADE, SITE),
     "on soil": (FACADE, SITE + "soil: A\n" + SLC),
@@ -54,6 +56,13 @@ CASES = {
     "crossed": (CROSSED, SITE),
     "two bodies on a floor": (WALL, SITE + FLOOR + SLC),
     "on a floor": (FACADE, SITE + FLOOR),
+    "on a floor of its own period at each state": (
+        FACADE, SITE + SLC + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}, "
+        "SLC: {T1: 0.7, xi1: 0.15}}\n",
+    ),
+    "parapet on a floor that is known at damage": (
+        PARAPET, SITE + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}}\nT0: 0.08\n",
+    ),
     "parapet": ("mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n", SITE + SLC + "T0: 0.08\n"),
     "parapet by its size": (
         "mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n",
@@ -304,8 +313,13 @@ class Recomputed:
                 "S_[Z]",
                 "S_[e](T_[0])",
                 "S_[eZ](T_[0])",
+                "T_[1]",
+                "ξ_[1]",
             )
             self.known.update({name: sizes[name] for name in names if name in sizes})
+            if text.startswith("Linear"):
+                own = self.given.get("SLD", {})
+                self.known.update({name: own[name] for name in ("T_[1]", "ξ_[1]") if name in own})
 
     heading_of_site = False
 
@@ -495,12 +509,13 @@ class Recomputed:
         if name.startswith("ρ"):
             return v[f"d_[{self.state}]"] / v[f"S_[De](T_[{name[3:-1]}])"]
         if name.startswith("ζ"):
-            return v["a_g of the method"] / self.given[self.state]["a_[g]"]
+            state = "SLV" if "SLV" in each.formula else self.state
+            return v["a_g of the method"] / self.given[state]["a_[g]"]
+        if name == "a_[g,linear]":
+            return v["q"] * v["a_[g,0]"]
         if name.startswith("a_[g,") and each.numbers:
             capacity, _, demand = each.formula.removeprefix("a_[g] · ").partition("/")
             return self.given[self.state]["a_[g]"] * v[capacity] / v[demand.strip("()") if " " in demand else demand]
-        if name.startswith("q a"):
-            return v["q"] * v["a_[0]^[*]"]
         return None
 
     def free_again(self, each):

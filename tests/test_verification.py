@@ -500,6 +500,49 @@ class TestMethods:
         assert found.methods["SLD"].a_g == pytest.approx(found.a0 / (1.5 * G), rel=1e-12)
         assert found.methods["SLD"].zeta == pytest.approx(found.a0 / (1.5 * 0.05 * G), rel=1e-12)
 
+    def test_the_linear_method_is_q_times_the_onset_at_damage(self):
+        """By hand on soil C, whose S differs: q a0*/(S g) with S of SLD, against the a_g of SLV."""
+        found = verified(FACADE, **AT_HAZARD, q=2.5)
+        ag, F0, _ = Hazard(TABLE, "C", "T1").parameters(hazard.return_period(50.0, "SLD"))
+        assert 1.7 - 0.6 * F0 * ag > 1.5  # S of SLD is the largest of soil C, that of SLV less
+        linear, a0 = found.methods["linear"], 0.075 * G / 1.35
+        assert linear.a_g == pytest.approx(2.5 * a0 / (1.5 * G), rel=1e-9)
+        asked, F0, _ = Hazard(TABLE, "C", "T1").parameters(hazard.return_period(50.0, "SLV"))
+        S = 1.7 - 0.6 * F0 * asked
+        assert S < 1.45 and linear.asked == pytest.approx(asked, rel=1e-12)
+        # As a return period: that whose a_g it is.
+        at = Hazard(TABLE, "C", "T1").parameters(linear.return_period)[0]
+        assert at == pytest.approx(linear.a_g, rel=1e-9) and not linear.beyond
+        given = verified(FACADE, SLD={"ag": 0.05, "F0": 2.4, "TC": 0.3, "S": 1.5})
+        assert given.methods["linear"].a_g == pytest.approx(2 * a0 / (1.5 * G), rel=1e-9)
+
+    def test_of_ordinates_only_those_of_both_states_are_compared(self):
+        """The ordinates of a table hold S, which nobody knows: without a table of SLV, S of SLV is used."""
+        points = [[0, 0.1], [0.4, 0.25], [4.0, 0.02]]
+        mixed, alone = verified(FACADE, SLD={"spectrum": points}), verified(FACADE)
+        assert mixed.methods["linear"].a_g == alone.methods["linear"].a_g
+
+    def test_a_floor_has_its_own_mode_at_each_limit_state(self):
+        """Damage at SLD and the linear method by T1 and xi1 of SLD, the others by those of SLV, and SLC by its own."""
+        sld = {"SLD": {"ag": 0.08, "F0": 2.5, "TC": 0.36, "S": 1.2}, "SLC": {"ag": 0.26, "F0": 2.5, "TC": 0.42, "S": 1}}
+        place = {"z": 6.0, "H": 9.0, "n": 3}
+        modes = {"SLD": {"T1": 0.35, "xi1": 0.05}, "SLV": {"T1": 0.6, "xi1": 0.12}, "SLC": {"T1": 0.7, "xi1": 0.15}}
+        parapet = rk.Block(width=0.3, height=1.2, density=1800.0, depth=1.0)
+        alone = {state: verified(parapet, floor={**place, **mode}, **sld) for state, mode in modes.items()}
+        own = {state: mode for state, mode in modes.items() if state != "SLV"}
+        found = verified(parapet, floor={**place, **modes["SLV"], **own}, **sld)
+        of = {"damage": "SLV", "linear": "SLD", "nonlinear": "SLV", "damage_SLC": "SLC", "nonlinear_SLC": "SLC",
+              "SLD": "SLD"}  # fmt: skip
+        for key, state in of.items():
+            assert found.methods[key].a_g == pytest.approx(alone[state].methods[key].a_g, rel=1e-12), key
+        # By hand: at T1 = .35 s, within T_B to T_C, S_Z is a_g S F0 gamma psi sqrt(1 + 4 xi1^2).
+        S_Z = 1.2 * 2.5 * 9 / 7 * 2 / 3 * sqrt(1 + 4 * 0.05**2)
+        assert found.methods["SLD"].a_g == pytest.approx(0.25 / 1.35 / S_Z, rel=1e-9)
+        assert found.methods["linear"].a_g == pytest.approx(2 * 0.25 / 1.35 / S_Z, rel=1e-9)
+        # At T1 = .6 s, above T_C = .4 s, with eta of 12 %.
+        S_Z = 1.2 * sqrt(10 / 17) * 2.5 * 0.4 / 0.6 * 9 / 7 * 2 / 3 * sqrt(1 + 4 * 0.12**2)
+        assert found.methods["damage"].a_g == pytest.approx(0.25 / 1.35 / S_Z, rel=1e-9)
+
     def test_what_does_not_begin_to_rock_passes_at_collapse_too(self):
         """A wall of 0.3 x 3 m starts to rock at a0*/(S g) = 0.2469 g, above the 0.24 g of SLC, whatever its d_SLC."""
         slc = {"ag": 0.24, "F0": 2.5, "TC": 0.55, "S": 1.2}

@@ -137,6 +137,14 @@ class TestWords:
                 {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
                 "is evaluated with xi1 as a ratio. This is our reading",
             ),
+            (
+                {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
+                "T1 = 0.4 s and xi1 = 0.1 of the floor are used at all limit states",
+            ),
+            (
+                {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
+                "the others are missing here",
+            ),
             ({"floor": {"z": 1.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}}, "S_Z = 0.2141 g, is below"),
             (
                 {"SLC": {key: value for key, value in SITE.items() if key != "FC"}},
@@ -149,6 +157,22 @@ class TestWords:
         assert any(said in each for each in verified(FACADE, **site).remarks)
         other = verified(WALL, soil="B") if "floor" not in site else verified(FACADE)
         assert not any(said in each for each in other.remarks)
+
+
+def test_a_floor_with_its_mode_at_damage_needs_no_caution():
+    own = {"z": 2.0, "H": 3.0, "T1": 0.6, "xi1": 0.1, "n": 3, "SLD": {"T1": 0.4, "xi1": 0.05}}
+    said = " ".join(verified(FACADE, floor=own).remarks)
+    assert "at all limit states" not in said and "are used at SLC too" not in said
+    ground = {key: value for key, value in SITE.items() if key != "FC"}
+    said = " ".join(verified(FACADE, floor=own, SLC=ground).remarks)
+    assert "T1 = 0.6 s and xi1 = 0.1 of the floor at SLV are used at SLC too" in said
+
+
+def test_the_linear_method_without_damage_at_the_site_says_by_what():
+    said = "F0, TC and S of SLV are used, which is our choice"
+    ground = {key: value for key, value in SITE.items() if key != "FC"}
+    assert any(said in each for each in verified(FACADE).remarks)
+    assert not any(said in each for each in verified(FACADE, SLD=ground).remarks)
 
 
 def test_a_control_point_is_typed_and_its_influence_said(files):

@@ -58,9 +58,14 @@ def _given(say: Language, ground: Ground) -> Grid:
     if ground.hazard is not None:
         rows.append(["", say.say("given_topography"), site.topography, ""])
     if site.floor is not None:
-        for key, symbol, unit in (("z", "z", "m"), ("H", "H", "m"), ("T1", "T_[1]", "s"), ("xi1", "ξ_[1]", ""),
-                                  ("n", "n", "")):  # fmt: skip
+        for key, symbol, unit in (("z", "z", "m"), ("H", "H", "m"), ("n", "n", "")):
             rows.append([symbol, say.say(f"given_{key}"), say.number(float(getattr(site.floor, key))), unit])
+        for state in STATES:
+            if ground.spectrum(state) is None and getattr(site.floor, state, None) is None:
+                continue
+            mode = site.floor.mode(state)
+            rows.append(["T_[1]", say.say("given_T1", state=state), say.number(mode.T1), "s"])
+            rows.append(["ξ_[1]", say.say("given_xi1", state=state), say.number(mode.xi1), ""])
     return Grid(say.say("given"), [say.say(key) for key in ("symbol", "quantity", "value", "unit")], rows, (2,))
 
 

@@ -55,8 +55,17 @@ class _Case:
         spectrum = self.ground.spectrum(state)
         if spectrum is None:
             return Method(title, None, None, clause)
-        a_g = self.ground.capacity(state, demand, capacity)
-        return Method(title, a_g, spectrum.ag, clause, *self.ground.lasts(demand, capacity))
+        a_g = self.ground.capacity(spectrum, demand, capacity)
+        return Method(title, a_g, spectrum.ag, clause, *self.ground.lasts(state, demand, capacity))
+
+    def linear(self) -> Method:
+        """Return the capacity by the linear method: q times the a_g at which rocking starts at SLD [8.7.1.2.1.7]."""
+        start = self.ground.capacity(self.ground.of_activation, self.forces, self.curve.a0)
+        a_g = self.ground.site.q * start
+        asked = self.ground.on_ground("SLV")
+        assert asked is not None  # always given
+        lasts = self.ground.lasts("SLV", lambda spectrum: spectrum.ag, a_g)
+        return Method("linear (q times onset) at SLV", a_g, asked.ag, "C8.7.1.2.1.7", *lasts)
 
     def forces(self, spectrum: Spectrum) -> float:
         """Acceleration demand on the element [m/s2]: the peak of the ground or floor, or the ordinate at its own T0."""
@@ -65,10 +74,10 @@ class _Case:
 
     def methods(self, states: Mapping[str, State]) -> dict[str, Method]:
         """Return the methods, by key."""
-        q, a0 = self.ground.site.q, self.curve.a0
+        a0 = self.curve.a0
         found = {
             DAMAGE: self.method("onset of rocking at SLV", "C8.7.1.6-9", "SLV", self.forces, a0),
-            LINEAR: self.method("linear (q a0*) at SLV", "C8.7.1.6-9", "SLV", self.forces, q * a0),
+            LINEAR: self.linear(),
         }
         for rule in RULES:
             at, (damage, nonlinear) = states[rule.state], OF_STATE[rule.state]

@@ -26,6 +26,21 @@ ENGLISH = {
         "The floor amplification A = 1.1 xi1^-1/2 eta(xi) is evaluated with xi1 as a ratio. This is our reading: with "
         "xi1 in per cent, as printed in the code, A would be a reduction."
     ),
+    "one_mode": (
+        "The floor spectrum is that of the first mode alone. At SLD, and in the linear method, the code combines all "
+        "significant modes: the others are missing here, which may be unconservative for stiff elements and low floors."
+    ),
+    "same_mode": (
+        "Caution: T1 = {T1:g} s and xi1 = {xi1:g} of the floor are used at all limit states. At SLV and SLC, a damaged "
+        "building has a period 50 to 100 % longer than at SLD and a damping of 10 to 20 %: a single pair is "
+        "unconservative at SLD and in the linear method, or at SLV and SLC. Give `SLD: {{T1, xi1}}` in `floor`, and "
+        "T1 and xi1 of SLV beside it."
+    ),
+    "same_mode_SLC": "T1 = {T1:g} s and xi1 = {xi1:g} of the floor at SLV are used at SLC too.",
+    "linear_SLV": (
+        "The linear method multiplies by q the a_g at which rocking starts at SLD. The site file does not give SLD in "
+        "the same way as SLV, so F0, TC and S of SLV are used, which is our choice."
+    ),
     "low_floor": (
         "The peak acceleration of the floor, S_Z = {floor:.4g} g, is below that of the ground, a_g S = {ground:.4g} "
         "g: one mode is not sufficient so low in the building."
@@ -94,6 +109,21 @@ ITALIAN = {
     "floor": (
         "Il piano amplifica con A = 1,1 xi1^-1/2 eta(xi), con xi1 come rapporto: è la nostra lettura; in percentuale, "
         "come stampato, A sarebbe una riduzione."
+    ),
+    "one_mode": (
+        "Lo spettro alla quota è quello del solo primo modo. Allo SLD, e nel metodo lineare, la norma combina tutti i "
+        "modi significativi: qui mancano gli altri, talvolta a sfavore di sicurezza per elementi rigidi e quote basse."
+    ),
+    "same_mode": (
+        "Attenzione: T1 = {T1:g} s e xi1 = {xi1:g} dell'edificio valgono qui per tutti gli stati limite. Agli SLV e "
+        "SLC l'edificio danneggiato ha un periodo più lungo del 50-100 % rispetto allo SLD e uno smorzamento del 10-20 "
+        "%: una sola coppia è a sfavore di sicurezza allo SLD e nel metodo lineare, oppure allo SLV e allo SLC. Si "
+        "assegni `SLD: {{T1, xi1}}` in `floor`, accanto ai valori dello SLV."
+    ),
+    "same_mode_SLC": "T1 = {T1:g} s e xi1 = {xi1:g} dell'edificio allo SLV valgono anche per lo SLC.",
+    "linear_SLV": (
+        "Il metodo lineare moltiplica per q l'accelerazione a_g di attivazione allo SLD. Il file del sito non assegna "
+        "lo SLD nello stesso modo dello SLV: si usano F0, TC e S dello SLV, per nostra scelta."
     ),
     "low_floor": (
         "Il picco alla quota, S_Z = {floor:.4g} g, è minore di quello del terreno, a_g S = {ground:.4g} g: un solo "

@@ -86,14 +86,25 @@ def _no_function(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, s
             return
 
 
-class Floor(Part):
-    """The floor of a building on which the structure stands."""
+class Mode(Part):
+    """The first mode of a building at a limit state."""
+
+    T1: Period = quantity("first period of the building", unit="s")
+    xi1: float = quantity("damping ratio of the building: 0.05 for 5 %", gt=0, le=0.5)
+
+
+class Floor(Mode):
+    """The floor of a building on which the structure stands; its own T1 and xi1 are those of SLV."""
 
     z: float = quantity("height of the floor above the foundation", unit="m", gt=0, le=1000)
     H: float = quantity("height of the building", unit="m", gt=0, le=1000)
-    T1: Period = quantity("first period of the building", unit="s")
-    xi1: float = quantity("damping ratio of the building: 0.05 for 5 %", gt=0, le=0.5)
     n: int = quantity("number of storeys", ge=1, le=200)
+    SLD: Mode | None = Field(None, description="first period and damping ratio of the building at damage")
+    SLC: Mode | None = Field(None, description="first period and damping ratio of the building at collapse")
+
+    def mode(self, state: str) -> Mode:
+        """Return the first mode at a limit state: that of SLV if no other is given."""
+        return {"SLD": self.SLD, "SLC": self.SLC}.get(state) or self
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:

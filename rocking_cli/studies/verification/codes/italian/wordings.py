@@ -58,12 +58,26 @@ def _of_spectrum(ground: Ground) -> list[str]:
     on_ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
     if isinstance(on_ground, GroundSpectrum) and on_ground.soil is None:
         said.append(_told("no_soil"))
+    if ground.state_of_activation != "SLD":
+        said.append(_told("linear_SLV"))
     if isinstance(spectrum, FloorSpectrum):
-        said.append(_told("floor"))
+        said += [_told("floor"), _told("one_mode"), *_of_modes(ground)]
         if spectrum.peak < spectrum.ground.peak:
             floor, under = (peak / STANDARD_GRAVITY for peak in (spectrum.peak, spectrum.ground.peak))
             said.append(_told("low_floor", floor=floor, ground=under))
     return said
+
+
+def _of_modes(ground: Ground) -> list[str]:
+    """Of a floor whose T1 and xi1 are the same at several limit states."""
+    floor = ground.site.floor
+    same = [state for state in ("SLD", "SLC") if floor is not None and getattr(floor, state) is None]
+    if floor is None or not same:
+        return []
+    values = {"T1": floor.T1, "xi1": floor.xi1}
+    if "SLD" in same:
+        return [_told("same_mode", **values)]
+    return [_told("same_mode_SLC", **values)] if ground.spectrum("SLC") is not None else []
 
 
 def _of_lives(ground: Ground) -> list[str]:

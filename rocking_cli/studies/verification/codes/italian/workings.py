@@ -103,6 +103,8 @@ def _of_spectrum(ground: Ground, state: str, spectrum: Spectrum) -> Iterator[Wor
 
 
 def _of_floor(state: str, floor: FloorSpectrum) -> Iterator[Working]:
+    yield Working(f"T1,{state}", "first period of the building", "given", "", floor.T1, "s", "C8.7.1.2.1.4")
+    yield Working(f"xi1,{state}", "damping ratio of the building", "given", "", floor.xi1, "", "C8.7.1.2.1.4")
     yield Working("psi", "shape of the first mode", "z/H", f"{_n(floor.z)}/{_n(floor.H)}", floor.psi, "", "C7.2.6")
     put = f"3 x {floor.n}/(2 x {floor.n} + 1)"
     yield Working("gamma", "participation of the first mode", "3n/(2n + 1)", put, floor.gamma, "", "C7.2.6")
@@ -124,7 +126,7 @@ def of_direction(
     curve: ExactCurve, states: Mapping[str, State], methods: Mapping[str, Method], ground: Ground
 ) -> list[Working]:
     """Of one direction: the chain, the curve, the limit states and what each method says."""
-    return [*_of_chain(curve.chain), *_of_curve(curve), *_of_states(curve, states, ground), *_of_methods(methods)]
+    return [*_of_chain(curve.chain), *_of_curve(curve), *_of_states(curve, states, ground), *_of_methods(methods, ground)]
 
 
 def _of_chain(chain: Chain) -> Iterator[Working]:
@@ -209,7 +211,7 @@ def _of_demand(rule: Rule, at: State, demand: float, ground: Ground) -> Working:
 
 FORMULAS = {
     "damage": "demand of a_g equals a0*",
-    "linear": "demand of a_g equals q a0*",
+    "linear": "q times the a_g whose demand, by the ground of SLD, equals a0*",
     "damage_SLC": "demand of a_g equals a0*, by the ground of SLC",
     "nonlinear": "S_De(T_SLV) of a_g equals d_SLV",
     "nonlinear_SLC": "S_De(T_SLC) of a_g equals d_SLC",
@@ -217,11 +219,13 @@ FORMULAS = {
 }
 
 
-def _of_methods(methods: Mapping[str, Method]) -> Iterator[Working]:
+def _of_methods(methods: Mapping[str, Method], ground: Ground) -> Iterator[Working]:
     for key, method in methods.items():
         if method.a_g is None:
             continue
-        yield Working(f"a_g,{key}", method.title, FORMULAS[key], "", method.a_g, "g", method.clause)
+        put = f"{_n(ground.site.q)} x {_n(method.a_g / ground.site.q)}" if key == "linear" else ""
+        ours: Standing = "ours" if key == "linear" and ground.state_of_activation != "SLD" else "code"
+        yield Working(f"a_g,{key}", method.title, FORMULAS[key], put, method.a_g, "g", method.clause, ours)
         if method.zeta is not None and method.asked is not None:
             put = f"{_n(method.a_g)}/{_n(method.asked)}"
             yield Working(f"zeta_E,{key}", "capacity over demand", "a_g S of both", put, method.zeta, "", method.clause)
