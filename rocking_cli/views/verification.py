@@ -230,6 +230,9 @@ def _histories(found: Dynamic) -> dict[str, Any]:
         }
 
     return {
+        "state": next(iter(found.allowed)),
+        "motions": found.motions.kind,
+        "floor": found.motions.floor,
         "records": [
             {
                 "name": each.name,

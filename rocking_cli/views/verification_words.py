@@ -89,7 +89,8 @@ def beyond_first(found: Verified, first: str) -> Iterator[str]:
 
 
 def of_histories(found: Dynamic, FC: float) -> Iterator[str]:
-    """State the result of the time histories, with FC (the verdict) and without it."""
+    """State what the records are, and the result of the time histories, with FC (the verdict) and without it."""
+    yield _belonging(found)
     for confident in (True, False) if FC != 1 else (True,):
         yield _of_some(found, confident=confident)
     if FC != 1:
@@ -108,6 +109,24 @@ def of_histories(found: Dynamic, FC: float) -> Iterator[str]:
             f"{'Only one record was' if count == 1 else f'Only {count} records were'} used: the code requires at "
             f"least {found.enough} before the mean may be used."
         )
+
+
+MOVES = {
+    "as_given": "The motions act on the structure as given",
+    "carried_to_floor": "The ground motions are carried to the floor of the site, {floor}, by its first mode",
+    "carried_by_option": "The ground motions are carried to the floor given with the records, {floor}",
+    "of_floor": "The motions are taken as motions of the floor, as stated, and not of the ground",
+}
+"""What the motions of the histories are, by `Moves`."""
+
+
+def _belonging(found: Dynamic) -> str:
+    """State to which limit state the records belong, and what they are motions of."""
+    (state,) = found.allowed
+    return (
+        f"The records belong to {state} and are checked against this limit state alone. "
+        f"{MOVES[found.motions.kind].format(floor=found.motions.floor)}."
+    )
 
 
 def _of_some(found: Dynamic, *, confident: bool) -> str:

@@ -224,8 +224,15 @@ TEXTS = {
     "dynamic_is": (
         "Time histories on the capacity curve with restitution [C8.7.1.2.1.9]: the verification is satisfied if no "
         "record takes the structure past d_[0]^[*] = {d0:.6g} m and the mean peak displacement is within the "
-        "displacement capacity of the limit state."
+        "displacement capacity of {state}, to which the records belong; they verify no other limit state."
     ),
+    "as_given": "The motions act on the structure as given.",
+    "carried_to_floor": (
+        "The ground motions are carried to the floor by the first mode of the building: {floor}, z over the height of "
+        "the building."
+    ),
+    "carried_by_option": "The ground motions are carried to the floor given with the records: {floor}.",
+    "of_floor": "The motions are taken as motions of the floor, as stated, and not of the ground.",
     "dynamic_table": "Peak displacement d [m]",
     "record": "record",
     "with_FC": "with FC",

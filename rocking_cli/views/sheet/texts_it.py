@@ -254,8 +254,15 @@ TEXTS = {
     "dynamic_is": (
         "Analisi nel tempo sulla curva di capacità, con restituzione [C8.7.1.2.1.9]: la verifica è soddisfatta se "
         "nessun accelerogramma supera d_[0]^[*] = {d0:.6g} m e la media degli spostamenti massimi non supera quello "
-        "dello stato limite."
+        "ammesso allo {state}, al quale gli accelerogrammi appartengono: non valgono per altri stati limite."
     ),
+    "as_given": "Gli accelerogrammi agiscono sulla struttura così come sono assegnati.",
+    "carried_to_floor": (
+        "Gli accelerogrammi al suolo sono portati alla quota del piano con il primo modo dell'edificio: {floor}, con z "
+        "diviso per l'altezza dell'edificio."
+    ),
+    "carried_by_option": "Gli accelerogrammi al suolo sono portati alla quota assegnata con essi: {floor}.",
+    "of_floor": "Gli accelerogrammi sono considerati, come dichiarato, moti del piano e non del suolo.",
     "dynamic_table": "Spostamento massimo d [m]",
     "record": "accelerogramma",
     "with_FC": "con FC",

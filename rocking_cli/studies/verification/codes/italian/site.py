@@ -12,6 +12,7 @@ from pydantic import Field
 from rocking_cli.core.fields import quantity
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
+from rocking_cli.processing.floor import Floor as MovingFloor
 from rocking_cli.studies.fragility.together import Part, Sound
 from rocking_cli.studies.verification.site_file import Site
 
@@ -188,3 +189,12 @@ class ItalianSite(Shaking, Site):
     @classmethod
     def _needs_sizes(cls, given: dict[str, Any]) -> bool:
         return given.get("hazard") is None
+
+
+def floor_at(site: ItalianSite, state: str) -> MovingFloor | None:
+    """Return the floor on which the structure stands, with its mode at a limit state; None on the ground."""
+    floor = site.floor
+    if floor is None:
+        return None
+    mode = floor.mode(state)
+    return MovingFloor(mode.T1, mode.xi1, floor.z / floor.H, 3 * floor.n / (2 * floor.n + 1))
