@@ -87,7 +87,7 @@ def _site(found: Verification) -> Table:
 
 def _clause(line: Working) -> str:
     """Where a formula is in the code, and that it is our reading where it is."""
-    return line.clause if line.standing == "code" else f"{line.clause}, ours"
+    return f"{line.clause}, ours" if line.standing == "ours" else line.clause
 
 
 def _capacity(each: Verified, where: str) -> Table:

@@ -173,11 +173,17 @@ def which_direction(found: Verification) -> str:
 
 def standing(workings: Sequence[Working]) -> str:
     """State how far the formulas were checked against the code."""
-    ours = {each.symbol.partition(",")[0]: each.meaning for each in workings if each.standing == "ours"}
-    said = (
-        "The clauses name the place of each formula in the code. None of the formulas has been checked against the "
-        "printed code yet: have them checked before you rely on a verdict."
+    ours, unchecked, transcribed = (
+        {each.symbol.partition(",")[0]: each.meaning for each in workings if each.standing == standing}
+        for standing in ("ours", "code", "transcription")
     )
+    said = (
+        "The clauses name the place of each formula in the code: [formula] or §section. None of the formulas has been "
+        "checked against the printed code yet: have them checked before you rely on a verdict."
+    )
+    if transcribed:
+        others = f", except for {', '.join(unchecked)}" if unchecked else ""
+        said = f"{said} They agree with a transcription of its text{others}."
     if not ours:
         return said
     named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())

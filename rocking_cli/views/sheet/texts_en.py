@@ -39,10 +39,11 @@ TEXTS = {
         "limit state in the heading."
     ),
     "reading_marks": (
-        "† marks a formula of the code that has not yet been checked against its printed text: check it there before "
-        "you rely on the verdict. ‡ marks our reading, or our choice where the code is silent. Unmarked lines are "
-        "mechanics or arithmetic. Clauses that begin with C are those of Circolare 7/2019, the others those of NTC "
-        "2018."
+        "Formulas of the code are cited as [3.2.2] and sections as §8.3; those that begin with C are of Circolare "
+        "7/2019, the others of NTC 2018. * marks a formula that was checked against a transcription of the code, but "
+        "not yet against its printed text; † one that has not yet been checked: check both there before you rely on "
+        "the verdict. ‡ marks our reading, or our choice where the code is silent. Unmarked lines are mechanics or "
+        "arithmetic."
     ),
     "per_kilogram": "The file gives no masses: weights are per kilogram of the whole structure, in N/kg.",
     # summary
@@ -222,7 +223,7 @@ TEXTS = {
     # dynamic
     "dynamic": "Dynamic method",
     "dynamic_is": (
-        "Time histories on the capacity curve with restitution [C8.7.1.2.1.9]: the verification is satisfied if no "
+        "Time histories on the capacity curve with restitution (§C8.7.1.2.1.9): the verification is satisfied if no "
         "record takes the structure past d_[0]^[*] = {d0:.6g} m and the mean peak displacement is within the "
         "displacement capacity of {state}, to which the records belong; they verify no other limit state."
     ),

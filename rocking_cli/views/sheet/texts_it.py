@@ -67,10 +67,11 @@ TEXTS = {
         "valore calcolato più sopra; quelli dell'azione sismica sono dello stato limite indicato nel titolo."
     ),
     "reading_marks": (
-        "† indica una formula della norma non ancora confrontata con il testo a stampa: va controllata prima di fare "
-        "affidamento sull'esito. ‡ indica una nostra lettura, o una nostra scelta dove la norma lascia libertà. Ciò "
-        "che non ha segno è meccanica o aritmetica. I punti che iniziano con C sono della Circolare 7/2019, gli altri "
-        "delle NTC 2018."
+        "Le formule della norma sono citate come [3.2.2] e i punti come §8.3: quelli che iniziano con C sono della "
+        "Circolare 7/2019, gli altri delle NTC 2018. * indica una formula confrontata con una trascrizione della "
+        "norma, ma non ancora con il testo a stampa; † una non ancora confrontata: entrambe vanno controllate prima di "
+        "fare affidamento sull'esito. ‡ indica una nostra lettura, o una nostra scelta dove la norma lascia libertà. "
+        "Ciò che non ha segno è meccanica o aritmetica."
     ),
     "per_kilogram": "Il file non assegna le masse: i pesi sono per chilogrammo dell'intera struttura, in N/kg.",
     # summary
@@ -252,7 +253,7 @@ TEXTS = {
     # dynamic
     "dynamic": "Metodo dinamico",
     "dynamic_is": (
-        "Analisi nel tempo sulla curva di capacità, con restituzione [C8.7.1.2.1.9]: la verifica è soddisfatta se "
+        "Analisi nel tempo sulla curva di capacità, con restituzione (§C8.7.1.2.1.9): la verifica è soddisfatta se "
         "nessun accelerogramma supera d_[0]^[*] = {d0:.6g} m e la media degli spostamenti massimi non supera quello "
         "ammesso allo {state}, al quale gli accelerogrammi appartengono: non valgono per altri stati limite."
     ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum, Spectrum
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
@@ -101,7 +102,7 @@ class Methods:
         yield from self._solved(symbol, say.say("a_g_method"), spectrum, asked, method.a_g, method.clause)
         put = say.put("{a}/{b}", a=method.a_g, b=method.asked)
         zeta = Working(f"ζ_[E{more}]", say.say("zeta", state=asked.state), f"{symbol}/a_[g]", put, method.zeta or 0.0,
-                       "", method.clause)  # fmt: skip
+                       "", clauses.ZETA)  # fmt: skip
         yield Steps([zeta])
         yield from self._lasts(method, asked, more)
 
@@ -129,12 +130,12 @@ class Methods:
         if ground.of_activation != ground.spectrum(asked.state):  # the ground of SLV under the mode of SLD
             yield Sentence(say.say("mode_of_SLD"))
             yield Steps(list(self._checked(ground.of_activation, asked)))
-        yield from self._solved("a_[g,0]", what, ground.of_activation, asked, start, "C8.7.1.6-9")
+        yield from self._solved("a_[g,0]", what, ground.of_activation, asked, start, self.found.methods["damage"].clause)
         put = say.put("{q} · {a}", q=q, a=start)
         linear = Working("a_[g,linear]", say.say("a_g_method"), "q · a_[g,0]", put, method.a_g, "g", method.clause)
         put = say.put("{a}/{b}", a=method.a_g, b=method.asked)
         formula = "a_[g,linear]/a_[g,SLV]"
-        zeta = Working("ζ_[E]", say.say("zeta", state="SLV"), formula, put, method.zeta or 0.0, "", method.clause)
+        zeta = Working("ζ_[E]", say.say("zeta", state="SLV"), formula, put, method.zeta or 0.0, "", clauses.ZETA)
         yield Steps([linear, zeta])
         yield from self._lasts(method, Asked("SLV", "a_[g,linear]", method.a_g, "g", "a_[g]"), "")
 
@@ -161,7 +162,7 @@ class Methods:
             yield Sentence(say.say("beyond_long" if (method.zeta or 0) >= 1 else "beyond_short", TR=say.number(TR)))
             return
         formula = f"{asked.demand}(T_[R]) = {asked.name}"
-        yield Steps([Working(f"T_[R{more}]", say.say("TR_capacity"), formula, "", TR, years, "3.2.1")])
+        yield Steps([Working(f"T_[R{more}]", say.say("TR_capacity"), formula, "", TR, years, clauses.RETURN_PERIOD)])
         yield Sentence(say.say("check_TR"))
         spectrum = self.ground.at_return_period(TR, asked.state)
         rows = list(hazard_at(say, hazard, TR))

@@ -1,7 +1,6 @@
 """The three methods of the Italian code for mechanisms of masonry: damage, linear, nonlinear.
 
-Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018 [code: not yet checked against the
-printed text].
+Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018: see `clauses`.
 """
 
 from __future__ import annotations
@@ -10,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
 
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.verification.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.studies.verification.chain import Chain, Control
@@ -36,7 +36,7 @@ class _Case:
     curve: CapacityCurve
 
     def state(self, rule: Rule) -> State:
-        """What the curve allows at a limit state, and what the site asks for [C8.7.1.2.1.6, C8.7.1.10-12]."""
+        """What the curve allows at a limit state, and what the site asks for [§C8.7.1.2.1.6, C8.7.1.10-12]."""
         site, curve = self.ground.site, self.curve
         d = rule.share * curve.d0
         if rule.at_breaks and curve.broken is not None:
@@ -59,13 +59,18 @@ class _Case:
         return Method(title, a_g, spectrum.ag, clause, *self.ground.lasts(state, demand, capacity))
 
     def linear(self) -> Method:
-        """Return the capacity by the linear method: q times the a_g at which rocking starts at SLD [8.7.1.2.1.7]."""
+        """Return the capacity by the linear method: q times the a_g at which rocking starts at SLD [§C8.7.1.2.1.7]."""
         start = self.ground.capacity(self.ground.of_activation, self.forces, self.curve.a0)
         a_g = self.ground.site.q * start
         asked = self.ground.on_ground("SLV")
         assert asked is not None  # always given
         lasts = self.ground.lasts("SLV", lambda spectrum: spectrum.ag, a_g)
-        return Method("linear (q times onset) at SLV", a_g, asked.ag, "C8.7.1.2.1.7", *lasts)
+        return Method("linear (q times onset) at SLV", a_g, asked.ag, clauses.LINEAR, *lasts)
+
+    @property
+    def of_damage(self) -> str:
+        """The formula by which rocking starts."""
+        return clauses.DAMAGE if self.ground.site.own_period is None else clauses.DAMAGE_VIBRATING
 
     def forces(self, spectrum: Spectrum) -> float:
         """Acceleration demand on the element [m/s2]: the peak of the ground or floor, or the ordinate at its own T0."""
@@ -76,20 +81,20 @@ class _Case:
         """Return the methods, by key."""
         a0 = self.curve.a0
         found = {
-            DAMAGE: self.method("onset of rocking at SLV", "C8.7.1.6-9", "SLV", self.forces, a0),
+            DAMAGE: self.method("onset of rocking at SLV", self.of_damage, "SLV", self.forces, a0),
             LINEAR: self.linear(),
         }
         for rule in RULES:
             at, (damage, nonlinear) = states[rule.state], OF_STATE[rule.state]
             title = f"onset of rocking at {rule.state}"
-            found.setdefault(damage, self.method(title, "C8.7.1.6-9", rule.state, self.forces, a0))
+            found.setdefault(damage, self.method(title, self.of_damage, rule.state, self.forces, a0))
 
             def asked(spectrum: Spectrum, T: float = at.T, damping: float = rule.damping) -> float:
                 return spectrum.displacement(T, damping)
 
             title = f"nonlinear at {rule.state}"
-            found[nonlinear] = self.method(title, "C8.7.1.2.1.6", rule.state, asked, at.d)
-        found["SLD"] = self.method("onset of rocking at SLD", "C8.7.1.6-9", "SLD", self.forces, a0)
+            found[nonlinear] = self.method(title, clauses.NONLINEAR, rule.state, asked, at.d)
+        found["SLD"] = self.method("onset of rocking at SLD", self.of_damage, "SLD", self.forces, a0)
         return found
 
 

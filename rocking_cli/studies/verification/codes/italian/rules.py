@@ -1,8 +1,10 @@
-"""The limit states of displacement of the Italian code [C8.7.1.2.1.6, C8.7.1.10-11]."""
+"""The limit states of displacement of the Italian code [§C8.7.1.2.1.6, C8.7.1.10-11]."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from rocking_cli.studies.verification.codes.italian import clauses
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,6 @@ class Rule:
 
 
 RULES = (
-    Rule("SLV", 0.4, True, 1.68, 0.08, "C8.7.1.10"),
-    Rule("SLC", 0.6, False, 1.56, 0.10, "C8.7.1.11"),
+    Rule("SLV", 0.4, True, 1.68, 0.08, clauses.T_SLV),
+    Rule("SLC", 0.6, False, 1.56, 0.10, clauses.T_SLC),
 )

@@ -119,7 +119,7 @@ KAPPA = {"cantilever": 6.2, "spanning": 2.2}
 
 
 class Element(Part):
-    """An element that is free to vibrate before it rocks, of which the code estimates the period [C8.7.1.6-9]."""
+    """An element that is free to vibrate before it rocks, of which the code estimates the period [C8.7.1.7]."""
 
     kind: Literal["cantilever", "spanning"] = Field(description="whether it is held at its foot or at both ends")
     L: float = quantity("its length", unit="m", gt=0, le=1000)
