@@ -562,6 +562,17 @@ def test_a_document_has_the_steps_and_tables_of_the_page(name, sheets):
     assert Recomputed([each for each in document if not isinstance(each, list) or len(each[1]) > 2]).count > 25
 
 
+def test_ties_have_force_and_elongation_on_the_sheet(sheets):
+    data, out = sheets("tied")
+    ties = data["directions"]["positive"]["ties"]["bar"]
+    rows = {each[0].split()[2].rstrip(":"): each[2] for each in of_html(out)
+            if isinstance(each, list) and each[0].startswith("Ties at")}  # fmt: skip
+    for state in ("SLV", "SLC"):
+        wanted = [ties[f"force_{state}"] / 1e3, ties[f"elongation_{state}"], 100 * ties[f"strain_{state}"]]
+        assert [number(each) for each in rows[state][1:]] == pytest.approx(wanted, rel=5e-3)
+        assert ties[f"strain_{state}"] == pytest.approx(ties[f"elongation_{state}"] / 5.7, rel=1e-9)
+
+
 def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too(sheets):
     data, out = sheets("wall that does not begin to rock")
     assert data["directions"]["positive"]["states"]["SLC"]["passes"]

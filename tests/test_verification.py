@@ -22,6 +22,7 @@ from rocking_cli.studies.verification.codes import codes
 from rocking_cli.studies.verification.codes.italian import demand, hazard
 from rocking_cli.studies.verification.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
 from rocking_cli.studies.verification.codes.italian.hazard import Hazard
+from rocking_cli.studies.verification.ties import pulls
 from rocking_cli.studies.verification.told import said_in
 
 G = 9.80665
@@ -212,6 +213,40 @@ class TestCurves:
         phi = found.exact.rotation(found.states["SLV"].d)
         force = k * (abs(0.5 + complex(-0.5, 5.0) * np.exp(-1j * phi)) - 5.0)
         assert any(f"the tie t carries {force / 1e3:.4g} kN" in each for each in found.remarks)
+
+    def test_a_force_says_how_far_its_point_has_moved_against_it(self):
+        """A facade held by a constant force passes where its centroid stands outside its foot: by hand."""
+        forces = [("thrust", 24e3, [-0.10, 9.5]), ("chain", -202.5e3, [-0.35, 7.0])]
+        loads = [{"name": name, "force": [force, 0.0], "at": at} for name, force, at in forces]
+        facade = {"width": 0.7, "height": 9.5, "density": 1937.46, "depth": 8.0}
+        block = rk.Block(**facade, one_sided="positive", rebound=0.4,
+                         loads=[{"name": "roof", "mass": 9789.0, "at": [-0.10, 9.5]}, *loads])  # fmt: skip
+        found = verified(block)
+        (pull,) = pulls(found.exact, found.states["SLV"].d)
+        z = complex(-0.7, 7.0) * np.exp(-1j * found.exact.rotation(found.states["SLV"].d))
+        assert (pull.name, pull.force, pull.strain) == ("chain", 202.5e3, None)
+        assert pull.elongation == pytest.approx(z.real + 0.7, rel=1e-9) and pull.elongation > 0.5
+        said = " ".join(found.remarks)
+        assert f"only if it is longer than {pull.elongation / 0.02:.3g} m" in said
+        assert "Caution: at d_SLV the centroid of a block moves" in said and "the block is 0.7 m thick" in said
+        assert found.states["SLV"].d > 0.4 * 0.7
+        free = verified(rk.Block(width=0.7, height=9.5))
+        assert not any("Caution" in each or "against its force" in each for each in free.remarks)
+
+    def test_a_tie_says_how_much_longer_it_is(self):
+        """Flat and short, of a force at rest: from 1 m beside the face, at 7.5 m."""
+        bar = {"name": "bar", "from": {"ground": [-1.3, 7.5]}, "to": {"at": [-0.3, 7.5]}, "stiffness": 0.0,
+               "prestress": 2e4}  # fmt: skip
+        found = verified(rk.Block(**TIED, ties=[bar]))
+        for state in ("SLV", "SLC"):
+            (pull,) = pulls(found.exact, found.states[state].d)
+            z = 0.3 + complex(-0.6, 7.5) * np.exp(-1j * found.exact.rotation(found.states[state].d))
+            assert pull.elongation == pytest.approx(abs(z - complex(-1.3, 7.5)) - 1.0, rel=1e-9)
+            assert pull.strain == pytest.approx(pull.elongation / 1.0, rel=1e-9) and pull.force == 2e4
+        strain = pulls(found.exact, found.states["SLV"].d)[0].strain
+        assert any(f"{100 * strain:.2g} % of its length. Beyond about 2 %" in each for each in found.remarks)
+        far = {**bar, "from": {"ground": [-60.3, 7.5]}}
+        assert not any("of its length" in each for each in verified(rk.Block(**TIED, ties=[far])).remarks)
 
     def test_a_force_that_never_lets_go_has_no_d0(self):
         down = {"name": "down", "force": [0.0, -1e5], "at": [0.0, 0.0]}

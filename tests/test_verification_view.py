@@ -176,6 +176,20 @@ def test_the_linear_method_without_damage_at_the_site_says_by_what():
     assert not any(said in each for each in verified(FACADE, SLD=ground).remarks)
 
 
+def test_ties_have_force_and_elongation_at_every_state(files, tmp_path):
+    text = "mechanism: block\nname: b\nwidth: 0.6\nheight: 8\nmass: 1e4\nties:\n"
+    text += "- {name: bar, from: {ground: [-9, 7.5]}, to: {at: [-0.3, 7.5]}, stiffness: 0, prestress: 500}\n"
+    (tmp_path / "t.yaml").write_text(text + "one_sided: positive\nrebound: 0.4\n", encoding="utf-8")
+    command = ("verify", tmp_path / "t.yaml", "--site", "site.yaml")
+    (bar,) = run_json(*command)["directions"]["positive"]["ties"].values()
+    assert list(bar) == [f"{key}_{state}" for key in ("force", "elongation", "strain") for state in ("SLV", "SLC")]
+    assert bar["force_SLV"] == 500 and bar["strain_SLC"] == pytest.approx(bar["elongation_SLC"] / 8.7)
+    text = run(*command).stdout
+    for state in ("SLV", "SLC"):
+        row = next(line for line in text.splitlines() if "bar" in line and f"d_{state}" in line)
+        assert f"{bar[f'elongation_{state}']:.4g}" in row and f"{100 * bar[f'strain_{state}']:.3g}" in row
+
+
 def test_a_control_point_is_typed_and_its_influence_said(files):
     text = run("verify", "b.yaml", "--site", "site.yaml", "--control", "0.3,8").stdout
     assert "With this control point, d0* is" in text

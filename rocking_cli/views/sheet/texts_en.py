@@ -167,6 +167,10 @@ TEXTS = {
     ),
     "action": "force or tie",
     "held": "Work of forces F and of ties N at the virtual displacements, r′ along the force and L′ the elongation",
+    "tie": "tie",
+    "ties_at": (
+        "Ties at {state}: force and elongation; of a force against the motion, how far its point has moved against it"
+    ),
     "Py": "work of the weights carried",
     "L": "work of forces and ties",
     "V_m": "work added by the mechanism itself, such as by loads among its fields: taken as given",

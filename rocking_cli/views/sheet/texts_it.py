@@ -196,6 +196,11 @@ TEXTS = {
     "action": "forza o tirante",
     "held": "Lavoro delle forze F e dei tiranti N negli spostamenti virtuali, r′ nel verso della forza e L′ "
     "l'allungamento",
+    "tie": "tirante",
+    "ties_at": (
+        "Tiranti allo {state}: forza e allungamento; di una forza contraria al moto, lo spostamento del suo punto "
+        "contro di essa"
+    ),
     "Py": "lavoro dei pesi portati",
     "L": "lavoro delle forze e dei tiranti",
     "V_m": "quanto il meccanismo stesso aggiunge al lavoro, come i carichi tra i suoi dati: si assume assegnato",

@@ -14,8 +14,9 @@ from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
 from rocking_cli.studies.verification.displaced import Displaced
 from rocking_cli.studies.verification.results import State, Verified
+from rocking_cli.studies.verification.ties import pulls
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Item, Part, Sentence, Steps
+from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
 from rocking_cli.views.sheet.italian import chain as chains
 from rocking_cli.views.sheet.italian import spectra
 from rocking_cli.views.sheet.italian.chain import Scale
@@ -124,6 +125,7 @@ class Writer:
         yield Steps([Working(f"φ_[{s}]", say.say("phi"), f"d(φ) = d_[{s}]", "", phi, "rad", clauses.D)])
         yield chains.at_work(say, position, self.scale)
         yield from chains.held(say, position, self.scale)
+        yield from self._ties(rule, at)
         rows = list(self._moved(position, f"φ_[{s}]", f"d(φ_[{s}])", say.say("d_again", state=s)))
         rows += chains.multiplier(say, position, self.scale, f"α(φ_[{s}])")
         here = self.curve.acceleration_at(phi)
@@ -131,6 +133,18 @@ class Writer:
         symbol = f"a^[*]_[{s}]"
         rows.append(self._accelerated(symbol, f"α(φ_[{s}])", position.alpha, here, say.say("a_there"), g))
         yield Steps([*rows, *self._period_and_demand(rule, at, s, here)])
+
+    def _ties(self, rule: Rule, at: State) -> Iterator[Item]:
+        """Yield the force and elongation of ties, and of forces against the motion."""
+        say = self.say
+        rows = [
+            [pull.name, say.number(pull.force / 1e3), say.number(pull.elongation),
+             say.number(None if pull.strain is None else 100 * pull.strain, 3)]
+            for pull in pulls(self.curve, at.d)
+        ]  # fmt: skip
+        if rows:
+            heads = [say.say("tie"), "N [kN]", "ΔL [m]", "ΔL/L [%]"]
+            yield Grid(say.say("ties_at", state=rule.state), heads, rows, (1, 2, 3))
 
     def _allowed(self, rule: Rule, at: State) -> Working:
         """The displacement that a limit state allows."""

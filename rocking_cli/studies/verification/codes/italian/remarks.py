@@ -66,6 +66,18 @@ ENGLISH = {
         "the yield force as a load, or as a prestress without stiffness."
     ),
     "carries": "At d_SLV the tie {name} carries {force:.4g} kN: check that the tie and its anchorages can resist it.",
+    "stretched": (
+        "Caution: at d_{state} the tie {name} is {e:.3g} m longer than at rest, {strain:.2g} % of its length. Beyond "
+        "about {most:g} %, a tie or its anchorages may have failed, and the force assumed may no longer be there."
+    ),
+    "follows": (
+        "At d_{state} the point of {name} has moved {e:.3g} m against its force. A tie that gives this force elongates "
+        "by less than {most:g} % only if it is longer than {length:.3g} m."
+    ),
+    "wide": (
+        "Caution: at d_{state} the centroid of a block moves {moved:.3g} m sideways, and the block is {thickness:.3g} m "
+        "thick. A free block falls at half its thickness: the verdict relies on ties or forces that follow this far."
+    ),
     "torn": (
         "The courses of the crossing walls lose their overlap at d = {d:.4g} m. d0* is therefore that of the curve "
         "without them, the only one that holds up to collapse."
@@ -150,6 +162,20 @@ ITALIAN = {
         "su di più si assegni la forza di snervamento come carico, o come pretensione senza rigidezza."
     ),
     "carries": "In d_SLV il tirante {name} porta {force:.4g} kN: il tirante e i suoi ancoraggi devono reggerli.",
+    "stretched": (
+        "Attenzione: in d_{state} il tirante {name} è più lungo di {e:.3g} m che a riposo, il {strain:.2g} % della sua "
+        "lunghezza. Oltre il {most:g} % circa il tirante o i suoi ancoraggi possono aver ceduto, e la forza assunta può "
+        "non esserci più."
+    ),
+    "follows": (
+        "In d_{state} il punto di {name} si è spostato di {e:.3g} m contro la sua forza. Un tirante che la fornisce si "
+        "allunga meno del {most:g} % solo se è più lungo di {length:.3g} m."
+    ),
+    "wide": (
+        "Attenzione: in d_{state} il baricentro di un blocco si sposta in orizzontale di {moved:.3g} m, e il blocco è "
+        "spesso {thickness:.3g} m. Un blocco isolato cade a metà del suo spessore: l'esito conta su tiranti o forze che "
+        "lo seguono fin lì."
+    ),
     "torn": (
         "I filari delle pareti ortogonali si sfilano a d = {d:.4g} m: d0* è quello della curva senza di essi, la sola "
         "presente fino al collasso."

@@ -15,7 +15,7 @@ from rocking_cli.studies.verification.codes.italian.hazard import LONGEST, SHORT
 from rocking_cli.studies.verification.codes.italian.remarks import TEXTS
 from rocking_cli.studies.verification.codes.italian.rules import RULES
 from rocking_cli.studies.verification.results import Method, State, Verified
-from rocking_cli.studies.verification.ties import carried, elastic
+from rocking_cli.studies.verification.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.studies.verification.told import Told
 
 LONG = 4.0  # s: above it the code requires a study of the site, or records
@@ -96,7 +96,7 @@ def _of_lives(ground: Ground) -> list[str]:
 def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -> list[str]:
     """Of one direction."""
     said = [*_of_line(curve, states), *_of_ties(curve, states), *_of_break(curve, states), *_of_seat(curve, states)]
-    said += _of_letter(curve.chain, curve)
+    said += [*_of_stretch(curve, states), *_of_letter(curve.chain, curve)]
     T0 = ground.site.own_period
     if T0 is not None:
         on = [rule.state for rule in RULES if states[rule.state].a < curve.acceleration(states[rule.state].d)]
@@ -123,6 +123,27 @@ def _of_ties(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     for name, force in carried(curve, states["SLV"].d).items():
         said.append(_told("carries", name=name, force=force / 1e3))
     return said
+
+
+def _of_stretch(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+    """Ties that would be far too long, forces that follow far, and blocks that go as far as they are thick."""
+    said: dict[str, str] = {}
+    for state, at in states.items():
+        if state != "SLV" and at.demand is None:
+            continue
+        held = pulls(curve, at.d)
+        for pull in held:
+            e = pull.elongation
+            if pull.strain is None and state == "SLV" and e > 0:
+                text = _told("follows", state=state, name=pull.name, e=e, most=100 * STRETCHED, length=e / STRETCHED)
+                said.setdefault(pull.name, text)
+            elif pull.strain is not None and pull.strain > STRETCHED:
+                strain = {"strain": 100 * pull.strain, "most": 100 * STRETCHED}
+                said.setdefault(pull.name, _told("stretched", state=state, name=pull.name, e=e, **strain))
+        moved, thickness = furthest(curve, at.d)
+        if held and moved > WIDE * thickness / 2:
+            said.setdefault("", _told("wide", state=state, moved=moved, thickness=thickness))
+    return list(said.values())
 
 
 def of_ties_at_rest(ties: Sequence[Tie]) -> str:
