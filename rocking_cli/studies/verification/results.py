@@ -263,6 +263,8 @@ class Verification:
         Of what is the same in both, such as the ground.
     remarks : sequence of str
         Sentences on the whole.
+    taken_otherwise : sequence of str
+        Those of them on what was taken otherwise than the structure gives it.
     """
 
     mechanism: Mechanism
@@ -273,6 +275,7 @@ class Verification:
     directions: Mapping[Direction, Verified]
     workings: Sequence[Working]
     remarks: Sequence[str]
+    taken_otherwise: Sequence[str] = ()
 
     @property
     def governs(self) -> Direction:

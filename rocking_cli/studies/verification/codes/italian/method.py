@@ -119,10 +119,9 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     """
     ground, taken = Ground(site), lasting(mechanism)
     found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
-    remarks = wordings.of_site(ground, list(found.values()))
-    if taken is not mechanism:
-        remarks = [wordings.of_ties_at_rest(elastic(mechanism)), *remarks]
-    return Verification(taken, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks)
+    otherwise = [wordings.of_ties_at_rest(elastic(mechanism))] if taken is not mechanism else []
+    remarks = [*otherwise, *wordings.of_site(ground, list(found.values()))]
+    return Verification(taken, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks, otherwise)
 
 
 def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, control: Control | None) -> Verified:

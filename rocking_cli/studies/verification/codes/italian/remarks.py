@@ -57,13 +57,14 @@ ENGLISH = {
     ),
     "ties": (
         "A tie contributes to alpha0 with its force at rest. To model the rigid-plastic tie of the code, give its "
-        "yield force as the prestress, or as a force. The elastic ties here raise a* to at most {largest:.4g} m/s2, "
+        "yield force as a load, or as the `prestress` of a tie with `stiffness: 0`. The elastic ties here raise a* to at most {largest:.4g} m/s2, "
         "{over:.3g} times a0*."
     ),
     "at_rest": (
         "With its elastic ties ({names}), a* would never vanish, and the code counts only what acts up to collapse. "
-        "The ties are therefore taken with their force at rest, here and in time histories. To count on more, give "
-        "the yield force as a load, or as a prestress without stiffness."
+        "The ties are therefore taken with their force at rest, here and in time histories, and their area and stiffness "
+        "have no effect. To count on more, give the yield force as a load, or as the `prestress` of a tie with "
+        "`stiffness: 0`."
     ),
     "carries": "At d_SLV the tie {name} carries {force:.4g} kN: check that the tie and its anchorages can resist it.",
     "stretched": (
@@ -153,13 +154,14 @@ ITALIAN = {
     ),
     "ties": (
         "Il tirante entra in alpha0 con la sua forza a riposo: il tirante rigido-plastico della norma si assegna con "
-        "la forza di snervamento come pretensione, o come forza. Ciò che qui è elastico porta a* al massimo a "
+        "la forza di snervamento come carico, o come `prestress` di un tirante con `stiffness: 0`. Ciò che qui è elastico porta a* al massimo a "
         "{largest:.4g} m/s2, {over:.3g} volte a0*."
     ),
     "at_rest": (
         "Con ciò che è elastico ({names}) a* non si annullerebbe mai, e la norma considera quanto è presente fino al "
-        "collasso: qui e nelle analisi al passo esso agisce con la forza a riposo. Per contare "
-        "su di più si assegni la forza di snervamento come carico, o come pretensione senza rigidezza."
+        "collasso: qui e nelle analisi al passo esso agisce con la forza a riposo, e la sua area e la sua rigidezza non "
+        "hanno effetto. Per contare su di più si assegni la forza di snervamento come carico, o come `prestress` di un "
+        "tirante con `stiffness: 0`."
     ),
     "carries": "In d_SLV il tirante {name} porta {force:.4g} kN: il tirante e i suoi ancoraggi devono reggerli.",
     "stretched": (
