@@ -246,11 +246,12 @@ def test_one_restitution_for_all_is_the_rebound_of_what_rocks_to_one_side():
         shape_of(sided, "nonlinear", 1.0)
 
 
+LADEN = {"width": 0.6, "height": 8.0, "one_sided": "positive", "density": 1800.0, "depth": 1.0}
+SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+
+
 class TestWithoutARebound:
     """Only time histories need the rebound of a one-sided structure: what is static does without."""
-
-    LADEN = {"width": 0.6, "height": 8.0, "one_sided": "positive", "density": 1800.0, "depth": 1.0}
-    SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
 
     @pytest.mark.parametrize(
         ("mechanism", "fields"),
@@ -263,18 +264,18 @@ class TestWithoutARebound:
     def test_static_answers_are_those_with_one_and_histories_ask_for_it(self, mechanism, fields):
         free, given = made(mechanism, **fields), made(mechanism, **fields, rebound=0.4)
         assert np.isnan(free.eta(Direction.POSITIVE))
-        one, other = (rk.verify(each, self.SITE).to_dict() for each in (free, given))
+        one, other = (rk.verify(each, SITE).to_dict() for each in (free, given))
         assert one == other
         with pytest.raises(InputError, match="rebound is missing: a time history of a one-sided structure needs it"):
             build_models(free, ("nonlinear",))
         with pytest.raises(InputError, match="rebound is missing"):
-            rk.verify(free, self.SITE, motions=["sine:0.1g:0.5s"])
+            rk.verify(free, SITE, motions=["sine:0.1g:0.5s"])
         build_models(given, ("nonlinear",))
 
     def test_the_commands_say_so_with_the_file(self, tmp_path):
         arch = "mechanism: arch\nradius: 6\nthickness: 0.8\ninclusion_angle_deg: 150\none_sided: positive\n"
         (tmp_path / "a.yaml").write_text(arch, encoding="utf-8")
-        (tmp_path / "s.yaml").write_text("".join(f"{k}: {v}\n" for k, v in self.SITE.items()), encoding="utf-8")
+        (tmp_path / "s.yaml").write_text("".join(f"{k}: {v}\n" for k, v in SITE.items()), encoding="utf-8")
         asked = ("verify", tmp_path / "a.yaml", "--site", tmp_path / "s.yaml")
         assert run_json(*asked)["directions"]["positive"]["alpha0"] > 0
         wrong = run(*asked, "--pulse", "sine:0.1g:0.5s", code=2).stderr

@@ -57,11 +57,13 @@ CASES = {
     "two bodies on a floor": (WALL, SITE + FLOOR + SLC),
     "on a floor": (FACADE, SITE + FLOOR),
     "on a floor of its own period at each state": (
-        FACADE, SITE + SLC + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}, "
+        FACADE,
+        SITE + SLC + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}, "
         "SLC: {T1: 0.7, xi1: 0.15}}\n",
     ),
     "parapet on a floor that is known at damage": (
-        PARAPET, SITE + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}}\nT0: 0.08\n",
+        PARAPET,
+        SITE + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}}\nT0: 0.08\n",
     ),
     "parapet": ("mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n", SITE + SLC + "T0: 0.08\n"),
     "parapet by its size": (

@@ -273,13 +273,14 @@ UNCHECKED = {"zeta_E,nonlinear"}
 """What needs the print of the code."""
 
 
-class TestClauses:
-    HAZARD = [[30, 0.055, 2.45, 0.27], [475, 0.175, 2.45, 0.32], [2475, 0.300, 2.55, 0.36]]
-    SITE = {**dict.fromkeys(("ag", "F0", "TC", "S")), "hazard": HAZARD, "VN": 50.0, "CU": 1.0, "soil": "C"}
-    FLOOR = {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}
+HAZARD = [[30, 0.055, 2.45, 0.27], [475, 0.175, 2.45, 0.32], [2475, 0.300, 2.55, 0.36]]
+AT_HAZARD = {**dict.fromkeys(("ag", "F0", "TC", "S")), "hazard": HAZARD, "VN": 50.0, "CU": 1.0, "soil": "C"}
+FLOOR = {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}
 
+
+class TestClauses:
     def lines(self, **site):
-        found = verified(FACADE, **self.SITE, floor=self.FLOOR, **site)
+        found = verified(FACADE, **AT_HAZARD, floor=FLOOR, **site)
         return {line.symbol: line for line in [*found.workings, *found.directions[Direction.POSITIVE].workings]}
 
     def test_formulas_are_in_brackets_and_sections_have_their_sign(self):

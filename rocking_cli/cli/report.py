@@ -68,7 +68,9 @@ def command(
     """
     asked.check()
     if (state is not None or on_floor) and (site_file is None or not asked):
-        raise click.UsageError("--state and --on-floor describe the records of a verification: give --verify SITE.yaml.")
+        raise click.UsageError(
+            "--state and --on-floor describe records of a verification: give --verify SITE.yaml and --record FILE."
+        )
     if not near.neighbours:
         raise click.UsageError("The report shows how close the result is: --neighbours must be at least 1.")
     from rocking_cli.cli import sheets, structures

@@ -169,7 +169,5 @@ def _histories(
     compile_first()
     motions = [each.motion.scaled(each.factor) for each in chosen]
     with terminal.progress(len(motions), "records") as advance:
-        under = with_histories(
-            found, structure, site, motions, asked.signs, advance, state=state, on_floor=on_floor
-        )
+        under = with_histories(found, structure, site, motions, asked.signs, advance, state=state, on_floor=on_floor)
     return under, chosen, refused

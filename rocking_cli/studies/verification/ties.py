@@ -14,7 +14,6 @@ from rocking_cli.studies.verification.capacity import ExactCurve
 from rocking_cli.studies.verification.chain import Chain
 from rocking_cli.studies.verification.displaced import Displaced
 
-
 STRETCHED = 0.02
 """Elongation of a tie over its length from which the output warns: steel yields at a tenth of it."""
 WIDE = 0.8
@@ -53,7 +52,9 @@ def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
     for thing in chain.mechanism.attached:
         if isinstance(thing, Spring):
             e = thing.elongation(follow)[0]
-            found.append(Pull(thing.name, float(thing.force(e)[0]), float(e[0]), _over(float(e[0]), lengths[thing.name])))
+            found.append(
+                Pull(thing.name, float(thing.force(e)[0]), float(e[0]), _over(float(e[0]), lengths[thing.name]))
+            )
         elif isinstance(thing, ConstantForce) and thing.name in loads:
             force = thing.in_direction(chain.direction)
             if chain.direction * force.real < 0:

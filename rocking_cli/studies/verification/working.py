@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Literal, Self
 
 Standing = Literal["transcription", "code", "ours", "plain"]
-"""Of a formula: of the code, and checked against a transcription of its text but not yet against its print; of the code,
-and not yet checked; ours, where the code leaves it open; or plain mechanics and arithmetic, which need no code."""
+"""Of a formula: of the code, and checked against a transcription of its text but not yet against its print; of the
+code, and not yet checked; ours, where the code leaves it open; or plain mechanics and arithmetic."""
 MEANING: dict[Standing, str] = {
     "transcription": "a formula of the code, checked against a transcription of its text but not yet against its print",
     "code": "a formula of the code that has not yet been checked against its text",

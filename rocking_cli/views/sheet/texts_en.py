@@ -201,9 +201,7 @@ TEXTS = {
     "a_elastic": "not above the elastic branch of T_[0]",
     "T": "period at {state}",
     "passes": "displacement capacity over demand at {state}: satisfied, at least 1",
-    "passes_still": (
-        "displacement capacity over demand at {state}: below 1, but satisfied, as rocking does not start (damage method)"
-    ),
+    "passes_still": ("displacement capacity over demand at {state}: below 1, but satisfied, as rocking does not start"),
     "fails": "displacement capacity over demand at {state}: not satisfied, below 1",
     # methods
     "method_damage": "Damage: onset of rocking",

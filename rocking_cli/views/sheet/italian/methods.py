@@ -17,7 +17,14 @@ from rocking_cli.views.sheet.italian.site import hazard_at, is_close
 from rocking_cli.views.sheet.italian.states import LINE
 from rocking_cli.views.sheet.language import Language
 
-STATE = {"damage": "SLV", "damage_SLC": "SLC", "linear": "SLV", "nonlinear": "SLV", "nonlinear_SLC": "SLC", "SLD": "SLD"}
+STATE = {
+    "damage": "SLV",
+    "damage_SLC": "SLC",
+    "linear": "SLV",
+    "nonlinear": "SLV",
+    "nonlinear_SLC": "SLC",
+    "SLD": "SLD",
+}
 RULE = {"nonlinear": RULES[0], "nonlinear_SLC": RULES[1]}
 
 
@@ -130,7 +137,9 @@ class Methods:
         if ground.of_activation != ground.spectrum(asked.state):  # the ground of SLV under the mode of SLD
             yield Sentence(say.say("mode_of_SLD"))
             yield Steps(list(self._checked(ground.of_activation, asked)))
-        yield from self._solved("a_[g,0]", what, ground.of_activation, asked, start, self.found.methods["damage"].clause)
+        yield from self._solved(
+            "a_[g,0]", what, ground.of_activation, asked, start, self.found.methods["damage"].clause
+        )
         put = say.put("{q} · {a}", q=q, a=start)
         linear = Working("a_[g,linear]", say.say("a_g_method"), "q · a_[g,0]", put, method.a_g, "g", method.clause)
         put = say.put("{a}/{b}", a=method.a_g, b=method.asked)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import log
 
-from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.demand import DAMPING, GroundSpectrum
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.hazard import (
@@ -112,7 +112,9 @@ def _of_life(say: Language, ground: Ground, state: str) -> Iterator[Working]:
     if not is_close(return_period(life, state), TR):
         put = f"max({{least}}; min({{most}}; {put}))"
     put = say.put(put, VR=life, P=P, **bounds)
-    yield Working("T_[R]", say.say("TR", state=state, percent=100 * P), formula, put, TR, say.say("years"), clauses.RETURN_PERIOD)
+    yield Working(
+        "T_[R]", say.say("TR", state=state, percent=100 * P), formula, put, TR, say.say("years"), clauses.RETURN_PERIOD
+    )
     yield from hazard_at(say, ground.hazard, TR)
 
 

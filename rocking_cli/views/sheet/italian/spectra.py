@@ -8,8 +8,8 @@ from math import pi
 
 import numpy as np
 
-from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.demand import (
     ABOVE,
     BELOW,
@@ -154,7 +154,9 @@ def _of_ground(say: Language, ground: GroundSpectrum, at: At, symbol: str) -> It
     given = {"ag": ground.ag, "S": ground.S, "g": G, "TC": ground.TC, "TD": ground.TD, "T": at.T}
     given |= {"E": start, "F": GROUND, "F0": ground.F0, "eta": correction(at.damping)}
     if at.T > GROUND:
-        yield Working(symbol, say.say("S_De_ground"), level, say.put(numbers, **given), value, "m", clauses.DISPLACEMENT_GROUND)
+        yield Working(
+            symbol, say.say("S_De_ground"), level, say.put(numbers, **given), value, "m", clauses.DISPLACEMENT_GROUND
+        )
         return
     more = "({F0} · {eta} + (1 − {F0} · {eta}) · ({T} − {E})/({F} − {E}))"
     formula = f"{level} (F_[0] η + (1 − F_[0] η) (T − T_[E])/(T_[F] − T_[E]))"
@@ -187,12 +189,20 @@ def _of_floor(say: Language, floor: FloorSpectrum, at: At) -> Iterator[Working]:
     formula, put = _branch_of_floor(floor, at.T)
     numbers = {"A": A, "S": floor.peak, "T": at.T, "low": BELOW * floor.T1, "high": ABOVE * floor.T1}
     yield Working(
-        f"S_[eZ]({at.name})", say.say("S_eZ"), say.formula(formula), say.put(put, **numbers), alone, "m/s²", clauses.FLOOR_SPECTRUM
+        f"S_[eZ]({at.name})",
+        say.say("S_eZ"),
+        say.formula(formula),
+        say.put(put, **numbers),
+        alone,
+        "m/s²",
+        clauses.FLOOR_SPECTRUM,
     )
     put = say.put("{S} · {T}^[2]/(4 · π^[2])", S=alone, T=at.T)
     own = alone * (at.T / (2 * pi)) ** 2
     bounds, names = [own], ["d_[Z]"]
-    yield Working("d_[Z]", say.say("d_Z"), f"S_[eZ]({at.name}) {at.name}^[2]/(4 π^[2])", put, own, "m", clauses.FLOOR_DISPLACEMENT)
+    yield Working(
+        "d_[Z]", say.say("d_Z"), f"S_[eZ]({at.name}) {at.name}^[2]/(4 π^[2])", put, own, "m", clauses.FLOOR_DISPLACEMENT
+    )
     if at.T > floor.T1:
         bounds.append(floor.ground.displacement(at.T, at.damping))
         names.append("d_[g]")
@@ -250,11 +260,23 @@ def at_own_period(say: Language, spectrum: Spectrum, T0: float, damping: float) 
     numbers = {"A": A, "S": spectrum.peak, "T": T0, "low": BELOW * spectrum.T1, "high": ABOVE * spectrum.T1}
     symbol = "S_[eZ](T_[0])"
     if spectrum.T1 >= T0:
-        yield Working(symbol, say.say("S_eZ"), say.formula(formula), say.put(put, **numbers), alone, "m/s²", clauses.FLOOR_SPECTRUM)
+        yield Working(
+            symbol,
+            say.say("S_eZ"),
+            say.formula(formula),
+            say.put(put, **numbers),
+            alone,
+            "m/s²",
+            clauses.FLOOR_SPECTRUM,
+        )
         return
     own = "S_[eZ,1](T_[0])"
-    yield Working(own, say.say("S_eZ"), say.formula(formula), say.put(put, **numbers), alone, "m/s²", clauses.FLOOR_SPECTRUM)
+    yield Working(
+        own, say.say("S_eZ"), say.formula(formula), say.put(put, **numbers), alone, "m/s²", clauses.FLOOR_SPECTRUM
+    )
     yield from acceleration(say, spectrum.ground, at)
     under = spectrum.ground.acceleration(T0, damping)
     put = say.put("max({own}; {under})", own=alone, under=under)
-    yield Working(symbol, say.say("S_eZ_bound"), f"max({own}; S_[e](T_[0]))", put, max(alone, under), "m/s²", clauses.FLOOR_BOUND)
+    yield Working(
+        symbol, say.say("S_eZ_bound"), f"max({own}; S_[e](T_[0]))", put, max(alone, under), "m/s²", clauses.FLOOR_BOUND
+    )

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.core.attached import Spot
 from rocking_cli.studies.verification.capacity import ExactCurve
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
 from rocking_cli.studies.verification.displaced import Displaced

@@ -86,7 +86,9 @@ def _methods(say: Language, where: str, each: Verified) -> Grid:
         line = each.straight_methods[key]
         numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.asked, method.zeta)]
         years = [_years(say, method)] if known else []
-        rows.append([say.say(f"method_{key}"), *numbers, *years, say.say("governs") if key in each.governing.values() else ""])
+        rows.append(
+            [say.say(f"method_{key}"), *numbers, *years, say.say("governs") if key in each.governing.values() else ""]
+        )
     heads = [say.say("method"), f"a_[g] [g], {say.say('exact')}", f"a_[g] [g], {say.say('line')}"]
     heads += [f"{say.say('asked')} [g]", "ζ_[E]", *([say.say("TR_years")] if known else []), ""]
     return Grid(say.say("methods", where=where), heads, rows, range(1, len(heads) - 1))

@@ -1,7 +1,7 @@
-"""Where the formulas stand: [C8.7.1.3] is a formula and §C8.7.1.2.1.7 a section, those with C of Circolare 7/2019,
-the others of NTC 2018.
+"""Where the formulas stand in the code: [C8.7.1.3] is a formula, §C8.7.1.2.1.7 a section.
 
-What is computed by a transcribed clause was checked against a transcription of its text, and not yet against its print.
+Those with C are of Circolare 7/2019, the others of NTC 2018. What is computed by a transcribed clause was checked
+against a transcription of its text, and not yet against its print.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What the ground, or a floor, asks of one degree of freedom: elastic spectra of the Italian code, floors, tables.
 
-Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3, checked against a transcription of both [code: not yet
-against the print].
+Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3, checked against a transcription of both [code: not
+yet against the print].
 """
 
 from __future__ import annotations

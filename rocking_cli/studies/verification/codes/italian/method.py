@@ -9,11 +9,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
 
-from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.verification.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.studies.verification.chain import Chain, Control
-from rocking_cli.studies.verification.codes.italian import wordings, workings
+from rocking_cli.studies.verification.codes.italian import clauses, wordings, workings
 from rocking_cli.studies.verification.codes.italian.demand import DAMPING, Spectrum
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule

@@ -57,14 +57,14 @@ ENGLISH = {
     ),
     "ties": (
         "A tie contributes to alpha0 with its force at rest. To model the rigid-plastic tie of the code, give its "
-        "yield force as a load, or as the `prestress` of a tie with `stiffness: 0`. The elastic ties here raise a* to at most {largest:.4g} m/s2, "
-        "{over:.3g} times a0*."
+        "yield force as a load, or as the `prestress` of a tie with `stiffness: 0`. The elastic ties here raise a* to "
+        "at most {largest:.4g} m/s2, {over:.3g} times a0*."
     ),
     "at_rest": (
         "With its elastic ties ({names}), a* would never vanish, and the code counts only what acts up to collapse. "
-        "The ties are therefore taken with their force at rest, here and in time histories, and their area and stiffness "
-        "have no effect. To count on more, give the yield force as a load, or as the `prestress` of a tie with "
-        "`stiffness: 0`."
+        "The ties are therefore taken with their force at rest, here and in time histories, and their area and "
+        "stiffness have no effect. To count on more, give the yield force as a load, or as the `prestress` of a tie "
+        "with `stiffness: 0`."
     ),
     "carries": "At d_SLV the tie {name} carries {force:.4g} kN: check that the tie and its anchorages can resist it.",
     "stretched": (
@@ -76,8 +76,8 @@ ENGLISH = {
         "by less than {most:g} % only if it is longer than {length:.3g} m."
     ),
     "wide": (
-        "Caution: at d_{state} the centroid of a block moves {moved:.3g} m sideways, and the block is {thickness:.3g} m "
-        "thick. A free block falls at half its thickness: the verdict relies on ties or forces that follow this far."
+        "Caution: at d_{state} the centroid of a block moves {moved:.3g} m sideways, and the block is {thickness:.3g} "
+        "m thick. A free block falls at half its thickness: the verdict relies on ties or forces that follow this far."
     ),
     "torn": (
         "The courses of the crossing walls lose their overlap at d = {d:.4g} m. d0* is therefore that of the curve "
@@ -111,8 +111,8 @@ ITALIAN = {
     "missing": "Il file del sito non assegna {states}: per tali stati limite non si esegue alcuna verifica.",
     "confidence": "FC = {FC:g}: vale {least:g}, quello di LC1, finché non si considera la resistenza a compressione.",
     "seats": (
-        "La norma limita d_SLV e d_SLC anche per la perdita dell'appoggio di elementi quali le travi: di un carico si può "
-        "assegnare l'appoggio (`seat`), e qui di qualcuno manca."
+        "La norma limita d_SLV e d_SLC anche per la perdita dell'appoggio di elementi quali le travi: di un carico si "
+        "può assegnare l'appoggio (`seat`), e qui di qualcuno manca."
     ),
     "seat": "Il carico {name} perde il suo appoggio di {length:.3g} m a d = {d:.4g} m, che limita {limited}.",
     "no_soil": (
@@ -154,29 +154,29 @@ ITALIAN = {
     ),
     "ties": (
         "Il tirante entra in alpha0 con la sua forza a riposo: il tirante rigido-plastico della norma si assegna con "
-        "la forza di snervamento come carico, o come `prestress` di un tirante con `stiffness: 0`. Ciò che qui è elastico porta a* al massimo a "
-        "{largest:.4g} m/s2, {over:.3g} volte a0*."
+        "la forza di snervamento come carico, o come `prestress` di un tirante con `stiffness: 0`. Ciò che qui è "
+        "elastico porta a* al massimo a {largest:.4g} m/s2, {over:.3g} volte a0*."
     ),
     "at_rest": (
         "Con ciò che è elastico ({names}) a* non si annullerebbe mai, e la norma considera quanto è presente fino al "
-        "collasso: qui e nelle analisi al passo esso agisce con la forza a riposo, e la sua area e la sua rigidezza non "
-        "hanno effetto. Per contare su di più si assegni la forza di snervamento come carico, o come `prestress` di un "
-        "tirante con `stiffness: 0`."
+        "collasso: qui e nelle analisi al passo esso agisce con la forza a riposo, e la sua area e la sua rigidezza "
+        "non hanno effetto. Per contare su di più si assegni la forza di snervamento come carico, o come `prestress` "
+        "di un tirante con `stiffness: 0`."
     ),
     "carries": "In d_SLV il tirante {name} porta {force:.4g} kN: il tirante e i suoi ancoraggi devono reggerli.",
     "stretched": (
         "Attenzione: in d_{state} il tirante {name} è più lungo di {e:.3g} m che a riposo, il {strain:.2g} % della sua "
-        "lunghezza. Oltre il {most:g} % circa il tirante o i suoi ancoraggi possono aver ceduto, e la forza assunta può "
-        "non esserci più."
+        "lunghezza. Oltre il {most:g} % circa il tirante o i suoi ancoraggi possono aver ceduto, e la forza assunta "
+        "può non esserci più."
     ),
     "follows": (
         "In d_{state} il punto di {name} si è spostato di {e:.3g} m contro la sua forza. Un tirante che la fornisce si "
         "allunga meno del {most:g} % solo se è più lungo di {length:.3g} m."
     ),
     "wide": (
-        "Attenzione: in d_{state} il baricentro di un blocco si sposta in orizzontale di {moved:.3g} m, e il blocco è "
-        "spesso {thickness:.3g} m. Un blocco isolato cade a metà del suo spessore: l'esito conta su tiranti o forze che "
-        "lo seguono fin lì."
+        "Attenzione: in d_{state} il baricentro di un blocco si sposta in orizzontale di {moved:.3g} m, e il blocco "
+        "è spesso {thickness:.3g} m. Un blocco isolato cade a metà del suo spessore: l'esito conta su tiranti o forze "
+        "che lo seguono fin lì."
     ),
     "torn": (
         "I filari delle pareti ortogonali si sfilano a d = {d:.4g} m: d0* è quello della curva senza di essi, la sola "

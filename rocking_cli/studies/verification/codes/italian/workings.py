@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import sqrt
 
-from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.capacity import ExactCurve
 from rocking_cli.studies.verification.chain import Chain
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.demand import (
     FloorSpectrum,
     GroundSpectrum,
@@ -38,7 +38,9 @@ def of_ground(ground: Ground) -> list[Working]:
     """Of the site: the ground at each limit state that is known, and the floor."""
     site = ground.site
     found = [
-        Working("FC", "confidence factor, by which accelerations are divided", "given", "", site.FC, "", clauses.A_STAR),
+        Working(
+            "FC", "confidence factor, by which accelerations are divided", "given", "", site.FC, "", clauses.A_STAR
+        ),
         Working("q", "behaviour factor of the linear method", "given", "", site.q, "", clauses.LINEAR),
     ]
     if site.element is not None:
@@ -81,7 +83,13 @@ def _of_spectrum(ground: Ground, state: str, spectrum: Spectrum) -> Iterator[Wor
     if isinstance(on_ground, GroundSpectrum):
         put = f"{_n(on_ground.ag)} x {_n(on_ground.S)}"
         yield Working(
-            f"a_g S,{state}", "peak of the ground", "a_g S", put, on_ground.peak / STANDARD_GRAVITY, "g", clauses.SPECTRUM
+            f"a_g S,{state}",
+            "peak of the ground",
+            "a_g S",
+            put,
+            on_ground.peak / STANDARD_GRAVITY,
+            "g",
+            clauses.SPECTRUM,
         )
         put = f"4 x {_n(on_ground.ag)} + 1.6"
         yield Working(f"TD,{state}", "corner period", "4 a_g/g + 1.6", put, on_ground.TD, "s", clauses.TD)
@@ -126,7 +134,12 @@ def of_direction(
     curve: ExactCurve, states: Mapping[str, State], methods: Mapping[str, Method], ground: Ground
 ) -> list[Working]:
     """Of one direction: the chain, the curve, the limit states and what each method says."""
-    return [*_of_chain(curve.chain), *_of_curve(curve), *_of_states(curve, states, ground), *_of_methods(methods, ground)]
+    return [
+        *_of_chain(curve.chain),
+        *_of_curve(curve),
+        *_of_states(curve, states, ground),
+        *_of_methods(methods, ground),
+    ]
 
 
 def _of_chain(chain: Chain) -> Iterator[Working]:
