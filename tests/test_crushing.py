@@ -141,10 +141,6 @@ FACADE = "mechanism: block\nwidth: 0.6\nheight: 8\n"
         ),
         (FACADE + "density: 1800\ndepth: 1\ncrushing: {strenght: 1 MPa}\n", "did you mean strength?"),
         (
-            FACADE + "density: 1800\ndepth: 1\ncrushing: {strength: 1 MPa}\none_sided: positive\n",
-            "rebound is missing",
-        ),
-        (
             "mechanism: arch\nradius: 10\nthickness: 1.5\ninclusion_angle_deg: 157.5\ndensity: 1800\ndepth: 1\n"
             "crushing: {strength: 1 MPa}\n",
             "s.yaml:7:11: crushing: its pivots cannot be moved in this version",

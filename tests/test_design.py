@@ -279,3 +279,45 @@ def test_a_range_that_looks_like_millimetres_is_warned_of(tmp_path):
     assert "at width = 200 m: width is 200 m: did you mean 200 mm?" in " ".join(odd.split())
     right = run("design", file, "--vary", "width=200mm:800mm", "--until", "lambda > 0.1", "--points", "3").stderr
     assert "did you mean" not in right
+
+
+TIE = {"name": "bar", "from": {"ground": [-6, 7.5]}, "to": {"at": [-0.3, 7.5]}, "prestress": 2e3}
+FACADE = {"name": "facade", "width": 0.6, "height": 8.0, "density": 1800.0, "depth": 5.0,
+          "one_sided": "positive", "rebound": 0.4}  # fmt: skip
+SITE = {"FC": 1.35, "ag": 0.25, "F0": 2.5, "TC": 0.4, "S": 1.2}
+
+
+class TestWhatHasNoEffect:
+    def facade(self, **tie):
+        return rk.Block(**FACADE, ties=[{**TIE, **tie}])
+
+    def test_the_area_of_a_tie_that_would_hold_for_ever_says_why(self):
+        """The reason is that of `verify`, and its advice is one that works."""
+        found = rk.design(
+            self.facade(area=5e-4, modulus=2e11), "ties.bar.area=100mm2:900mm2", "zeta_nonlinear >= 1", site=SITE,
+            points=3,
+        )  # fmt: skip
+        said = " ".join(found.sentences)
+        assert found.holds == [] and "holds at no value of ties.bar.area" in said
+        (why,) = found.taken_otherwise
+        assert why in rk.verify(self.facade(area=5e-4, modulus=2e11), SITE).sentences
+        assert why in said and "their area and stiffness have no effect" in said
+        assert "zeta_nonlinear is the same at every value tried: ties.bar.area has no effect on it." in said
+        assert "as the `prestress` of a tie with `stiffness: 0`" in why
+        held = self.facade(stiffness=0, prestress=106311.0)
+        assert rk.verify(held, SITE).directions[rk.Direction.POSITIVE].methods["nonlinear"].zeta > 1
+
+    def test_what_has_an_effect_says_nothing(self):
+        found = rk.design(
+            self.facade(stiffness=0), "ties.bar.prestress=1kN:100kN", "zeta_nonlinear >= 1", site=SITE, points=3
+        )
+        said = " ".join(found.sentences)
+        assert found.value is not None and "no effect" not in said and found.taken_otherwise == []
+
+    def test_of_lambda_too(self):
+        said = " ".join(rk.design(self.facade(stiffness=1e6), "ties.bar.stiffness=1e5:1e6", "lambda > 0.9").sentences)
+        assert "lambda is the same at every value tried: ties.bar.stiffness has no effect on it." in said
+
+    def test_a_prestress_alone_is_refused_with_what_is_accepted(self):
+        with pytest.raises(ValueError, match="`stiffness: 0` for a constant force"):
+            self.facade()

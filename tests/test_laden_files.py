@@ -62,7 +62,6 @@ CASES = [
     (BARE + "rebound: 0.1\n", 4, "rebound", "requires one_sided"),
     (BARE + "one_sided: positive\nrestitution: 0.9\n", 5, "restitution", "give `rebound` instead"),
     (BARE + "one_sided: left\n", 4, "one_sided", "must be positive or negative, got the text left"),
-    (load("mass: 5, at: [0, 1]", HEAVY + "one_sided: positive\n"), 1, "rebound", "give a number in .0, 1."),
     (UNEQUAL + "restitution: 1\n", 1 + UNEQUAL.count("\n"), "restitution",
      "at most 0.99.*: .* would add energy at an impact"),
     (UNEQUAL + "restitution: {positive_to_negative: 1.2, negative_to_positive: 0.5}\n", 1 + UNEQUAL.count("\n"),

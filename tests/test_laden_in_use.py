@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
+import rocking_cli as rk
 from rocking_cli import Registry, build_models, equivalent_block, load_structure, respond_many
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.batch import Runs
@@ -243,6 +244,46 @@ def test_one_restitution_for_all_is_the_rebound_of_what_rocks_to_one_side():
     assert shape_of(sided, "nonlinear", 0.5).structure.model.eta == (0.5, 0.5)
     with pytest.raises(InputError, match="less than 1"):
         shape_of(sided, "nonlinear", 1.0)
+
+
+LADEN = {"width": 0.6, "height": 8.0, "one_sided": "positive", "density": 1800.0, "depth": 1.0}
+SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+
+
+class TestWithoutARebound:
+    """Only time histories need the rebound of a one-sided structure: what is static does without."""
+
+    @pytest.mark.parametrize(
+        ("mechanism", "fields"),
+        [
+            ("block", {**LADEN, "loads": [{"name": "roof", "mass": 5.0, "at": [0.0, 1.0]}]}),
+            ("block", {**LADEN, "crushing": {"strength": 1e6}}),
+            ("arch", {"radius": 6.0, "thickness": 0.8, "inclusion_angle_deg": 150.0, "one_sided": "positive"}),
+        ],
+    )
+    def test_static_answers_are_those_with_one_and_histories_ask_for_it(self, mechanism, fields):
+        free, given = made(mechanism, **fields), made(mechanism, **fields, rebound=0.4)
+        assert np.isnan(free.eta(Direction.POSITIVE))
+        one, other = (rk.verify(each, SITE).to_dict() for each in (free, given))
+        assert one == other
+        with pytest.raises(InputError, match="rebound is missing: a time history of a one-sided structure needs it"):
+            build_models(free, ("nonlinear",))
+        with pytest.raises(InputError, match="rebound is missing"):
+            rk.verify(free, SITE, motions=["sine:0.1g:0.5s"])
+        build_models(given, ("nonlinear",))
+
+    def test_the_commands_say_so_with_the_file(self, tmp_path):
+        arch = "mechanism: arch\nradius: 6\nthickness: 0.8\ninclusion_angle_deg: 150\none_sided: positive\n"
+        (tmp_path / "a.yaml").write_text(arch, encoding="utf-8")
+        (tmp_path / "s.yaml").write_text("".join(f"{k}: {v}\n" for k, v in SITE.items()), encoding="utf-8")
+        asked = ("verify", tmp_path / "a.yaml", "--site", tmp_path / "s.yaml")
+        assert run_json(*asked)["directions"]["positive"]["alpha0"] > 0
+        wrong = run(*asked, "--pulse", "sine:0.1g:0.5s", code=2).stderr
+        assert "a.yaml: rebound is missing: a time history" in wrong and "a number in [0, 1)" in wrong
+        text = run("equiv", tmp_path / "a.yaml").stdout
+        assert "Its rebound is not given" in " ".join(text.split()) and "nan" not in text
+        found = run_json("equiv", tmp_path / "a.yaml")
+        assert found["restitution"] == "missing" and found["directions"]["positive"]["eta"] is None
 
 
 @pytest.mark.parametrize("order", [1, -1])

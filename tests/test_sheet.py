@@ -46,6 +46,8 @@ WALL = "mechanism: wall\nname: wall\nthickness: 0.3\nheight: 3\n"
 ARCH = (EXAMPLES / "arch.yaml").read_text(encoding="utf-8")
 FRAME = (EXAMPLES / "frame.yaml").read_text(encoding="utf-8")
 
+PARAPET = "mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n"
+
 CASES = {
     "facade": (FACADE, SITE),
     "on soil": (FACADE, SITE + "soil: A\n" + SLC),
@@ -54,6 +56,15 @@ CASES = {
     "crossed": (CROSSED, SITE),
     "two bodies on a floor": (WALL, SITE + FLOOR + SLC),
     "on a floor": (FACADE, SITE + FLOOR),
+    "on a floor of its own period at each state": (
+        FACADE,
+        SITE + SLC + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}, "
+        "SLC: {T1: 0.7, xi1: 0.15}}\n",
+    ),
+    "parapet on a floor that is known at damage": (
+        PARAPET,
+        SITE + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}}\nT0: 0.08\n",
+    ),
     "parapet": ("mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n", SITE + SLC + "T0: 0.08\n"),
     "parapet by its size": (
         "mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n",
@@ -65,6 +76,7 @@ CASES = {
         SITE + SLC,
     ),
     "parapet on a floor": ("mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n", SITE + FLOOR + "T0: 0.5\n"),
+    "wall that does not begin to rock": (WALL, SITE + "SLC: {ag: 0.24, F0: 2.5, TC: 0.55, S: 1.2}\n"),
     "table": (FACADE, TABLE),
     "table and floor": (WALL, TABLE + FLOOR),
     "arch": (ARCH, SITE),
@@ -303,8 +315,13 @@ class Recomputed:
                 "S_[Z]",
                 "S_[e](T_[0])",
                 "S_[eZ](T_[0])",
+                "T_[1]",
+                "ξ_[1]",
             )
             self.known.update({name: sizes[name] for name in names if name in sizes})
+            if text.startswith("Linear"):
+                own = self.given.get("SLD", {})
+                self.known.update({name: own[name] for name in ("T_[1]", "ξ_[1]") if name in own})
 
     heading_of_site = False
 
@@ -414,7 +431,8 @@ class Recomputed:
             return d
         if name in ("d_[SLV]", "d_[SLC]"):
             share = {"d_[SLV]": 0.4, "d_[SLC]": 0.6}[name] * v["d_[0]^[*]"]
-            return share if "min" not in each.formula else min(share, number(each.numbers.split("; ")[1].rstrip(")")))
+            others = each.numbers.rstrip(")").split("; ")[1:] if "min" in each.formula else []
+            return min(share, *map(number, others)) if others else share
         if name.startswith("a^[*]_"):
             if "lin" in name:
                 return v["a_[0]^[*]"] * (1 - v[f"d_[{self.state}]"] / v["d_[0]^[*]"])
@@ -493,12 +511,13 @@ class Recomputed:
         if name.startswith("ρ"):
             return v[f"d_[{self.state}]"] / v[f"S_[De](T_[{name[3:-1]}])"]
         if name.startswith("ζ"):
-            return v["a_g of the method"] / self.given[self.state]["a_[g]"]
+            state = "SLV" if "SLV" in each.formula else self.state
+            return v["a_g of the method"] / self.given[state]["a_[g]"]
+        if name == "a_[g,linear]":
+            return v["q"] * v["a_[g,0]"]
         if name.startswith("a_[g,") and each.numbers:
             capacity, _, demand = each.formula.removeprefix("a_[g] · ").partition("/")
             return self.given[self.state]["a_[g]"] * v[capacity] / v[demand.strip("()") if " " in demand else demand]
-        if name.startswith("q a"):
-            return v["q"] * v["a_[0]^[*]"]
         return None
 
     def free_again(self, each):
@@ -543,6 +562,29 @@ def test_a_document_has_the_steps_and_tables_of_the_page(name, sheets):
     steps = [[each for each in items if isinstance(each, Step)] for items in (page, document)]
     assert steps[0] == steps[1] and len(steps[0]) > 40
     assert Recomputed([each for each in document if not isinstance(each, list) or len(each[1]) > 2]).count > 25
+
+
+def test_ties_have_force_and_elongation_on_the_sheet(sheets):
+    data, out = sheets("tied")
+    ties = data["directions"]["positive"]["ties"]["bar"]
+    rows = {each[0].split()[2].rstrip(":"): each[2] for each in of_html(out)
+            if isinstance(each, list) and each[0].startswith("Ties at")}  # fmt: skip
+    for state in ("SLV", "SLC"):
+        wanted = [ties[f"force_{state}"] / 1e3, ties[f"elongation_{state}"], 100 * ties[f"strain_{state}"]]
+        assert [number(each) for each in rows[state][1:]] == pytest.approx(wanted, rel=5e-3)
+        assert ties[f"strain_{state}"] == pytest.approx(ties[f"elongation_{state}"] / 5.7, rel=1e-9)
+
+
+def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too(sheets):
+    data, out = sheets("wall that does not begin to rock")
+    assert data["directions"]["positive"]["states"]["SLC"]["passes"]
+    items = of_html(out)
+    states = next(each for each in items if isinstance(each, list) and "limit states" in each[0])
+    row = next(each for each in states[2:] if each[0] == "SLC")
+    assert number(row[4]) < 1 and row[5] == "satisfied"
+    words = Page(out.read_text(encoding="utf-8")).words
+    assert "SLC: the verification is satisfied. ζ_[E] = 1.029; the damage method governs" in words
+    assert "at SLC: below 1, but satisfied, as rocking does not start" in words
 
 
 @pytest.mark.parametrize("suffix", [".html", ".docx"])

@@ -22,6 +22,7 @@ from rocking_cli.studies.verification.codes import codes
 from rocking_cli.studies.verification.codes.italian import demand, hazard
 from rocking_cli.studies.verification.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
 from rocking_cli.studies.verification.codes.italian.hazard import Hazard
+from rocking_cli.studies.verification.ties import pulls
 from rocking_cli.studies.verification.told import said_in
 
 G = 9.80665
@@ -213,6 +214,40 @@ class TestCurves:
         force = k * (abs(0.5 + complex(-0.5, 5.0) * np.exp(-1j * phi)) - 5.0)
         assert any(f"the tie t carries {force / 1e3:.4g} kN" in each for each in found.remarks)
 
+    def test_a_force_says_how_far_its_point_has_moved_against_it(self):
+        """A facade held by a constant force passes where its centroid stands outside its foot: by hand."""
+        forces = [("thrust", 24e3, [-0.10, 9.5]), ("chain", -202.5e3, [-0.35, 7.0])]
+        loads = [{"name": name, "force": [force, 0.0], "at": at} for name, force, at in forces]
+        facade = {"width": 0.7, "height": 9.5, "density": 1937.46, "depth": 8.0}
+        block = rk.Block(**facade, one_sided="positive", rebound=0.4,
+                         loads=[{"name": "roof", "mass": 9789.0, "at": [-0.10, 9.5]}, *loads])  # fmt: skip
+        found = verified(block)
+        (pull,) = pulls(found.exact, found.states["SLV"].d)
+        z = complex(-0.7, 7.0) * np.exp(-1j * found.exact.rotation(found.states["SLV"].d))
+        assert (pull.name, pull.force, pull.strain) == ("chain", 202.5e3, None)
+        assert pull.elongation == pytest.approx(z.real + 0.7, rel=1e-9) and pull.elongation > 0.5
+        said = " ".join(found.remarks)
+        assert f"only if it is longer than {pull.elongation / 0.02:.3g} m" in said
+        assert "Caution: at d_SLV the centroid of a block moves" in said and "the block is 0.7 m thick" in said
+        assert found.states["SLV"].d > 0.4 * 0.7
+        free = verified(rk.Block(width=0.7, height=9.5))
+        assert not any("Caution" in each or "against its force" in each for each in free.remarks)
+
+    def test_a_tie_says_how_much_longer_it_is(self):
+        """Flat and short, of a force at rest: from 1 m beside the face, at 7.5 m."""
+        bar = {"name": "bar", "from": {"ground": [-1.3, 7.5]}, "to": {"at": [-0.3, 7.5]}, "stiffness": 0.0,
+               "prestress": 2e4}  # fmt: skip
+        found = verified(rk.Block(**TIED, ties=[bar]))
+        for state in ("SLV", "SLC"):
+            (pull,) = pulls(found.exact, found.states[state].d)
+            z = 0.3 + complex(-0.6, 7.5) * np.exp(-1j * found.exact.rotation(found.states[state].d))
+            assert pull.elongation == pytest.approx(abs(z - complex(-1.3, 7.5)) - 1.0, rel=1e-9)
+            assert pull.strain == pytest.approx(pull.elongation / 1.0, rel=1e-9) and pull.force == 2e4
+        strain = pulls(found.exact, found.states["SLV"].d)[0].strain
+        assert any(f"{100 * strain:.2g} % of its length. Beyond about 2 %" in each for each in found.remarks)
+        far = {**bar, "from": {"ground": [-60.3, 7.5]}}
+        assert not any("of its length" in each for each in verified(rk.Block(**TIED, ties=[far])).remarks)
+
     def test_a_force_that_never_lets_go_has_no_d0(self):
         down = {"name": "down", "force": [0.0, -1e5], "at": [0.0, 0.0]}
         block = rk.Block(width=1.0, height=5.0, mass=1.0, loads=[down])
@@ -226,11 +261,51 @@ class TestCurves:
         found, free = verified(block), verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[floor]))
         phi = found.exact.rotation(found.states["SLC"].d)
         assert 5.0 * sin(phi) + 0.5 * (1 - cos(phi)) == pytest.approx(0.3, rel=1e-9)
-        assert found.states["SLC"].d < free.states["SLC"].d and found.states["SLV"] == free.states["SLV"]
-        assert any("loses its seat of 0.3 m" in each for each in found.remarks)
-        assert found.straight_states["SLC"].d == found.states["SLC"].d
+        assert found.states["SLV"].d == found.states["SLC"].d < free.states["SLV"].d < free.states["SLC"].d
+        (said,) = [each for each in found.remarks if "loses its seat of 0.3 m" in each]
+        assert "which limits d_SLV and d_SLC" in said and "che limita d_SLV e d_SLC" in said_in("it", said)
+        assert [each.d for each in found.straight_states.values()] == [each.d for each in found.states.values()]
+        middle = verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[{**floor, "seat": 0.45}]))
+        assert middle.states["SLV"] == free.states["SLV"] and middle.states["SLC"].d < free.states["SLC"].d
+        assert any("which limits d_SLC." in each for each in middle.remarks)
         wide = verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[{**floor, "seat": 0.9}]))
         assert wide.states == free.states and not any("loses its seat" in each for each in wide.remarks)
+
+    def test_a_roof_that_has_fallen_passes_no_limit_state(self):
+        """By hand: the top of the block goes 0.15 m, and its centroid h/2 sin(phi) + b (1 - cos(phi))."""
+        roof = {"name": "roof", "mass": 3000.0, "at": [0.0, 8.0], "floor": "sliding", "seat": 0.15}
+        found = verified(rk.Block(**TIED, loads=[roof]), SLC={k: v for k, v in SITE.items() if k != "FC"})
+        phi = _slid(0.3, 8.0, 0.15)
+        d = 4 * sin(phi) + 0.3 * (1 - cos(phi))
+        W, R = 0.6 * 8.0 * 5.0 * 18000, 3000.0 * G / 2  # the other half rests elsewhere
+        end = atan(0.3 * (W + R) / (W * 4.0 + R * 8.0))
+        assert 0.4 * found.d0 == pytest.approx(0.4 * (4 * sin(end) + 0.3 * (1 - cos(end))), rel=1e-9)
+        assert d == pytest.approx(0.075026, abs=6e-7) and 0.4 * found.d0 > 1.5 * d
+        assert [each.d for each in found.states.values()] == pytest.approx([d, d], rel=1e-9)
+        assert not found.passes("SLV") and not found.states["SLC"].passes
+
+    def test_a_facade_whose_roof_loses_its_seat_by_hand(self):
+        """The nonlinear method by hand on a short seat: zeta_E is 0.83, and not the 2.22 of 0.4 d0*."""
+        forces = [("thrust", 24e3, [-0.10, 9.5]), ("ties", -202.5e3, [-0.35, 7.0])]
+        loads = [{"name": name, "force": [force, 0.0], "at": at} for name, force, at in forces]
+        roof = {"name": "roof", "mass": 9789.0, "at": [-0.10, 9.5], "seat": 0.10}
+        facade = {"width": 0.7, "height": 9.5, "density": 1937.46, "depth": 8.0}
+        block = rk.Block(**facade, one_sided="positive", rebound=0.4, loads=[roof, *loads])
+        found = verified(block, **{**AT_HAZARD, "CU": 1.5, "hazard": CLASS_III})
+        b, W, R = 0.35, 0.7 * 9.5 * 8.0 * 1937.46 * G, 9789.0 * G
+        phi = root(lambda x: 9.5 * sin(x) - 0.45 * (cos(x) - 1) - 0.10, 0.0, 0.5)
+        z = np.array([complex(-b, 4.75), complex(-0.45, 9.5), complex(-0.45, 9.5), complex(-2 * b, 7.0)])
+        at = z * np.exp(-1j * phi)
+        up, across = (-at.real, at.imag)  # per unit rotation about the foot
+        V = W * up[0] + R * up[1] - 24e3 * across[2] + 202.5e3 * across[3]
+        a = V / (W * across[0] + R * across[1]) * G / 1.35
+        d = (W * (at - z)[0].real + R * (at - z)[1].real) / (W + R)
+        T = 1.68 * pi * sqrt(d / a)
+        ground = Hazard(CLASS_III, "C", "T1").spectrum(-75 / log(0.9))
+        demand = ground.acceleration(T, 0.08) * (T / 2 / pi) ** 2
+        slv = found.states["SLV"]
+        assert [slv.d, slv.T, slv.demand] == pytest.approx([d, T, demand], rel=1e-6)
+        assert found.counts.zeta == pytest.approx(0.83, abs=0.005) and not found.passes("SLV")
 
     def test_the_period_of_an_element_by_its_size(self):
         element = {"kind": "cantilever", "L": 1.2, "t": 0.3, "w": 18e3, "E": 1.2e9}
@@ -427,7 +502,7 @@ class TestMethods:
         """Every a_g is put back into the site: then the displacement demand is the displacement capacity."""
         found = verified(mechanism, **site)
         for key, ratio in a_g(found).items():
-            if key in ("nonlinear_SLC", "SLD"):
+            if key in ("damage_SLC", "nonlinear_SLC", "SLD"):
                 assert ratio is None
                 continue
             again = verified(mechanism, **{**site, "ag": ratio})
@@ -460,6 +535,61 @@ class TestMethods:
         assert found.methods["SLD"].a_g == pytest.approx(found.a0 / (1.5 * G), rel=1e-12)
         assert found.methods["SLD"].zeta == pytest.approx(found.a0 / (1.5 * 0.05 * G), rel=1e-12)
 
+    def test_the_linear_method_is_q_times_the_onset_at_damage(self):
+        """By hand on soil C, whose S differs: q a0*/(S g) with S of SLD, against the a_g of SLV."""
+        found = verified(FACADE, **AT_HAZARD, q=2.5)
+        ag, F0, _ = Hazard(TABLE, "C", "T1").parameters(hazard.return_period(50.0, "SLD"))
+        assert 1.7 - 0.6 * F0 * ag > 1.5  # S of SLD is the largest of soil C, that of SLV less
+        linear, a0 = found.methods["linear"], 0.075 * G / 1.35
+        assert linear.a_g == pytest.approx(2.5 * a0 / (1.5 * G), rel=1e-9)
+        asked, F0, _ = Hazard(TABLE, "C", "T1").parameters(hazard.return_period(50.0, "SLV"))
+        S = 1.7 - 0.6 * F0 * asked
+        assert S < 1.45 and linear.asked == pytest.approx(asked, rel=1e-12)
+        # As a return period: that whose a_g it is.
+        at = Hazard(TABLE, "C", "T1").parameters(linear.return_period)[0]
+        assert at == pytest.approx(linear.a_g, rel=1e-9) and not linear.beyond
+        given = verified(FACADE, SLD={"ag": 0.05, "F0": 2.4, "TC": 0.3, "S": 1.5})
+        assert given.methods["linear"].a_g == pytest.approx(2 * a0 / (1.5 * G), rel=1e-9)
+
+    def test_of_ordinates_only_those_of_both_states_are_compared(self):
+        """The ordinates of a table hold S, which nobody knows: without a table of SLV, S of SLV is used."""
+        points = [[0, 0.1], [0.4, 0.25], [4.0, 0.02]]
+        mixed, alone = verified(FACADE, SLD={"spectrum": points}), verified(FACADE)
+        assert mixed.methods["linear"].a_g == alone.methods["linear"].a_g
+
+    def test_a_floor_has_its_own_mode_at_each_limit_state(self):
+        """Damage at SLD and the linear method by T1 and xi1 of SLD, the others by those of SLV, and SLC by its own."""
+        sld = {"SLD": {"ag": 0.08, "F0": 2.5, "TC": 0.36, "S": 1.2}, "SLC": {"ag": 0.26, "F0": 2.5, "TC": 0.42, "S": 1}}
+        place = {"z": 6.0, "H": 9.0, "n": 3}
+        modes = {"SLD": {"T1": 0.35, "xi1": 0.05}, "SLV": {"T1": 0.6, "xi1": 0.12}, "SLC": {"T1": 0.7, "xi1": 0.15}}
+        parapet = rk.Block(width=0.3, height=1.2, density=1800.0, depth=1.0)
+        alone = {state: verified(parapet, floor={**place, **mode}, **sld) for state, mode in modes.items()}
+        own = {state: mode for state, mode in modes.items() if state != "SLV"}
+        found = verified(parapet, floor={**place, **modes["SLV"], **own}, **sld)
+        of = {"damage": "SLV", "linear": "SLD", "nonlinear": "SLV", "damage_SLC": "SLC", "nonlinear_SLC": "SLC",
+              "SLD": "SLD"}  # fmt: skip
+        for key, state in of.items():
+            assert found.methods[key].a_g == pytest.approx(alone[state].methods[key].a_g, rel=1e-12), key
+        # By hand: at T1 = .35 s, within T_B to T_C, S_Z is a_g S F0 gamma psi sqrt(1 + 4 xi1^2).
+        S_Z = 1.2 * 2.5 * 9 / 7 * 2 / 3 * sqrt(1 + 4 * 0.05**2)
+        assert found.methods["SLD"].a_g == pytest.approx(0.25 / 1.35 / S_Z, rel=1e-9)
+        assert found.methods["linear"].a_g == pytest.approx(2 * 0.25 / 1.35 / S_Z, rel=1e-9)
+        # At T1 = .6 s, above T_C = .4 s, with eta of 12 %.
+        S_Z = 1.2 * sqrt(10 / 17) * 2.5 * 0.4 / 0.6 * 9 / 7 * 2 / 3 * sqrt(1 + 4 * 0.12**2)
+        assert found.methods["damage"].a_g == pytest.approx(0.25 / 1.35 / S_Z, rel=1e-9)
+
+    def test_what_does_not_begin_to_rock_passes_at_collapse_too(self):
+        """A wall of 0.3 x 3 m starts to rock at a0*/(S g) = 0.2469 g, above the 0.24 g of SLC, whatever its d_SLC."""
+        slc = {"ag": 0.24, "F0": 2.5, "TC": 0.55, "S": 1.2}
+        wall = rk.Wall(thickness=0.3, height=3.0, density=1800.0, depth=1.0)
+        found = verified(wall, SLC=slc)
+        start = 2 * (0.3 / 1.5) / 1.35 / 1.2  # lambda = 2 tan(alpha) of its halves, e* = 1
+        assert found.methods["damage_SLC"].a_g == pytest.approx(start, rel=1e-12)
+        assert found.states["SLC"].ratio < 1 and found.passes("SLC") and found.governing["SLC"] == "damage_SLC"
+        shaken = verified(wall, SLC={**slc, "ag": 0.25})
+        assert not shaken.passes("SLC") and shaken.methods["damage_SLC"].zeta < 1
+        assert verified(FACADE, SLC=slc).governing == {"SLV": "nonlinear", "SLC": "nonlinear_SLC"}
+
     def test_the_workings_hold_the_numbers(self):
         found = verified(OPPENHEIM, SLC={k: v for k, v in SITE.items() if k != "FC"})
         lines = {line.symbol: line for line in found.workings}
@@ -473,6 +603,7 @@ class TestMethods:
 
 
 TABLE = [[30, 0.060, 2.45, 0.27], [101, 0.105, 2.40, 0.29], [475, 0.200, 2.45, 0.32], [2475, 0.330, 2.55, 0.36]]
+CLASS_III = [[45, 0.066, 2.36, 0.28], [75, 0.084, 2.35, 0.285], [712, 0.21, 2.42, 0.31], [1463, 0.265, 2.46, 0.32]]
 AT_HAZARD = {**dict.fromkeys(("ag", "F0", "TC", "S")), "hazard": TABLE, "VN": 50.0, "CU": 1.0, "soil": "C"}
 
 

@@ -82,22 +82,25 @@ def test_the_vertical_component_keeps_its_size_and_its_pace_with_the_other():
     assert np.array_equal(both.vertical.acceleration, motion.acceleration)
 
 
-def seen(*pairs, d0=0.3):
+ALLOWED = {"SLV": 0.12, "SLC": 0.18}
+
+
+def seen(*pairs, d0=0.3, state="SLV"):
     records = [RecordPeak(f"r{k}", *pair) for k, pair in enumerate(pairs)]
-    return Dynamic(records, d0, {"SLV": 0.12, "SLC": 0.18}, 7)
+    return Dynamic(records, d0, {state: ALLOWED[state]}, 7)
 
 
 class TestVerdicts:
     def test_the_mean_counts_and_no_record_may_pass(self):
         found = seen((0.10, 0.05), (0.13, 0.05))
         assert found.mean(confident=True) == pytest.approx(0.115)
-        assert found.holds("SLV", confident=True) and found.holds("SLC", confident=True)
+        assert found.holds("SLV", confident=True)
         past = seen((0.10, 0.05), (0.30, 0.05))
         assert past.mean(confident=True) is None and past.passed(confident=True) == ["r1"]
-        assert not past.holds("SLC", confident=True) and past.holds("SLV", confident=False)
+        assert not past.holds("SLV", confident=True) and past.holds("SLV", confident=False)
         assert seen((None, 0.1)).passed(confident=True) == ["r0"]
-        between = seen((0.15, 0.15))
-        assert not between.holds("SLV", confident=True) and between.holds("SLC", confident=True)
+        assert not seen((0.15, 0.15)).holds("SLV", confident=True)
+        assert seen((0.15, 0.15), state="SLC").holds("SLC", confident=True)
 
     def test_words_follow_the_numbers(self):
         said = " ".join(of_histories(seen((0.15, 0.05), (0.15, 0.05)), 1.35))
@@ -105,12 +108,15 @@ class TestVerdicts:
             "With FC: no record takes the structure past d0* = 0.3 m; the mean peak displacement, 0.15 m, is beyond "
             "d_SLV = 0.12 m"
         ) in said
-        assert "within d_SLC = 0.18 m." in said and "The confidence factor FC changes the verdict at SLV." in said
+        assert "The confidence factor FC changes the verdict at SLV." in said and "SLC" not in said
+        assert "The records belong to SLV and are checked against this limit state alone." in said
         assert "Only 2 records were used: the code requires at least 7" in said
         said = " ".join(of_histories(seen(*[(0.1, 0.05)] * 7), 1.35))
         assert "changes the verdict" not in said and "requires at least" not in said
         said = " ".join(of_histories(seen((None, 0.05)), 1.35))
-        assert "not satisfied. r0 takes the structure past d0*" in said and "SLV and SLC" in said
+        assert "not satisfied. r0 takes the structure past d0*" in said and "changes the verdict at SLV" in said
+        said = " ".join(of_histories(seen((0.15, 0.05), state="SLC"), 1.35))
+        assert "within d_SLC = 0.18 m." in said and "SLV" not in said
         assert "Only one record was used" in said
         assert "Without FC" not in " ".join(of_histories(seen((0.1, 0.1)), 1.0))
 
@@ -140,3 +146,98 @@ class TestTheCommand:
 
     def test_a_polarity_needs_a_motion(self):
         assert "--polarity reverses" in run("verify", "--site", "site.yaml", "--polarity", "-1", code=2).stderr
+
+
+PARAPET = rk.Block(width=0.3, height=1.2, density=1800.0, depth=1.0)
+ON_FLOOR = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2, "soil": "B"}
+FLOOR = {"z": 6.0, "H": 9.0, "T1": 0.4, "xi1": 0.05, "n": 3}
+SLC = {"ag": 0.26, "F0": 2.5, "TC": 0.42, "S": 1.2}
+
+
+def dynamics(site, *motions, **options):
+    found = rk.verify(PARAPET, site, motions=motions, **options)
+    return [each.dynamic for each in found.directions.values()], found
+
+
+class TestWhereAndWhen:
+    """Records are those of the ground, unless said otherwise, and of one limit state."""
+
+    @pytest.fixture
+    def accel(self):
+        motion = rk.read_record(EXAMPLES / "accel.csv")
+        return motion.scaled(0.24 / motion.pga)
+
+    def test_ground_records_go_through_the_floor_of_the_site(self, accel):
+        """Against motions carried by `rk.on_floor`: what hardly moves on the ground overturns on the floor."""
+        pulse = rk.parse_pulse("sine:0.24g:0.45s").sampled()
+        below, _ = dynamics(ON_FLOOR, accel, pulse)
+        assert all(each.holds("SLV", confident=True) for each in below)
+        assert max(each.peaks(confident=True)[0] for each in below) < 0.003
+        place = f"T1=0.4,xi=0.05,z={6 / 9},n=3"
+        wanted, _ = dynamics(ON_FLOOR, rk.on_floor(accel, place), rk.on_floor(pulse, place))
+        above, answer = dynamics({**ON_FLOOR, "floor": FLOOR}, accel, pulse)
+        assert [each.peaks(confident=True) for each in above] == [each.peaks(confident=True) for each in wanted]
+        assert min(each.peaks(confident=True)[0] for each in above) > 0.04
+        assert [each.peaks(confident=True)[1] is None for each in above] == [True, False]
+        assert not above[0].holds("SLV", confident=True)
+        said = " ".join(answer.sentences)
+        assert "carried to the floor of the site, T1=0.4,xi=0.05,z=0.66" in said
+        found = answer.to_dict()["directions"]["positive"]["dynamic"]
+        assert found["motions"] == "carried_to_floor" and found["floor"].startswith("T1=0.4,xi=0.05,z=0.66")
+
+    def test_motions_of_the_floor_are_taken_as_they_are(self, accel):
+        below, _ = dynamics(ON_FLOOR, accel)
+        stated, answer = dynamics({**ON_FLOOR, "floor": FLOOR}, accel, on_floor=True)
+        assert [each.records for each in stated] == [each.records for each in below]
+        assert "taken as motions of the floor" in " ".join(answer.sentences)
+        carried = rk.on_floor(accel, "T1=0.3,xi=0.05,z=1,n=3")
+        by_option, _ = dynamics({**ON_FLOOR, "floor": FLOOR}, carried)
+        assert by_option[0].motions.kind == "carried_by_option" and "T1=0.3" in by_option[0].motions.floor
+        wanted, _ = dynamics(ON_FLOOR, carried)
+        assert [each.records for each in by_option] == [each.records for each in wanted]
+
+    def test_what_cannot_be_of_the_floor_is_refused(self, accel):
+        with pytest.raises(rk.InputError, match="`on_floor` requires a site with a floor"):
+            dynamics(ON_FLOOR, accel, on_floor=True)
+        carried, site = rk.on_floor(accel, "T1=0.3,xi=0.05,z=1,n=3"), {**ON_FLOOR, "floor": FLOOR}
+        with pytest.raises(rk.InputError, match="`on_floor` cannot be combined with `floor`"):
+            dynamics(site, carried, on_floor=True)
+        with pytest.raises(rk.InputError, match="some of the motions are of a floor"):
+            dynamics(site, carried, accel)
+
+    def test_the_mode_is_that_of_the_limit_state(self, accel):
+        floor = {**FLOOR, "T1": 0.6, "xi1": 0.1, "SLC": {"T1": 0.4, "xi1": 0.05}}
+        own, _ = dynamics({**ON_FLOOR, "SLC": SLC, "floor": floor}, accel, state="SLC")
+        single, _ = dynamics({**ON_FLOOR, "floor": FLOOR}, accel)
+        assert [each.records for each in own] == [each.records for each in single]
+
+    def test_a_set_of_records_verifies_one_limit_state(self, accel):
+        for state, found in (("SLV", {}), ("SLC", {"state": "SLC"})):
+            sides, answer = dynamics({**ON_FLOOR, "SLC": SLC}, accel, **found)
+            data = answer.to_dict()["directions"]["positive"]["dynamic"]
+            assert data["state"] == state and list(data["with_FC"]["holds"]) == [state]
+            d = answer.directions[Direction.POSITIVE].states[state].d
+            assert sides[0].allowed == {state: d}
+            other = {"SLV": "SLC", "SLC": "SLV"}[state]
+            said = [each for each in answer.sentences if "record" in each and "d0*" in each]
+            assert said and not any(other in each for each in said)
+
+    def test_a_limit_state_that_the_site_does_not_give_is_refused(self, accel):
+        with pytest.raises(rk.InputError, match="SLC is not given by the site"):
+            dynamics(ON_FLOOR, accel, state="SLC")
+        with pytest.raises(rk.InputError, match="'SLD' is not a limit state of displacement"):
+            dynamics(ON_FLOOR, accel, state="SLD")
+
+    def test_both_are_options_of_the_command_and_on_the_sheet(self, tmp_path):
+        (tmp_path / "s.yaml").write_text(SITE + f"floor: {FLOOR}\n".replace("'", ""), encoding="utf-8")
+        (tmp_path / "b.yaml").write_text("mechanism: block\nwidth: 0.3\nheight: 1.2\n", encoding="utf-8")
+        asked = ("verify", tmp_path / "b.yaml", "--site", tmp_path / "s.yaml")
+        found = run_json(*asked, "--pulse", "sine:0.1g:0.3s", "--sheet", tmp_path / "o.html")
+        assert found["directions"]["positive"]["dynamic"]["motions"] == "carried_to_floor"
+        page = (tmp_path / "o.html").read_text(encoding="utf-8")
+        assert "carried to the floor by the first mode of the building: T1=0.4" in page and "verify no other" in page
+        found = run_json(*asked, "--pulse", "sine:0.1g:0.3s", "--on-floor")
+        assert found["directions"]["positive"]["dynamic"]["motions"] == "of_floor"
+        assert "--state: SLC is not given by the site" in run(*asked, "--pulse", "sine:0.1g:0.3s", "--state", "SLC",
+                                                            code=2).stderr  # fmt: skip
+        assert "describe records" in run(*asked, "--on-floor", code=2).stderr

@@ -40,6 +40,7 @@ WRONG = [
     (GOOD.replace("TC: 0.4", "TC: 2.5"), 4, "TC", "is above T_D = 4 a_g/g + 1.6 = 2.4 s: got 2.5 s"),
     (GOOD + "floor: {z: 4, H: 3, T1: 0.4, xi1: 0.1, n: 3}\n", 6, "floor.z", "is above the roof"),
     (GOOD + "floor: {z: 2, H: 3, T1: 0.4, xi1: 5, n: 3}\n", 6, "floor.xi1", "must be at most 0.5, got 5"),
+    (GOOD + "floor: {z: 2, H: 3, T1: 0.4, xi1: 0.1, n: 3, SLD: {T1: 0.3}}\n", 6, "floor.SLD.xi1", "is missing"),
     (GOOD + "soil: F\n", 6, "soil", "must be A, B, C, D or E"),
     (GOOD + "spectrum: [[0, 1], [1, 1]]\n", 6, "spectrum", "cannot be combined with ag"),
     (GOOD + "VN: 50\n", 6, "VN", "requires `hazard`, the table of return periods"),

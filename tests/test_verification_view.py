@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -46,8 +47,10 @@ def test_json_has_exactly_its_form(files):
             "dynamic",
         ]  # fmt: skip
         assert list(side["states"]) == ["SLV", "SLC"]
-        assert list(side["states"]["SLV"]) == ["d", "a", "T", "demand", "ratio"]
-        assert list(side["a_g"]) == ["damage", "linear", "nonlinear", "nonlinear_SLC"]
+        assert list(side["states"]["SLV"]) == ["d", "a", "T", "demand", "ratio", "governs", "passes"]
+        assert [side["states"]["SLV"][key] for key in ("governs", "passes")] == ["nonlinear", False]
+        assert [side["states"]["SLC"][key] for key in ("governs", "passes")] == [None, None]
+        assert list(side["a_g"]) == ["damage", "linear", "nonlinear", "damage_SLC", "nonlinear_SLC"]
         assert side["dynamic"] is None and side["M_star"] is None  # without masses
         slv = side["states"]["SLV"]
         assert slv["ratio"] == pytest.approx(slv["d"] / slv["demand"])
@@ -123,6 +126,9 @@ class TestWords:
         assert said[0].startswith("SLC: passes.") and said[1].startswith("SLD: passes.")
         said = list(words.beyond_first(positive(FACADE, SLC={**ground, "ag": 0.9}, SLD=ground), "SLV"))
         assert said[0].startswith("SLC: fails.") and said[1].startswith("SLD: fails.")
+        still = {"ag": 0.24, "F0": 2.5, "TC": 0.55, "S": 1.2}
+        (said,) = words.beyond_first(positive(WALL, SLC=still), "SLV")
+        assert said.startswith("SLC: passes. The damage method governs: the structure does not start to rock below a_g")
 
     @pytest.mark.parametrize(
         ("site", "said"),
@@ -131,6 +137,14 @@ class TestWords:
             (
                 {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
                 "is evaluated with xi1 as a ratio. This is our reading",
+            ),
+            (
+                {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
+                "T1 = 0.4 s and xi1 = 0.1 of the floor are used at all limit states",
+            ),
+            (
+                {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
+                "the others are missing here",
             ),
             ({"floor": {"z": 1.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}}, "S_Z = 0.2141 g, is below"),
             (
@@ -144,6 +158,36 @@ class TestWords:
         assert any(said in each for each in verified(FACADE, **site).remarks)
         other = verified(WALL, soil="B") if "floor" not in site else verified(FACADE)
         assert not any(said in each for each in other.remarks)
+
+
+def test_a_floor_with_its_mode_at_damage_needs_no_caution():
+    own = {"z": 2.0, "H": 3.0, "T1": 0.6, "xi1": 0.1, "n": 3, "SLD": {"T1": 0.4, "xi1": 0.05}}
+    said = " ".join(verified(FACADE, floor=own).remarks)
+    assert "at all limit states" not in said and "are used at SLC too" not in said
+    ground = {key: value for key, value in SITE.items() if key != "FC"}
+    said = " ".join(verified(FACADE, floor=own, SLC=ground).remarks)
+    assert "T1 = 0.6 s and xi1 = 0.1 of the floor at SLV are used at SLC too" in said
+
+
+def test_the_linear_method_without_damage_at_the_site_says_by_what():
+    said = "F0, TC and S of SLV are used, which is our choice"
+    ground = {key: value for key, value in SITE.items() if key != "FC"}
+    assert any(said in each for each in verified(FACADE).remarks)
+    assert not any(said in each for each in verified(FACADE, SLD=ground).remarks)
+
+
+def test_ties_have_force_and_elongation_at_every_state(files, tmp_path):
+    text = "mechanism: block\nname: b\nwidth: 0.6\nheight: 8\nmass: 1e4\nties:\n"
+    text += "- {name: bar, from: {ground: [-9, 7.5]}, to: {at: [-0.3, 7.5]}, stiffness: 0, prestress: 500}\n"
+    (tmp_path / "t.yaml").write_text(text + "one_sided: positive\nrebound: 0.4\n", encoding="utf-8")
+    command = ("verify", tmp_path / "t.yaml", "--site", "site.yaml")
+    (bar,) = run_json(*command)["directions"]["positive"]["ties"].values()
+    assert list(bar) == [f"{key}_{state}" for key in ("force", "elongation", "strain") for state in ("SLV", "SLC")]
+    assert bar["force_SLV"] == 500 and bar["strain_SLC"] == pytest.approx(bar["elongation_SLC"] / 8.7)
+    text = run(*command).stdout
+    for state in ("SLV", "SLC"):
+        row = next(line for line in text.splitlines() if "bar" in line and f"d_{state}" in line)
+        assert f"{bar[f'elongation_{state}']:.4g}" in row and f"{100 * bar[f'strain_{state}']:.3g}" in row
 
 
 def test_a_control_point_is_typed_and_its_influence_said(files):
@@ -179,7 +223,7 @@ class TestInPython:
     def test_it_is_the_answer_of_the_command(self, files, tmp_path):
         answer = rk.verify("b.yaml", "site.yaml", control=(0.3, 8.0, "block"))
         assert answer.to_dict() == run_json("verify", "b.yaml", "--site", "site.yaml", "--control", "0.3,8,block")
-        assert len(answer.to_frame()) == 10
+        assert len(answer.to_frame()) == 12
         answer.plot(tmp_path / "a.png")
         assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
         assert repr(answer).startswith("<verification: ")
@@ -216,3 +260,57 @@ def test_of_directions_that_differ_by_rounding_the_first_counts():
         other = replace(found.directions[negative], states={found.first: replace(state, d=state.d * (1 - off))})
         both = replace(found, directions={positive: found.directions[positive], negative: other})
         assert (both.governs, both.alike) == (least, alike)
+
+
+CLAUSES = {
+    # symbol: place in the code, by a transcription of it
+    "S_Z,SLV": "[C7.2.7]", "gamma": "[C7.2.10]", "A,SLV": "[C7.2.6], [C7.2.9]", "TR,SLV": "[3.2.0]",
+    "TC,SLV": "[3.2.5]", "TD,SLV": "[3.2.7]", "a0*": "[C8.7.1.3]", "T_SLV": "[C8.7.1.10]", "d_SLV": "§C8.7.1.2.1.6",
+    "a_g,damage": "[C8.7.1.8]", "a_g,linear": "§C8.7.1.2.1.7", "a_g,nonlinear": "§C8.7.1.2.1.8",
+    "a_g,SLD": "[C8.7.1.8]", "zeta_E,nonlinear": "§8.3",
+}  # fmt: skip
+UNCHECKED = {"zeta_E,nonlinear"}
+"""What needs the print of the code."""
+
+
+HAZARD = [[30, 0.055, 2.45, 0.27], [475, 0.175, 2.45, 0.32], [2475, 0.300, 2.55, 0.36]]
+AT_HAZARD = {**dict.fromkeys(("ag", "F0", "TC", "S")), "hazard": HAZARD, "VN": 50.0, "CU": 1.0, "soil": "C"}
+FLOOR = {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}
+
+
+class TestClauses:
+    def lines(self, **site):
+        found = verified(FACADE, **AT_HAZARD, floor=FLOOR, **site)
+        return {line.symbol: line for line in [*found.workings, *found.directions[Direction.POSITIVE].workings]}
+
+    def test_formulas_are_in_brackets_and_sections_have_their_sign(self):
+        lines = self.lines()
+        assert {symbol: lines[symbol].clause for symbol in CLAUSES} == CLAUSES
+        for line in lines.values():
+            assert re.fullmatch(r"(\[C?[\d.-]+\](, )?)+|§C?[\d.]+|not in the code", line.clause), line
+
+    def test_what_vibrates_has_its_own(self):
+        lines = self.lines(T0=0.1)
+        assert lines["a_g,damage"].clause == lines["S_eZ(T0),SLV"].clause == "[C8.7.1.9]"
+        element = {"kind": "cantilever", "L": 1.2, "t": 0.3, "w": 18e3, "E": 1.2e9}
+        assert self.lines(element=element)["T0"].clause == "[C8.7.1.7]"
+
+    def test_what_agrees_with_a_transcription_says_so_and_what_needs_the_print_too(self):
+        lines = self.lines()
+        for symbol in CLAUSES:
+            standing = "code" if symbol in UNCHECKED else "ours" if symbol.startswith("A") else "transcription"
+            assert lines[symbol].standing == standing, symbol
+        said = words.standing(list(lines.values()))
+        assert "They agree with a transcription of its text, except for F0, TC*, S, psi, a_g, zeta_E." in said
+        assert "None of the formulas has been checked against the printed code yet" in said
+
+
+def test_the_sheet_cites_the_code_alike(tmp_path):
+    site = "FC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\nfloor: {z: 6, H: 9, T1: 0.4, xi1: 0.1, n: 3}\n"
+    (tmp_path / "site.yaml").write_text(site, encoding="utf-8")
+    (tmp_path / "b.yaml").write_text("mechanism: block\nwidth: 0.6\nheight: 8\n", encoding="utf-8")
+    run("verify", tmp_path / "b.yaml", "--site", tmp_path / "site.yaml", "--sheet", tmp_path / "o.html")
+    page = (tmp_path / "o.html").read_text(encoding="utf-8")
+    cited = set(re.findall(r'class="clause">([^<]+)<', page))
+    assert {"[3.2.6]*", "[3.2.7]*", "[C7.2.6]*", "[C7.2.7]*", "[C7.2.10]*", "[C8.7.1.8]*", "§8.3†", "§C7.2.3†"} <= cited
+    assert {"§C8.7.1.2.1.7*", "§C8.7.1.2.1.8*", "[C7.2.6], [C7.2.9]‡"} <= cited

@@ -25,6 +25,8 @@ def verify(
     control: tuple[float, float] | tuple[float, float, str] | None = None,
     motions: Sequence[Motion] = (),
     polarities: Sequence[int] = (1,),
+    state: str | None = None,
+    on_floor: bool = False,
 ) -> Answer[Verification]:
     """Verify a rocking mechanism of masonry by a code, such as the Italian: NTC 2018 and Circolare 7/2019.
 
@@ -41,6 +43,10 @@ def verify(
         does not pass.
     polarities : sequence of int
         Polarities of the motions, of 1 and -1; with both, the worse governs.
+    state : str, optional
+        Limit state to which the motions belong, such as `"SLC"`; by default SLV. They are checked against it alone.
+    on_floor : bool
+        Whether the motions are those of the floor of the site; if not, ground motions are carried to it.
 
     Returns
     -------
@@ -77,7 +83,8 @@ def verify(
         point = control_at(ready.mechanism, x, y, body[0] if body else None)
     found = verify(ready, known, point)
     if motions:
-        found = with_histories(found, ready, known, [_motion(each) for each in motions], polarities)
+        found = with_histories(found, ready, known, [_motion(each) for each in motions], polarities, state=state,
+                               on_floor=on_floor)  # fmt: skip
 
     def draw() -> Figure:
         from rocking_cli.plotting.verification import draw_verification

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     "--verify", "site_file", type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
     help="Site file of a verification by code that becomes part of the report.",
 )  # fmt: skip
+@options.state
+@options.on_floor
 @options.around
 @options.opening
 @options.as_json
@@ -41,6 +43,8 @@ def command(
     head: Head,
     near: Near,
     site_file: str | None,
+    state: str | None,
+    on_floor: bool,
     as_json: bool,
 ) -> None:
     """Write a report on a structure: one HTML file that opens in any browser, without a network, and can be printed.
@@ -52,7 +56,7 @@ def command(
     report contains only the parts that need none.
 
     With --verify SITE.yaml, the report also contains the verification by the code of the site, step by step as in
-    `rocking verify --sheet`.
+    `rocking verify --sheet`; --state and --on-floor are those of `rocking verify`.
 
     Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m. A record that
     cannot be used is reported and skipped, and the exit code is 5.
@@ -63,6 +67,10 @@ def command(
       rocking report arch.yaml --record one.AT2 --record two.AT2 --target-pga 0.3
     """
     asked.check()
+    if (state is not None or on_floor) and (site_file is None or not asked):
+        raise click.UsageError(
+            "--state and --on-floor describe records of a verification: give --verify SITE.yaml and --record FILE."
+        )
     if not near.neighbours:
         raise click.UsageError("The report shows how close the result is: --neighbours must be at least 1.")
     from rocking_cli.cli import sheets, structures
@@ -89,7 +97,10 @@ def command(
     compile_first()
     verified = None
     if site_file is not None:
-        verified = sheets.of_report(structure, Path(site_file), files[0] if files else None, given, asked.signs, title)
+        verified = sheets.of_report(
+            structure, Path(site_file), files[0] if files else None, given, asked.signs, title, state=state,
+            on_floor=on_floor,
+        )  # fmt: skip
     with terminal.progress(steps(given), "parts of the report") as advance:
         content = gather(
             structure, heads.file_of(structure, files[0] if files else None), given, asked.signs, around=near.around,

@@ -73,12 +73,13 @@ def write(asked: SheetAsked, found: Verification, site: SiteFile, title: TitleBl
 
 def of_report(
     structure: Prepared, site_path: Path, given: str | None, motions: Sequence[Scaled], signs: Sequence[int],
-    title: TitleBlock,
+    title: TitleBlock, *, state: str | None = None, on_floor: bool = False,
 ) -> VerifiedReport:  # fmt: skip
     """Return the verification in a report, with time histories under its ground motions."""
     site = read_site(site_path)
     found = verify(structure, site)
     if motions:
-        found = with_histories(found, structure, site, [each.motion.scaled(each.factor) for each in motions], signs)
+        scaled = [each.motion.scaled(each.factor) for each in motions]
+        found = with_histories(found, structure, site, scaled, signs, state=state, on_floor=on_floor)
     of = made(structure, given, site_path, motions)
     return VerifiedReport(found, sheet(found, site, Language("en"), title, of))

@@ -55,6 +55,8 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
 @options.reading
 @options.scaling("1", "-1", "both")
 @options.opening
+@options.state
+@options.on_floor
 @options.plot("Plot the capacity curves")
 @heads.sheet
 @options.as_json
@@ -67,6 +69,8 @@ def command(
     control: Point | None,
     asked: GroundMotions,
     sheet: SheetAsked,
+    state: str | None,
+    on_floor: bool,
     plot: Path | None,
     as_json: bool,
 ) -> None:
@@ -78,8 +82,10 @@ def command(
 
     With --record (repeatable), the dynamic method is added: time histories on the capacity curve, with and without the
     confidence factor; with --polarity both, the worse of the two polarities governs. A record whose outcome is unknown,
-    because a joint opens or slides that the model keeps closed, does not pass. Whether the records match the
-    spectrum of the site is not checked. --sheet writes the calculation sheet for submission: every formula with its
+    because a joint opens or slides that the model keeps closed, does not pass. A set of records belongs to one limit
+    state, given by --state, and is checked against it alone. If the site has a floor, ground motions are carried to
+    it, unless --on-floor states that they are motions of the floor. Whether the records match the spectrum of the site
+    is not checked. --sheet writes the calculation sheet for submission: every formula with its
     numbers, in English or Italian.
 
     Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
@@ -96,6 +102,8 @@ def command(
     asked.check()
     if not asked and asked.polarity != "1":
         raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
+    if not asked and (state is not None or on_floor):
+        raise click.UsageError("--state and --on-floor describe records: give --record FILE or --pulse PULSE.")
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.verification.check import control_at, read_site, verify
@@ -111,7 +119,7 @@ def command(
     refused = 0
     chosen: list[Scaled] = []
     if asked:
-        found, chosen, refused = _histories(found, structure, site, asked, paths)
+        found, chosen, refused = _histories(found, structure, site, asked, paths, state, on_floor=on_floor)
     if plot is not None:
         from rocking_cli.cli.pictures import write_picture
         from rocking_cli.plotting.verification import draw_verification
@@ -137,7 +145,14 @@ def _title(ctx: click.Context, asked: SheetAsked, site: SiteFile) -> TitleBlock 
 
 
 def _histories(
-    found: Verification, structure: Prepared, site: SiteFile, asked: GroundMotions, paths: list[Listed]
+    found: Verification,
+    structure: Prepared,
+    site: SiteFile,
+    asked: GroundMotions,
+    paths: list[Listed],
+    state: str | None,
+    *,
+    on_floor: bool,
 ) -> tuple[Verification, list[Scaled], int]:
     """Add time histories to a verification, and return the motions used and the number of unusable ones too.
 
@@ -154,4 +169,5 @@ def _histories(
     compile_first()
     motions = [each.motion.scaled(each.factor) for each in chosen]
     with terminal.progress(len(motions), "records") as advance:
-        return with_histories(found, structure, site, motions, asked.signs, advance), chosen, refused
+        under = with_histories(found, structure, site, motions, asked.signs, advance, state=state, on_floor=on_floor)
+    return under, chosen, refused

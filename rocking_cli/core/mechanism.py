@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from inspect import isfunction
-from math import sqrt
+from math import nan, sqrt
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -296,9 +296,6 @@ class Mechanism(Described, ABC):
             raise Refused((), "rebound", "requires one_sided: otherwise the structure rocks through to the other side")
         if self.one_sided is not None and self.restitution is not None:
             raise Refused((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
-        if self.one_sided is not None and self.rebound is None and self.rebound_from_impacts() is None:
-            reason = "is missing: only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
-            raise Refused((), "rebound", reason)
 
     def _check_strength(self) -> None:
         if not isinstance(self.strength, Strength):  # None, or a field of a plugin of that name
@@ -645,11 +642,12 @@ class Mechanism(Described, ABC):
     def eta(self, direction: Direction) -> float:
         """The eta of an impact that ends motion in `direction`: the user's, else that of the kinematics.
 
-        Where it rocks to one side only, that is the rebound.
+        Where it rocks to one side only, that is the rebound: NaN if it is neither given nor known from the shape, as
+        only time histories need it.
         """
         if not self.rocks_both_ways:
             rebound = self.rebound if self.rebound is not None else self.rebound_from_impacts()
-            return 0.0 if rebound is None else rebound
+            return nan if rebound is None else rebound
         if isinstance(self.restitution, DirectionalRestitution):
             given = self.restitution
             return given.positive_to_negative if direction > 0 else given.negative_to_positive

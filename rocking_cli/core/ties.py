@@ -119,7 +119,8 @@ class Tie(Described):
     def _check_bar(self) -> None:
         bar = [self.area, self.modulus]
         if (self.stiffness is None) == (None in bar) or (self.stiffness is not None and bar != [None, None]):
-            raise geometry_error("stiffness", "give stiffness, or area and modulus: one of them")
+            message = "give stiffness, or area and modulus: one of them (`stiffness: 0` for a constant force)"
+            raise geometry_error("stiffness", message)
         if self.stiffness is not None and self.length is not None:
             raise geometry_error("length", "cannot be combined with `stiffness`: use it with `area` and `modulus`")
         if self.stiffness is None and self.length is None and self.span == 0:

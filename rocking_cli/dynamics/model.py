@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import nan, sqrt
+from math import isnan, nan, sqrt
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -153,6 +153,14 @@ class Model:
         return float(np.copysign(phi if self.tables is None else self.tables[side].q(phi), ratio))
 
 
+NO_REBOUND = Problem(
+    "is missing: a time history of a one-sided structure needs it, and only for a plain rectangle does it follow from "
+    "the shape",
+    field="rebound",
+    hint="give a measured value as rebound, a number in [0, 1)",
+)
+
+
 def build_model(mechanism: Mechanism, name: ModelName) -> Model:
     """Prepare one model of a structure.
 
@@ -166,7 +174,8 @@ def build_model(mechanism: Mechanism, name: ModelName) -> Model:
     Raises
     ------
     InputError
-        If the restitution from kinematics is not positive, so that the motion after an impact is unknown.
+        If the restitution from kinematics is not positive, or the rebound of a one-sided structure is not known, so
+        that the motion after an impact is unknown.
     """
     return build_models(mechanism, (name,))[0]
 
@@ -184,6 +193,8 @@ def build(
     """Prepare one model of a structure from its statics, and a linear one from its blocks; see `build_model`."""
     label = mechanism.name or mechanism.mechanism
     etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
+    if isnan(etas[0]):
+        raise InputError(NO_REBOUND)
     for direction, eta in zip(mechanism.sides, etas, strict=True):
         if eta <= 0 and mechanism.rocks_both_ways:
             raise InputError(

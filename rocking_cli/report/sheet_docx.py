@@ -167,8 +167,7 @@ class _Writer:
             joined = ": " if row.formula and not row.numbers else " = "
             self._small(cells[1].add_paragraph(), f"{row.symbol}{joined}{written}" if written else row.symbol)
             self._small(cells[2].paragraphs[0], f"{say.number(row.value)} {row.unit}".strip(), bold=True)
-            clause = f"[{row.clause}]" if row.clause else ""
-            self._small(cells[3].paragraphs[0], f"{clause}{MARKS[row.standing]}")
+            self._small(cells[3].paragraphs[0], f"{row.clause}{MARKS[row.standing]}")
             for cell, width in zip(cells, (1.1, 10.1, 3.2, 2.6), strict=True):
                 cell.width = Cm(width)
         self.document.add_paragraph()

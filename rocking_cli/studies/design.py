@@ -15,7 +15,7 @@ from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.structure import Varied
-from rocking_cli.studies.metrics import Metric, Shaking, metric
+from rocking_cli.studies.metrics import Metric, Shaking, metric, taken_otherwise
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
 from rocking_cli.units import UnitError, read, split
@@ -168,6 +168,8 @@ class Design:
         The neighbours of the motion that governs at each value; None of a metric that needs no motions.
     caution : str
         What to bear in mind with the lambda of the structure as given; empty if nothing.
+    taken_otherwise : sequence of str
+        Sentences on what the code takes otherwise than the structure gives it, at either end of the scan.
     """
 
     structure: str
@@ -183,6 +185,13 @@ class Design:
     not_built: Sequence[NotBuilt] = ()
     behind: Sequence[Neighbours | None] = ()
     caution: str = ""
+    taken_otherwise: Sequence[str] = ()
+
+    @property
+    def has_effect(self) -> bool:
+        """Whether the metric differs anywhere over the scan."""
+        there = self.metric[~np.isnan(self.metric)]
+        return there.size < 2 or not np.allclose(there, there[0], rtol=ROUNDING, atol=0.0)
 
     @property
     def everywhere(self) -> bool:
@@ -281,7 +290,21 @@ def design(
     return Design(
         name, varied.field, varied.unit, aim, varied.value, values, found, holds, monotone, value,
         _not_built(values, reasons), behind, varied.mechanism.own_caution(),
+        _taken_otherwise(varied, span, aim, shaking),
     )  # fmt: skip
+
+
+def _taken_otherwise(varied: Varied, span: tuple[float, float], aim: Aim, shaking: Shaking | None) -> Sequence[str]:
+    """What a code takes otherwise than the structure gives it at the ends of the range, each sentence once."""
+    if not aim.metric.sited or shaking is None or shaking.site is None:
+        return []
+    said: dict[str, None] = {}
+    for value in span:
+        try:
+            said |= dict.fromkeys(taken_otherwise(Prepared(varied.at(value)), shaking.site))
+        except (InputError, MechanismError):  # its reason is among those of `not_built`
+            continue
+    return list(said)
 
 
 def _at(varied: Varied, value: float, aim: Aim, shaking: Shaking | None) -> tuple[float, Neighbours | None, str | None]:

@@ -121,6 +121,11 @@ def _zeta(method: str) -> Callable[[Prepared, Shaking | None], float]:
     return value
 
 
+def taken_otherwise(structure: Prepared, site: SiteFile) -> Sequence[str]:
+    """Return what a verification takes otherwise than the structure gives it, such as ties by their force at rest."""
+    return verify(structure, site).taken_otherwise
+
+
 METRICS: Mapping[str, Metric] = {
     each.name: each
     for each in (

@@ -41,6 +41,7 @@ def data(found: Design) -> dict[str, Any]:
         "monotone": found.monotone,
         "scan": {"values": found.values.tolist(), "metric": found.metric.tolist(), **_unknown_data(found)},
         "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
+        "taken_otherwise": list(found.taken_otherwise),
         "verdict": answer(found),
     }
 
@@ -107,8 +108,10 @@ def answer(found: Design) -> str:
 
 def doubts(found: Design, shaking: Shaking | None) -> list[str]:
     """What to know of the answer."""
-    said = []
+    said = list(found.taken_otherwise)
     count = len(found.values)
+    if not found.has_effect and not found.aim.metric.shaken:
+        said.append(f"{found.aim.metric.name} is the same at every value tried: {found.field} has no effect on it.")
     if not found.monotone and np.isfinite(found.metric).any():
         closer = "the edges given are values tried" if found.aim.metric.shaken else "the edges given lie between them"
         said.append(

@@ -13,9 +13,13 @@ ELASTIC = 0.97  # a restitution from kinematics above which tests found less
 
 
 def restitution_source(mechanism: Mechanism) -> str:
-    """Where the restitution of a structure comes from: given, of the kinematics, or of impacts in sequence."""
+    """Where the restitution of a structure comes from: given, of the kinematics, of impacts in sequence, or missing."""
     given = mechanism.restitution if mechanism.rocks_both_ways else mechanism.rebound
-    return "given" if given is not None else "kinematics" if mechanism.rocks_both_ways else "impacts"
+    if given is not None:
+        return "given"
+    if mechanism.rocks_both_ways:
+        return "kinematics"
+    return "missing" if mechanism.rebound_from_impacts() is None else "impacts"
 
 
 def restitution_data(structure: Prepared) -> dict[str, Any]:
@@ -31,8 +35,13 @@ def restitution_used(structure: Prepared) -> str:
     """Return a sentence on the restitution that the histories used."""
     source = restitution_source(structure.mechanism)
     if not structure.mechanism.rocks_both_ways:
-        how = "as given" if source == "given" else "computed from a sequence of impacts after Housner, not measured"
         sense = SENSE[structure.mechanism.directions[0]]
+        if source == "missing":
+            return (
+                f"The structure rocks {sense} only, away from its side walls. Its rebound is not given: static results "
+                "do not depend on it, time histories require it."
+            )
+        how = "as given" if source == "given" else "computed from a sequence of impacts after Housner, not measured"
         return (
             f"The structure rocks {sense} only, away from its side walls. After an impact on them, its angular "
             f"velocity is {structure.etas[0]:.4g} of that before (the rebound, {how})."

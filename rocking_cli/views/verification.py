@@ -8,7 +8,7 @@ from typing import Any
 
 from rocking_cli import names
 from rocking_cli.studies.verification.results import Dynamic, Method, RecordPeak, State, Verification, Verified
-from rocking_cli.studies.verification.ties import carried, elastic
+from rocking_cli.studies.verification.ties import pulls
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views import verification_words as words
 from rocking_cli.views.view import ABSENT, Table, View, heading, number
@@ -58,7 +58,7 @@ def _same_peaks(one: Dynamic | None, other: Dynamic | None) -> bool:
 
 
 def _of_direction(found: Verification, each: Verified, where: str) -> list[Table | str]:
-    parts: list[Table | str] = [_capacity(each, where), _methods(each)]
+    parts: list[Table | str] = [_capacity(each, where), *_pulls(each), _methods(each)]
     parts.append(words.verdict(each, found.first, where))
     parts += words.differences(each, found.first)
     parts += words.beyond_first(each, found.first)
@@ -87,7 +87,7 @@ def _site(found: Verification) -> Table:
 
 def _clause(line: Working) -> str:
     """Where a formula is in the code, and that it is our reading where it is."""
-    return line.clause if line.standing == "code" else f"{line.clause}, ours"
+    return f"{line.clause}, ours" if line.standing == "ours" else line.clause
 
 
 def _capacity(each: Verified, where: str) -> Table:
@@ -126,7 +126,7 @@ def _methods(each: Verified) -> Table:
             continue
         line = each.straight_methods[key]
         years = [_years(method)] if known else []
-        governs = "governs" if key == each.governs else ""
+        governs = "governs" if key in each.governing.values() else ""
         rows.append(
             [
                 method.title,
@@ -192,8 +192,8 @@ def _data(each: Verified) -> dict[str, Any]:
         "M_star": each.M,
         "a0_star": each.a0,
         "d0_star": each.d0,
-        "states": {name: _state(at) for name, at in each.states.items()},
-        **({"ties": _ties(each)} if elastic(each.chain.mechanism) else {}),
+        "states": {name: _state(each, name, at) for name, at in each.states.items()},
+        **({"ties": ties} if (ties := _ties(each)) else {}),
         "a_g": {key: method.a_g for key, method in each.methods.items() if key != "SLD"},
         "zeta": {key: method.zeta for key, method in each.methods.items()},
         "governs": each.governs,
@@ -202,14 +202,32 @@ def _data(each: Verified) -> dict[str, Any]:
     }
 
 
-def _state(at: State) -> dict[str, float | None]:
-    return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio}
+def _state(each: Verified, name: str, at: State) -> dict[str, Any]:
+    passes = each.passes(name)
+    by = {"governs": each.governing[name] if passes is not None else None, "passes": passes}
+    return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio, **by}
 
 
-def _ties(each: Verified) -> dict[str, dict[str, float]]:
-    """What each elastic tie carries at the limit states [N]."""
-    forces = {name: carried(each.exact, at.d) for name, at in each.states.items()}
-    return {tie: {f"force_{name}": known[tie] for name, known in forces.items()} for tie in next(iter(forces.values()))}
+def _ties(each: Verified) -> dict[str, dict[str, float | None]]:
+    """Force [N], elongation [m] and strain of each tie, and of each force against the motion, at the limit states."""
+    found: dict[str, dict[str, float | None]] = {}
+    for key in ("force", "elongation", "strain"):
+        for name, at in each.states.items():
+            for pull in pulls(each.exact, at.d):
+                found.setdefault(pull.name, {})[f"{key}_{name}"] = getattr(pull, key)
+    return found
+
+
+def _pulls(each: Verified) -> list[Table]:
+    """Table of the ties, and of the forces against the motion, at each limit state; none if there are none."""
+    rows = [
+        [pull.name, f"d_{state}", number(pull.force / 1e3), number(pull.elongation, 4),
+         ABSENT if pull.strain is None else number(100 * pull.strain, 3)]
+        for state, at in each.states.items() for pull in pulls(each.exact, at.d)
+    ]  # fmt: skip
+    heads = ["", "at", "force\n[kN]", "elongation\n[m]", "elongation\n[%]"]
+    title = "Ties, and forces against the motion with the way of their points"
+    return [Table(title, heads, rows, numbers=(2, 3, 4))] if rows else []
 
 
 def _return_periods(methods: Mapping[str, Method]) -> dict[str, dict[str, Any]]:
@@ -228,6 +246,9 @@ def _histories(found: Dynamic) -> dict[str, Any]:
         }
 
     return {
+        "state": next(iter(found.allowed)),
+        "motions": found.motions.kind,
+        "floor": found.motions.floor,
         "records": [
             {
                 "name": each.name,

@@ -17,26 +17,31 @@ def verdict(found: Verified, first: str, where: str) -> str:
 
     `where` names the direction.
     """
-    at, counts = found.states[first], found.counts
+    said = _verdict_at(found, first, "")
+    return f"{where}: the site does not give {first}." if said is None else f"{where}, {said}"
+
+
+def _verdict_at(found: Verified, state: str, suffix: str) -> str | None:
+    """State whether a direction passes at a limit state; None if the site does not give it.
+
+    `suffix` ends the names of the methods of this limit state.
+    """
+    at, counts = found.states[state], found.methods[found.governing[state]]
     if at.demand is None or at.ratio is None or counts.a_g is None or counts.asked is None or counts.zeta is None:
-        return f"{where}: the site does not give {first}."
+        return None
+    outcome = f"{state}: {'passes' if found.passes(state) else 'fails'}."
     held = (
         f"the displacement capacity, {at.d:.4g} m, is {at.ratio:.3g} times the demand of {at.demand:.4g} m at T = "
         f"{at.T:.3g} s"
     )
-    passes = found.passes(first)
-    if found.governs == "damage":
-        by_displacement = found.methods["nonlinear"].a_g or 0.0
+    capacity = f"Capacity a_g = {counts.a_g:.4g} g, demand {counts.asked:.4g} g: zeta_E = {counts.zeta:.3g}."
+    if found.governing[state] == f"damage{suffix}":
+        by_displacement = found.methods[f"nonlinear{suffix}"].a_g or 0.0
         return (
-            f"{where}, {first}: {'passes' if passes else 'fails'}. The damage method governs: the structure does not "
-            f"start to rock below a_g = {counts.a_g:.4g} g, while its capacity by displacement alone is "
-            f"{by_displacement:.4g} g; {held}. Capacity a_g = {counts.a_g:.4g} g, demand {counts.asked:.4g} g: zeta_E "
-            f"= {counts.zeta:.3g}."
+            f"{outcome} The damage method governs: the structure does not start to rock below a_g = {counts.a_g:.4g} "
+            f"g, while its capacity by displacement alone is {by_displacement:.4g} g; {held}. {capacity}"
         )
-    return (
-        f"{where}, {first}: {'passes' if passes else 'fails'}. The nonlinear method governs: {held}. Capacity a_g = "
-        f"{counts.a_g:.4g} g, demand {counts.asked:.4g} g: zeta_E = {counts.zeta:.3g}."
-    )
+    return f"{outcome} The nonlinear method governs: {held}. {capacity}"
 
 
 def differences(found: Verified, first: str) -> Iterator[str]:
@@ -71,12 +76,10 @@ def differences(found: Verified, first: str) -> Iterator[str]:
 
 def beyond_first(found: Verified, first: str) -> Iterator[str]:
     """State whether the direction passes at the other limit states that the site gives."""
-    for name, at in found.states.items():
-        if name != first and at.demand is not None and at.ratio is not None:
-            yield (
-                f"{name}: {'passes' if at.passes else 'fails'}. The displacement capacity, {at.d:.4g} m, is "
-                f"{at.ratio:.3g} times the demand of {at.demand:.4g} m at T = {at.T:.3g} s."
-            )
+    for name in found.states:
+        said = _verdict_at(found, name, f"_{name}") if name != first else None
+        if said is not None:
+            yield said
     damage = found.methods.get("SLD")
     if damage is not None and damage.zeta is not None and damage.asked is not None and damage.a_g is not None:
         yield (
@@ -86,7 +89,8 @@ def beyond_first(found: Verified, first: str) -> Iterator[str]:
 
 
 def of_histories(found: Dynamic, FC: float) -> Iterator[str]:
-    """State the result of the time histories, with FC (the verdict) and without it."""
+    """State what the records are, and the result of the time histories, with FC (the verdict) and without it."""
+    yield _belonging(found)
     for confident in (True, False) if FC != 1 else (True,):
         yield _of_some(found, confident=confident)
     if FC != 1:
@@ -105,6 +109,24 @@ def of_histories(found: Dynamic, FC: float) -> Iterator[str]:
             f"{'Only one record was' if count == 1 else f'Only {count} records were'} used: the code requires at "
             f"least {found.enough} before the mean may be used."
         )
+
+
+MOVES = {
+    "as_given": "The motions act on the structure as given",
+    "carried_to_floor": "The ground motions are carried to the floor of the site, {floor}, by its first mode",
+    "carried_by_option": "The ground motions are carried to the floor given with the records, {floor}",
+    "of_floor": "The motions are taken as motions of the floor, as stated, and not of the ground",
+}
+"""What the motions of the histories are, by `Moves`."""
+
+
+def _belonging(found: Dynamic) -> str:
+    """State to which limit state the records belong, and what they are motions of."""
+    (state,) = found.allowed
+    return (
+        f"The records belong to {state} and are checked against this limit state alone. "
+        f"{MOVES[found.motions.kind].format(floor=found.motions.floor)}."
+    )
 
 
 def _of_some(found: Dynamic, *, confident: bool) -> str:
@@ -151,11 +173,17 @@ def which_direction(found: Verification) -> str:
 
 def standing(workings: Sequence[Working]) -> str:
     """State how far the formulas were checked against the code."""
-    ours = {each.symbol.partition(",")[0]: each.meaning for each in workings if each.standing == "ours"}
-    said = (
-        "The clauses name the place of each formula in the code. None of the formulas has been checked against the "
-        "printed code yet: have them checked before you rely on a verdict."
+    ours, unchecked, transcribed = (
+        {each.symbol.partition(",")[0]: each.meaning for each in workings if each.standing == standing}
+        for standing in ("ours", "code", "transcription")
     )
+    said = (
+        "The clauses name the place of each formula in the code: [formula] or §section. None of the formulas has been "
+        "checked against the printed code yet: have them checked before you rely on a verdict."
+    )
+    if transcribed:
+        others = f", except for {', '.join(unchecked)}" if unchecked else ""
+        said = f"{said} They agree with a transcription of its text{others}."
     if not ours:
         return said
     named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())

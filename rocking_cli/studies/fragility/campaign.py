@@ -6,13 +6,14 @@ import platform
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
-from math import isclose, nan
+from math import isclose, isnan, nan
 from typing import Any
 
 from rocking_cli import __version__
 from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equivalent_block
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
+from rocking_cli.dynamics.model import NO_REBOUND
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
@@ -231,6 +232,8 @@ def _trial(study: Study, sample: Sample) -> Trial:
     try:
         p, lambda_, rotations = _mechanics(mechanism, study.definition)
         least = min(mechanism.eta(side) for side in mechanism.directions)
+        if study.definition.eta is None and isnan(least):
+            raise InputError(NO_REBOUND)
         if study.definition.eta is None and mechanism.rocks_both_ways and least <= 0:
             raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
     except RockingError as error:

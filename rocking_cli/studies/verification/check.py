@@ -15,8 +15,9 @@ from rocking_cli.io.yaml_file import Document
 from rocking_cli.studies.verification import dynamic, site_file
 from rocking_cli.studies.verification.chain import Control
 from rocking_cli.studies.verification.codes import codes
-from rocking_cli.studies.verification.results import Dynamic, Verification
+from rocking_cli.studies.verification.results import Dynamic, Motions, Verification
 from rocking_cli.studies.verification.site_file import Site, SiteFile
+from rocking_cli.text import did_you_mean
 
 
 def read_site(path: Path) -> SiteFile:
@@ -87,21 +88,46 @@ def with_histories(
     motions: Sequence[GroundMotion],
     signs: Sequence[int],
     progress: Callable[[int], object] = int,
+    *,
+    state: str | None = None,
+    on_floor: bool = False,
 ) -> Verification:
-    """The same with histories under records, as scaled; `progress` is told of each record.
+    """Return a verification with time histories under a set of records.
+
+    Parameters
+    ----------
+    found : Verification
+        The verification by the static methods.
+    structure : Prepared
+        The structure.
+    site : SiteFile
+        The site.
+    motions : sequence of GroundMotion
+        The records, as scaled. If the site has a floor, ground motions are carried to it.
+    signs : sequence of int
+        Polarities, of 1 and -1.
+    progress : callable
+        Called with 1 after each record.
+    state : str, optional
+        The limit state to which the records belong; by default the first one.
+    on_floor : bool
+        Whether the motions are those of the floor of the site, and not of the ground.
 
     Raises
     ------
     InputError
-        If there is no motion, or the restitution is none that a history can have.
+        If there is no motion, the site does not give the limit state, it has no floor on which the motions could be, or
+        the restitution is none that a history can have.
     SolverError
         If a motion cannot be followed to its end.
     """
     taken = structure if found.mechanism is structure.mechanism else Prepared(found.mechanism, structure.file)
     model = taken.model("nonlinear")
     curves = {direction: each.exact for direction, each in found.directions.items()}
+    state = _state_of_records(found, state)
+    what, moved = _where_it_stands(site, motions, state, on_floor=on_floor)
     every = []
-    for motion in motions:
+    for motion in moved:
         every.append(dynamic.peaks(model, curves, motion, signs))
         progress(1)
     enough = codes()[site.site.code].records
@@ -111,11 +137,49 @@ def with_histories(
             dynamic=Dynamic(
                 [peak[direction] for peak in every],
                 each.d0,
-                {state: at.d for state, at in each.states.items()},
+                {state: each.states[state].d},
                 enough,
                 checked=model.joints is not None,
+                motions=what,
             ),
         )
         for direction, each in found.directions.items()
     }
     return replace(found, directions=directions)
+
+
+def _state_of_records(found: Verification, state: str | None) -> str:
+    """Return the limit state of a set of records. Raises `InputError` if the site does not give it."""
+    if state is None:
+        return found.first
+    states = next(iter(found.directions.values())).states
+    if state not in states:
+        hint = did_you_mean(state, list(states)) or f"give one of {', '.join(states)}"
+        raise InputError(Problem(f"{state!r} is not a limit state of displacement", field="`state`", hint=hint))
+    if states[state].demand is None:
+        hint = f"give {state} in the site file: the records must match its spectrum"
+        raise InputError(Problem(f"{state} is not given by the site", field="`state`", hint=hint))
+    return state
+
+
+def _where_it_stands(
+    site: SiteFile, motions: Sequence[GroundMotion], state: str, *, on_floor: bool
+) -> tuple[Motions, Sequence[GroundMotion]]:
+    """Carry ground motions to the floor of a site. Raises `InputError` if they cannot be of the floor or are mixed."""
+    floor = codes()[site.site.code].floor(site.site, state)
+    carried = [motion.ground is not None for motion in motions]
+    if on_floor and floor is None:
+        hint = "give `floor` in the site file, or leave the option out"
+        raise InputError(Problem("requires a site with a floor", field="`on_floor`", hint=hint))
+    if any(carried) and on_floor:
+        hint = "leave out one of the two: `floor` carries ground motions to a floor"
+        raise InputError(Problem("cannot be combined with `floor`", field="`on_floor`", hint=hint))
+    if any(carried) and not all(carried):
+        raise InputError(Problem("some of the motions are of a floor, others of the ground: give motions of one kind"))
+    if on_floor:
+        return Motions("of_floor"), motions
+    if carried and all(carried):
+        return Motions("carried_by_option", motions[0].processing[-1].removeprefix("floor ")), motions
+    if floor is None:
+        return Motions(), motions
+    return Motions("carried_to_floor", str(floor)), [floor.of(motion) for motion in motions]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rocking_cli.core import Mechanism
+from rocking_cli.processing.floor import Floor
 from rocking_cli.studies.verification.chain import Control
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.site_file import Site
@@ -30,6 +31,8 @@ class Code:
         How many records it wants for histories.
     verify : callable
         Verifies a mechanism at a site, with a control point or None for its own choice.
+    floor : callable, optional
+        Gives the floor of a site on which the structure stands, at a limit state; None if it stands on the ground.
     """
 
     key: str
@@ -39,3 +42,4 @@ class Code:
     starter: str
     records: int
     verify: Callable[[Mechanism, Any, Control | None], Verification]
+    floor: Callable[[Any, str], Floor | None] = lambda site, state: None

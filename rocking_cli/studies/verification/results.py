@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
+from typing import Literal
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.verification.capacity import ExactCurve
@@ -110,6 +111,28 @@ class RecordPeak:
         return self.known_to_with_confidence if confident else self.known_to_without
 
 
+Moves = Literal["as_given", "carried_to_floor", "carried_by_option", "of_floor"]
+"""What the motions of histories are: those given, where the site has no floor; ground motions carried to the floor of
+the site, or to that given with the records; or motions of the floor, as the user states."""
+
+
+@dataclass(frozen=True)
+class Motions:
+    """What moves the structure in histories.
+
+    Parameters
+    ----------
+    kind : str
+        One of `Moves`.
+    floor : str or None
+        The floor to which ground motions are carried: period [s], damping ratio, height over that of the building and
+        participation factor.
+    """
+
+    kind: Moves = "as_given"
+    floor: str | None = None
+
+
 @dataclass(frozen=True)
 class Dynamic:
     """What histories say of a direction.
@@ -121,11 +144,13 @@ class Dynamic:
     d0 : float
         Displacement that no record may pass [m].
     allowed : mapping of str to float
-        The displacement of each limit state that the mean may reach [m].
+        The displacement that the mean may reach at the limit state to which the records belong [m].
     enough : int
         How many records the code wants.
     checked : bool
         Whether the joints of the structure are known; if not, no outcome is said to be unknown.
+    motions : Motions
+        What the records are motions of.
     """
 
     records: Sequence[RecordPeak]
@@ -133,6 +158,7 @@ class Dynamic:
     allowed: Mapping[str, float]
     enough: int
     checked: bool = True
+    motions: Motions = Motions()
 
     def mean(self, *, confident: bool) -> float | None:
         """The mean of the largest displacements [m]; None where one overturned, passed d0* or is unknown."""
@@ -175,8 +201,10 @@ class Verified:
         The limit states on the exact curve, and on the straight line.
     methods, straight_methods : mapping of str to Method
         What each method says on either.
+    governing : mapping of str to str
+        The method that governs at each limit state.
     governs : str
-        The method that counts.
+        The method that governs at the first one.
     workings : sequence of Working
         How its numbers came about.
     remarks : sequence of str
@@ -195,6 +223,7 @@ class Verified:
     straight_states: Mapping[str, State]
     methods: Mapping[str, Method]
     straight_methods: Mapping[str, Method]
+    governing: Mapping[str, str]
     governs: str
     workings: Sequence[Working]
     remarks: Sequence[str]
@@ -207,12 +236,12 @@ class Verified:
 
     @property
     def counts(self) -> Method:
-        """The method that governs."""
+        """The method that governs at the first limit state."""
         return self.methods[self.governs]
 
     def passes(self, state: str) -> bool | None:
         """Whether it passes at a limit state by what governs; None where the site does not give it."""
-        held = self.counts.passes
+        held = self.methods[self.governing[state]].passes
         return None if held is None else held or bool(self.states[state].passes)
 
 
@@ -234,6 +263,8 @@ class Verification:
         Of what is the same in both, such as the ground.
     remarks : sequence of str
         Sentences on the whole.
+    taken_otherwise : sequence of str
+        Those of them on what was taken otherwise than the structure gives it.
     """
 
     mechanism: Mechanism
@@ -244,6 +275,7 @@ class Verification:
     directions: Mapping[Direction, Verified]
     workings: Sequence[Working]
     remarks: Sequence[str]
+    taken_otherwise: Sequence[str] = ()
 
     @property
     def governs(self) -> Direction:

@@ -1,16 +1,90 @@
-"""Elastic ties, of which nobody gave the strength, as verifications take them."""
+"""Ties, and forces that stand for them, as verifications take them: their strength is not known."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.attached import Spring
+from rocking_cli.core.attached import ConstantForce, Follow, Spot, Spring
 from rocking_cli.core.ties import Tie
 from rocking_cli.studies.verification.capacity import ExactCurve
 from rocking_cli.studies.verification.chain import Chain
+from rocking_cli.studies.verification.displaced import Displaced
+
+STRETCHED = 0.02
+"""Elongation of a tie over its length from which the output warns: steel yields at a tenth of it."""
+WIDE = 0.8
+"""Displacement of the centroid of a block over half its thickness from which the output warns; it falls at 1."""
+
+
+@dataclass(frozen=True)
+class Pull:
+    """A tie at a displacement, or a force against the motion that may stand for one.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    force : float
+        Its force there [N], tension positive.
+    elongation : float
+        How much longer it is than at rest; of a force, how far its point has moved against it [m].
+    strain : float or None
+        The elongation over the length of the tie; None if that is not known, as of a force.
+    """
+
+    name: str
+    force: float
+    elongation: float
+    strain: float | None
+
+
+def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
+    """Return the ties, and the forces against the motion, at a displacement; beds of springs are not among them."""
+    chain, phi = curve.chain, curve.rotation(d)
+    follow = chain.mechanism.followed(np.array([phi]), chain.direction)
+    lengths = {tie.name: tie.length or tie.span for tie in chain.mechanism.ties or [] if tie.bed is None}
+    loads = {load.name for load in chain.mechanism.loads or []}
+    found = []
+    for thing in chain.mechanism.attached:
+        if isinstance(thing, Spring):
+            e = thing.elongation(follow)[0]
+            found.append(
+                Pull(thing.name, float(thing.force(e)[0]), float(e[0]), _over(float(e[0]), lengths[thing.name]))
+            )
+        elif isinstance(thing, ConstantForce) and thing.name in loads:
+            force = thing.in_direction(chain.direction)
+            if chain.direction * force.real < 0:
+                found.append(Pull(thing.name, abs(force), _against(thing.spot, force, follow), None))
+    return found
+
+
+def _over(elongation: float, length: float) -> float | None:
+    return elongation / length if length else None
+
+
+def _against(spot: Spot, force: complex, follow: Follow) -> float:
+    moved = complex(follow(spot).z[0]) - spot.at
+    return -(moved.conjugate() * force).real / abs(force)
+
+
+def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:
+    """Return how far the centroid of a block goes sideways at a displacement, and the thickness of that block [m].
+
+    Of several blocks, those of the largest ratio; (0, 1) if no outline is known.
+    """
+    drawn = curve.chain.mechanism.sketch().outlines
+    own = {body.name: [body.outline] for body in curve.chain.mechanism.bodies() if body.outline}
+    found = [(0.0, 1.0)]
+    for moved in Displaced(curve, curve.rotation(d)).blocks:
+        lines = [line for name in moved.block.bodies for line in own.get(name) or drawn.get(name, ())]
+        x = [complex(corner).real for line in lines for corner in line]
+        if x and max(x) > min(x):
+            found.append((moved.gone, max(x) - min(x)))
+    return max(found, key=lambda pair: pair[0] / pair[1])
 
 
 def elastic(mechanism: Mechanism) -> Sequence[Tie]:

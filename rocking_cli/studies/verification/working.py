@@ -3,16 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Self
 
-Standing = Literal["code", "ours", "plain"]
-"""Of a formula: of the code, and not yet checked against its printed text; ours, where the code leaves it open; or
-plain mechanics and arithmetic, which need no code."""
+Standing = Literal["transcription", "code", "ours", "plain"]
+"""Of a formula: of the code, and checked against a transcription of its text but not yet against its print; of the
+code, and not yet checked; ours, where the code leaves it open; or plain mechanics and arithmetic."""
 MEANING: dict[Standing, str] = {
-    "code": "a formula of the code that has not yet been checked against its printed text",
+    "transcription": "a formula of the code, checked against a transcription of its text but not yet against its print",
+    "code": "a formula of the code that has not yet been checked against its text",
     "ours": "our reading, or our choice where the code leaves it open",
     "plain": "mechanics or arithmetic, which need no code",
 }
+
+
+class Clause(str):
+    """A place in a code; transcribed if what it says was checked against a transcription of the text."""
+
+    __slots__ = ("transcribed",)
+    transcribed: bool
+
+    def __new__(cls, place: str, *, transcribed: bool = False) -> Self:
+        """Make a clause of a place."""
+        clause = super().__new__(cls, place)
+        clause.transcribed = transcribed
+        return clause
 
 
 @dataclass(frozen=True)
@@ -35,8 +49,8 @@ class Working:
         Its unit; empty for a pure number.
     clause : str
         Where in the code.
-    standing : {"code", "ours", "plain"}
-        How far the formula was checked, see `MEANING`.
+    standing : {"transcription", "code", "ours", "plain"}
+        How far the formula was checked, see `MEANING`; of a formula of the code its clause decides.
     """
 
     symbol: str
@@ -47,3 +61,7 @@ class Working:
     unit: str
     clause: str
     standing: Standing = "code"
+
+    def __post_init__(self) -> None:
+        if self.standing == "code" and isinstance(self.clause, Clause) and self.clause.transcribed:
+            object.__setattr__(self, "standing", "transcription")

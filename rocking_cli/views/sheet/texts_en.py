@@ -39,10 +39,11 @@ TEXTS = {
         "limit state in the heading."
     ),
     "reading_marks": (
-        "† marks a formula of the code that has not yet been checked against its printed text: check it there before "
-        "you rely on the verdict. ‡ marks our reading, or our choice where the code is silent. Unmarked lines are "
-        "mechanics or arithmetic. Clauses that begin with C are those of Circolare 7/2019, the others those of NTC "
-        "2018."
+        "Formulas of the code are cited as [3.2.2] and sections as §8.3; those that begin with C are of Circolare "
+        "7/2019, the others of NTC 2018. * marks a formula that was checked against a transcription of the code, but "
+        "not yet against its printed text; † one that has not yet been checked: check both there before you rely on "
+        "the verdict. ‡ marks our reading, or our choice where the code is silent. Unmarked lines are mechanics or "
+        "arithmetic."
     ),
     "per_kilogram": "The file gives no masses: weights are per kilogram of the whole structure, in N/kg.",
     # summary
@@ -106,8 +107,8 @@ TEXTS = {
     "given_topography": "topographic class",
     "given_z": "height of the floor above the foundation",
     "given_H": "height of the building",
-    "given_T1": "first period of the building",
-    "given_xi1": "damping of the building, a ratio",
+    "given_T1": "first period of the building, {state}",
+    "given_xi1": "damping of the building, a ratio, {state}",
     "given_n": "number of storeys",
     "ground_at": "Ground at {state}",
     "free": (
@@ -166,6 +167,10 @@ TEXTS = {
     ),
     "action": "force or tie",
     "held": "Work of forces F and of ties N at the virtual displacements, r′ along the force and L′ the elongation",
+    "tie": "tie",
+    "ties_at": (
+        "Ties at {state}: force and elongation; of a force against the motion, how far its point has moved against it"
+    ),
     "Py": "work of the weights carried",
     "L": "work of forces and ties",
     "V_m": "work added by the mechanism itself, such as by loads among its fields: taken as given",
@@ -196,17 +201,21 @@ TEXTS = {
     "a_elastic": "not above the elastic branch of T_[0]",
     "T": "period at {state}",
     "passes": "displacement capacity over demand at {state}: satisfied, at least 1",
+    "passes_still": ("displacement capacity over demand at {state}: below 1, but satisfied, as rocking does not start"),
     "fails": "displacement capacity over demand at {state}: not satisfied, below 1",
     # methods
     "method_damage": "Damage: onset of rocking",
+    "method_damage_SLC": "Damage: onset of rocking, at SLC",
     "method_linear": "Linear method: behaviour factor q",
     "method_nonlinear": "Nonlinear method, displacement at SLV",
     "method_nonlinear_SLC": "Nonlinear method, displacement at SLC",
     "method_SLD": "Damage, checked at SLD",
     "and_line": "on the straight line",
-    "qa0": "capacity of the linear method",
+    "linear_at": "Linear method: q times the onset of rocking, by the ground of {state}",
+    "mode_of_SLD": "T_[1] and ξ_[1] are here those of SLD.",
+    "a_g_start": "ground acceleration on rock at which rocking starts, by the ground of {state}",
     "a_g_method": "capacity as a ground acceleration on rock",
-    "a_g_solved": "capacity as a ground acceleration on rock, found by iteration",
+    "iterated": "{what}, found by iteration",
     "check": "Check, with the ground of {state} at this a_[g]: F_[0], T_[C] and S unchanged, T_[D] recomputed.",
     "zeta": "capacity over demand at {state}",
     "TR_capacity": "capacity as a return period, found by iteration",
@@ -216,10 +225,17 @@ TEXTS = {
     # dynamic
     "dynamic": "Dynamic method",
     "dynamic_is": (
-        "Time histories on the capacity curve with restitution [C8.7.1.2.1.9]: the verification is satisfied if no "
+        "Time histories on the capacity curve with restitution (§C8.7.1.2.1.9): the verification is satisfied if no "
         "record takes the structure past d_[0]^[*] = {d0:.6g} m and the mean peak displacement is within the "
-        "displacement capacity of the limit state."
+        "displacement capacity of {state}, to which the records belong; they verify no other limit state."
     ),
+    "as_given": "The motions act on the structure as given.",
+    "carried_to_floor": (
+        "The ground motions are carried to the floor by the first mode of the building: {floor}, z over the height of "
+        "the building."
+    ),
+    "carried_by_option": "The ground motions are carried to the floor given with the records: {floor}.",
+    "of_floor": "The motions are taken as motions of the floor, as stated, and not of the ground.",
     "dynamic_table": "Peak displacement d [m]",
     "record": "record",
     "with_FC": "with FC",

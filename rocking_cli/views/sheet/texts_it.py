@@ -67,10 +67,11 @@ TEXTS = {
         "valore calcolato più sopra; quelli dell'azione sismica sono dello stato limite indicato nel titolo."
     ),
     "reading_marks": (
-        "† indica una formula della norma non ancora confrontata con il testo a stampa: va controllata prima di fare "
-        "affidamento sull'esito. ‡ indica una nostra lettura, o una nostra scelta dove la norma lascia libertà. Ciò "
-        "che non ha segno è meccanica o aritmetica. I punti che iniziano con C sono della Circolare 7/2019, gli altri "
-        "delle NTC 2018."
+        "Le formule della norma sono citate come [3.2.2] e i punti come §8.3: quelli che iniziano con C sono della "
+        "Circolare 7/2019, gli altri delle NTC 2018. * indica una formula confrontata con una trascrizione della "
+        "norma, ma non ancora con il testo a stampa; † una non ancora confrontata: entrambe vanno controllate prima di "
+        "fare affidamento sull'esito. ‡ indica una nostra lettura, o una nostra scelta dove la norma lascia libertà. "
+        "Ciò che non ha segno è meccanica o aritmetica."
     ),
     "per_kilogram": "Il file non assegna le masse: i pesi sono per chilogrammo dell'intera struttura, in N/kg.",
     # summary
@@ -133,8 +134,8 @@ TEXTS = {
     "given_topography": "categoria topografica",
     "given_z": "quota del piano dalla fondazione",
     "given_H": "altezza dell'edificio",
-    "given_T1": "primo periodo dell'edificio",
-    "given_xi1": "smorzamento dell'edificio, come rapporto",
+    "given_T1": "primo periodo dell'edificio, {state}",
+    "given_xi1": "smorzamento dell'edificio, come rapporto, {state}",
     "given_n": "numero di piani",
     "ground_at": "Azione sismica allo {state}",
     "free": (
@@ -195,6 +196,11 @@ TEXTS = {
     "action": "forza o tirante",
     "held": "Lavoro delle forze F e dei tiranti N negli spostamenti virtuali, r′ nel verso della forza e L′ "
     "l'allungamento",
+    "tie": "tirante",
+    "ties_at": (
+        "Tiranti allo {state}: forza e allungamento; di una forza contraria al moto, lo spostamento del suo punto "
+        "contro di essa"
+    ),
     "Py": "lavoro dei pesi portati",
     "L": "lavoro delle forze e dei tiranti",
     "V_m": "quanto il meccanismo stesso aggiunge al lavoro, come i carichi tra i suoi dati: si assume assegnato",
@@ -225,17 +231,24 @@ TEXTS = {
     "a_elastic": "non oltre il ramo elastico di T_[0]",
     "T": "periodo allo {state}",
     "passes": "spostamento ammesso diviso domanda allo {state}: verifica soddisfatta, almeno 1",
+    "passes_still": (
+        "spostamento ammesso diviso domanda allo {state}: minore di 1, ma verifica soddisfatta, perché il meccanismo "
+        "non si attiva"
+    ),
     "fails": "spostamento ammesso diviso domanda allo {state}: verifica non soddisfatta, minore di 1",
     # methods
     "method_damage": "Attivazione del meccanismo",
+    "method_damage_SLC": "Attivazione del meccanismo, verifica a SLC",
     "method_linear": "Metodo lineare: fattore di comportamento q",
     "method_nonlinear": "Metodo non lineare, verifica a SLV",
     "method_nonlinear_SLC": "Metodo non lineare, verifica a SLC",
     "method_SLD": "Attivazione del meccanismo, verifica a SLD",
     "and_line": "sulla retta",
-    "qa0": "capacità del metodo lineare",
+    "linear_at": "Metodo lineare: q volte l'attivazione del meccanismo, con l'azione dello {state}",
+    "mode_of_SLD": "T_[1] e ξ_[1] sono qui quelli dello SLD.",
+    "a_g_start": "accelerazione al suolo su roccia che attiva il meccanismo, con l'azione dello {state}",
     "a_g_method": "accelerazione al suolo su roccia sopportata",
-    "a_g_solved": "accelerazione al suolo su roccia sopportata, per tentativi",
+    "iterated": "{what}, per tentativi",
     "check": "Controllo, con l'azione di {state} per questo a_[g]: F_[0], T_[C] e S fissi, T_[D] conseguente.",
     "zeta": "capacità divisa per la domanda allo {state}",
     "TR_capacity": "periodo di ritorno sopportato, per tentativi",
@@ -245,10 +258,17 @@ TEXTS = {
     # dynamic
     "dynamic": "Metodo dinamico",
     "dynamic_is": (
-        "Analisi nel tempo sulla curva di capacità, con restituzione [C8.7.1.2.1.9]: la verifica è soddisfatta se "
+        "Analisi nel tempo sulla curva di capacità, con restituzione (§C8.7.1.2.1.9): la verifica è soddisfatta se "
         "nessun accelerogramma supera d_[0]^[*] = {d0:.6g} m e la media degli spostamenti massimi non supera quello "
-        "dello stato limite."
+        "ammesso allo {state}, al quale gli accelerogrammi appartengono: non valgono per altri stati limite."
     ),
+    "as_given": "Gli accelerogrammi agiscono sulla struttura così come sono assegnati.",
+    "carried_to_floor": (
+        "Gli accelerogrammi al suolo sono portati alla quota del piano con il primo modo dell'edificio: {floor}, con z "
+        "diviso per l'altezza dell'edificio."
+    ),
+    "carried_by_option": "Gli accelerogrammi al suolo sono portati alla quota assegnata con essi: {floor}.",
+    "of_floor": "Gli accelerogrammi sono considerati, come dichiarato, moti del piano e non del suolo.",
     "dynamic_table": "Spostamento massimo d [m]",
     "record": "accelerogramma",
     "with_FC": "con FC",

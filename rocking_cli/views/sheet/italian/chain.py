@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from rocking_cli.core.attached import PointMass
 from rocking_cli.studies.verification.capacity import ExactCurve
 from rocking_cli.studies.verification.chain import Chain
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.displaced import Displaced, Moved
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Steps
 from rocking_cli.views.sheet.language import Language
 
-CLAUSE = "C8.7.1.1"
+CLAUSE = clauses.ALPHA0
 ROUNDING = 1e-12  # of the size of a thing: what is smaller is none
 NONE = 1e-9  # of what makes up a sum: what is left of it is none
 
@@ -241,11 +242,11 @@ def _sums(say: Language, chain: Chain, rest: Displaced, scale: Scale) -> Iterato
     total = scale.weight(chain.inertial)
     yield Working("Σ(P+Q)", say.say("PQ"), "Σ (P+Q)", _added(say, inertial), total, unit, CLAUSE)
     put, second = _sum_over(say, rest, scale, "PQxx")
-    yield Working("Σ(P+Q)x′^[2]", say.say("PQxx"), "Σ (P+Q) x′^[2]", put, second, f"{unit} m²", "C8.7.1.5")
+    yield Working("Σ(P+Q)x′^[2]", say.say("PQxx"), "Σ (P+Q) x′^[2]", put, second, f"{unit} m²", clauses.E_STAR)
     first = scale.weight(chain.first)
     put = say.put("{a}^[2]/({b} · {c})", a=first, b=total, c=second)
     formula = "[Σ (P+Q) x′]^[2]/(Σ (P+Q) · Σ (P+Q) x′^[2])"
-    yield Working("e^[*]", say.say("e"), formula, put, chain.e_star, "", "C8.7.1.5")
+    yield Working("e^[*]", say.say("e"), formula, put, chain.e_star, "", clauses.E_STAR)
     if chain.mechanism.has_mass:
         g = chain.mechanism.gravity
         put = say.put("1000 · {e} · {PQ}/{g}", e=chain.e_star, PQ=total, g=g)

@@ -17,7 +17,8 @@ def part(say: Language, each: Verified, found: Dynamic, key: str) -> Part:
     ]
     heads = [say.say("record"), say.say("with_FC"), say.say("without_FC")]
     items: list[Item] = [
-        Sentence(say.say("dynamic_is", d0=found.d0)),
+        Sentence(say.say("dynamic_is", d0=found.d0, state=next(iter(found.allowed)))),
+        Sentence(say.say(found.motions.kind, floor=found.motions.floor)),
         Grid(say.say("dynamic_table"), heads, rows, (1, 2)),
     ]
     for confident in (True, False) if each.exact.confidence != 1 else (True,):

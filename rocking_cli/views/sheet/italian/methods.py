@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum, Spectrum
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
-from rocking_cli.studies.verification.results import Method, State, Verified
+from rocking_cli.studies.verification.results import Method, Verified
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Item, Part, Sentence, Steps
 from rocking_cli.views.sheet.italian import spectra
@@ -16,7 +17,14 @@ from rocking_cli.views.sheet.italian.site import hazard_at, is_close
 from rocking_cli.views.sheet.italian.states import LINE
 from rocking_cli.views.sheet.language import Language
 
-STATE = {"damage": "SLV", "linear": "SLV", "nonlinear": "SLV", "nonlinear_SLC": "SLC", "SLD": "SLD"}
+STATE = {
+    "damage": "SLV",
+    "damage_SLC": "SLC",
+    "linear": "SLV",
+    "nonlinear": "SLV",
+    "nonlinear_SLC": "SLC",
+    "SLD": "SLD",
+}
 RULE = {"nonlinear": RULES[0], "nonlinear_SLC": RULES[1]}
 
 
@@ -57,28 +65,32 @@ class Methods:
         for name, method in self.found.methods.items():
             if method.a_g is None:
                 continue
+            if name == "linear":
+                heading = self.say.say("linear_at", state=self.ground.state_of_activation)
+                yield Part(f"{key}-{name}", heading, list(self._linear(method)))
+                continue
             heading = self.say.say(f"method_{name}")
-            yield Part(
-                f"{key}-{name}", heading, list(self._items(name, method, self._asked(name, self.found.states, "")))
-            )
+            yield Part(f"{key}-{name}", heading, list(self._items(name, method, self._asked(name, "", line=False))))
             if name in RULE:
                 line = self.found.straight_methods[name]
-                asked = self._asked(name, self.found.straight_states, f",{LINE}")
+                asked = self._asked(name, f",{LINE}", line=True)
                 items = list(self._items(name, line, asked, f",{LINE}"))
                 yield Part(f"{key}-{name}-line", f"{heading}, {self.say.say('and_line')}", items)
 
-    def _asked(self, name: str, states: Mapping[str, State], more: str) -> Asked:
+    def _asked(self, name: str, more: str, *, line: bool) -> Asked:
         if name in RULE:
             rule: Rule = RULE[name]
-            s = rule.state
+            s, states = rule.state, self.found.straight_states if line else self.found.states
             at = spectra.At(f"T_[{s}{more}]", states[s].T, rule.damping)
             return Asked(s, f"d_[{s}]", states[s].d, "m", f"S_[De](T_[{s}{more}])", at)
-        q = self.ground.site.q if name == "linear" else 1.0
-        symbol = "q a_[0]^[*]" if name == "linear" else "a_[0]^[*]"
-        return Asked(STATE[name], symbol, q * self.found.a0, "m/s²", self._peak(STATE[name]))
+        return self._activation(STATE[name])
 
-    def _peak(self, state: str) -> str:
-        on_floor = isinstance(self.ground.spectrum(state), FloorSpectrum)
+    def _activation(self, state: str) -> Asked:
+        """The onset of rocking, by the ground of a limit state."""
+        return Asked(state, "a_[0]^[*]", self.found.a0, "m/s²", self._peak())
+
+    def _peak(self) -> str:
+        on_floor = self.ground.site.floor is not None
         if self.ground.site.own_period is not None:
             return "S_[eZ](T_[0])" if on_floor else "S_[e](T_[0])"
         return "S_[Z]" if on_floor else "a_[g] S"
@@ -93,31 +105,48 @@ class Methods:
         """Yield the capacity a_g, its check, zeta_E, and the return period."""
         say, spectrum = self.say, self.ground.spectrum(asked.state)
         assert spectrum is not None and method.a_g is not None and method.asked is not None  # its state is given
-        rows: list[Working] = []
-        if name == "linear":
-            put = say.put("{q} · {a}", q=self.ground.site.q, a=self.found.a0)
-            rows.append(
-                Working("q a_[0]^[*]", say.say("qa0"), "q · a_[0]^[*]", put, asked.capacity, "m/s²", "C8.7.1.6-9")
-            )
-        symbol, own = f"a_[g,{name.replace('_SLC', '')}{more}]", self._demand(spectrum, asked)
-        in_ratio = is_close(method.a_g, method.asked * asked.capacity / own)
-        if in_ratio:
-            put = say.put("{ag} · {c}/{d}", ag=method.asked, c=asked.capacity, d=own)
-            under = f"({asked.demand})" if " " in asked.demand else asked.demand
-            formula = f"a_[g] · {asked.name}/{under}"
-            rows.append(Working(symbol, say.say("a_g_method"), formula, put, method.a_g, "g", method.clause))
-        else:
-            formula = f"{asked.demand}(a_[g]) = {asked.name}"
-            rows.append(Working(symbol, say.say("a_g_solved"), formula, "", method.a_g, "g", method.clause))
-        yield Steps(rows)
-        if not in_ratio:
-            yield Sentence(say.say("check", state=asked.state))
-            yield Steps(list(self._checked(spectrum.with_ag(method.a_g), asked)))
+        symbol = f"a_[g,{name.replace('_SLC', '')}{more}]"
+        yield from self._solved(symbol, say.say("a_g_method"), spectrum, asked, method.a_g, method.clause)
         put = say.put("{a}/{b}", a=method.a_g, b=method.asked)
         zeta = Working(f"ζ_[E{more}]", say.say("zeta", state=asked.state), f"{symbol}/a_[g]", put, method.zeta or 0.0,
-                       "", method.clause)  # fmt: skip
+                       "", clauses.ZETA)  # fmt: skip
         yield Steps([zeta])
         yield from self._lasts(method, asked, more)
+
+    def _solved(
+        self, symbol: str, what: str, spectrum: Spectrum, asked: Asked, a_g: float, clause: str
+    ) -> Iterator[Item]:
+        """Yield the a_g at which a demand equals a capacity, and its check if it was found by iteration."""
+        say, own = self.say, self._demand(spectrum, asked)
+        if is_close(a_g, spectrum.ag * asked.capacity / own):
+            put = say.put("{ag} · {c}/{d}", ag=spectrum.ag, c=asked.capacity, d=own)
+            under = f"({asked.demand})" if " " in asked.demand else asked.demand
+            yield Steps([Working(symbol, what, f"a_[g] · {asked.name}/{under}", put, a_g, "g", clause)])
+            return
+        formula = f"{asked.demand}(a_[g]) = {asked.name}"
+        yield Steps([Working(symbol, say.say("iterated", what=what), formula, "", a_g, "g", clause)])
+        yield Sentence(say.say("check", state=asked.state))
+        yield Steps(list(self._checked(spectrum.with_ag(a_g), asked)))
+
+    def _linear(self, method: Method) -> Iterator[Item]:
+        """Yield q times the a_g at which rocking starts at SLD, and its zeta_E and return period at SLV."""
+        say, ground, q = self.say, self.ground, self.ground.site.q
+        assert method.a_g is not None and method.asked is not None  # SLV is always given
+        asked = self._activation(ground.state_of_activation)
+        what, start = say.say("a_g_start", state=asked.state), method.a_g / q
+        if ground.of_activation != ground.spectrum(asked.state):  # the ground of SLV under the mode of SLD
+            yield Sentence(say.say("mode_of_SLD"))
+            yield Steps(list(self._checked(ground.of_activation, asked)))
+        yield from self._solved(
+            "a_[g,0]", what, ground.of_activation, asked, start, self.found.methods["damage"].clause
+        )
+        put = say.put("{q} · {a}", q=q, a=start)
+        linear = Working("a_[g,linear]", say.say("a_g_method"), "q · a_[g,0]", put, method.a_g, "g", method.clause)
+        put = say.put("{a}/{b}", a=method.a_g, b=method.asked)
+        formula = "a_[g,linear]/a_[g,SLV]"
+        zeta = Working("ζ_[E]", say.say("zeta", state="SLV"), formula, put, method.zeta or 0.0, "", clauses.ZETA)
+        yield Steps([linear, zeta])
+        yield from self._lasts(method, Asked("SLV", "a_[g,linear]", method.a_g, "g", "a_[g]"), "")
 
     def _checked(self, spectrum: Spectrum, asked: Asked) -> Iterator[Working]:
         """Yield the steps to the demand under another ground, to be checked against the capacity."""
@@ -142,7 +171,9 @@ class Methods:
             yield Sentence(say.say("beyond_long" if (method.zeta or 0) >= 1 else "beyond_short", TR=say.number(TR)))
             return
         formula = f"{asked.demand}(T_[R]) = {asked.name}"
-        yield Steps([Working(f"T_[R{more}]", say.say("TR_capacity"), formula, "", TR, years, "3.2.1")])
+        yield Steps([Working(f"T_[R{more}]", say.say("TR_capacity"), formula, "", TR, years, clauses.RETURN_PERIOD)])
         yield Sentence(say.say("check_TR"))
-        spectrum = self.ground.at_return_period(TR)
-        yield Steps([*hazard_at(say, hazard, TR), *self._checked(spectrum, asked)])
+        spectrum = self.ground.at_return_period(TR, asked.state)
+        rows = list(hazard_at(say, hazard, TR))
+        by_ground = asked.demand == "a_[g]"  # r and a_g say it all
+        yield Steps(rows[:2] if by_ground else [*rows, *self._checked(spectrum, asked)])

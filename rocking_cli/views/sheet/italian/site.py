@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import log
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.demand import DAMPING, GroundSpectrum
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.hazard import (
@@ -58,9 +59,14 @@ def _given(say: Language, ground: Ground) -> Grid:
     if ground.hazard is not None:
         rows.append(["", say.say("given_topography"), site.topography, ""])
     if site.floor is not None:
-        for key, symbol, unit in (("z", "z", "m"), ("H", "H", "m"), ("T1", "T_[1]", "s"), ("xi1", "ξ_[1]", ""),
-                                  ("n", "n", "")):  # fmt: skip
+        for key, symbol, unit in (("z", "z", "m"), ("H", "H", "m"), ("n", "n", "")):
             rows.append([symbol, say.say(f"given_{key}"), say.number(float(getattr(site.floor, key))), unit])
+        for state in STATES:
+            if ground.spectrum(state) is None and getattr(site.floor, state, None) is None:
+                continue
+            mode = site.floor.mode(state)
+            rows.append(["T_[1]", say.say("given_T1", state=state), say.number(mode.T1), "s"])
+            rows.append(["ξ_[1]", say.say("given_xi1", state=state), say.number(mode.xi1), ""])
     return Grid(say.say("given"), [say.say(key) for key in ("symbol", "quantity", "value", "unit")], rows, (2,))
 
 
@@ -90,7 +96,7 @@ def _own_period(say: Language, one: Element) -> Working:
     """The period of an element that is free to vibrate."""
     put = "{k} · {L}/{t} · {L} · √({w}/({E} · {g}))"
     put = say.put(put, k=one.kappa, L=one.L, t=one.t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
-    return Working("T_[0]", say.say("given_T0"), "κ (L/t) L √(w/(E g))", put, one.period, "s", "C8.7.1.6-9")
+    return Working("T_[0]", say.say("given_T0"), "κ (L/t) L √(w/(E g))", put, one.period, "s", clauses.OWN_PERIOD)
 
 
 def _of_life(say: Language, ground: Ground, state: str) -> Iterator[Working]:
@@ -100,13 +106,15 @@ def _of_life(say: Language, ground: Ground, state: str) -> Iterator[Working]:
         return
     life, P = site.VN * site.CU, PROBABILITY[state]
     put = say.put("{VN} · {CU}", VN=site.VN, CU=site.CU)
-    yield Working("V_[R]", say.say("VR"), "V_[N] C_[U]", put, life, say.say("years"), "2.4.3")
+    yield Working("V_[R]", say.say("VR"), "V_[N] C_[U]", put, life, say.say("years"), clauses.REFERENCE_LIFE)
     bounds = {"least": max(SHORTEST, ground.hazard.table[0][0]), "most": min(LONGEST, ground.hazard.table[-1][0])}
     put, formula = "−{VR}/ln(1 − {P})", "−V_[R]/ln(1 − P)"
     if not is_close(return_period(life, state), TR):
         put = f"max({{least}}; min({{most}}; {put}))"
     put = say.put(put, VR=life, P=P, **bounds)
-    yield Working("T_[R]", say.say("TR", state=state, percent=100 * P), formula, put, TR, say.say("years"), "3.2.1")
+    yield Working(
+        "T_[R]", say.say("TR", state=state, percent=100 * P), formula, put, TR, say.say("years"), clauses.RETURN_PERIOD
+    )
     yield from hazard_at(say, ground.hazard, TR)
 
 
@@ -123,13 +131,13 @@ def hazard_at(say: Language, hazard: Hazard, TR: float) -> Iterator[Working]:
     r = log(TR / low[0]) / log(high[0] / low[0])
     put = say.put("ln({T}/{a})/ln({b}/{a})", T=TR, a=low[0], b=high[0])
     formula = "ln(T_[R]/T_[R,a])/ln(T_[R,b]/T_[R,a])"
-    yield Working("r", say.say("r"), formula, put, r, "", "3.2")
+    yield Working("r", say.say("r"), formula, put, r, "", clauses.HAZARD)
     found = hazard.parameters(TR)
     for j, (symbol, key, unit, row) in enumerate(ON_ROCK, 1):
         put = say.put("{a} · ({b}/{a})^[{r}]", a=low[j], b=high[j], r=r)
         low_row, high_row = (row.replace("#", which) for which in "ab")
         formula = f"{low_row} ({high_row}/{low_row})^[r]"
-        yield Working(symbol, say.say(f"rock_{key}"), formula, put, found[j - 1], unit, "3.2")
+        yield Working(symbol, say.say(f"rock_{key}"), formula, put, found[j - 1], unit, clauses.HAZARD)
     yield from _on_soil(say, hazard, hazard.spectrum(TR), found[2])
 
 
@@ -145,14 +153,14 @@ def _on_soil(say: Language, hazard: Hazard, spectrum: GroundSpectrum, TC_star: f
         formula = say.formula(f"{least:.3g} ≤ {first:.2f} − {second:.2f} F_[0] a_[g]/g ≤ {most:.3g}")
     else:
         formula, put = "1", "1"
-    yield Working("S_[S]", say.say("S_S", soil=hazard.soil), formula, put, S_S, "", "3.2.3")
+    yield Working("S_[S]", say.say("S_S", soil=hazard.soil), formula, put, S_S, "", clauses.SOIL)
     put = say.put("{S_S} · {S_T}", S_S=S_S, S_T=S_T)
-    yield Working("S", say.say("S"), "S_[S] S_[T]", put, S_S * S_T, "", "3.2.3")
+    yield Working("S", say.say("S"), "S_[S] S_[T]", put, S_S * S_T, "", clauses.S)
     formula, put = ("1", "1")
     if power:
         exponent = say.formula(f"{power:.2f}".replace("-", "−"))
         formula = say.formula(f"{factor:.2f} (T_[C]^[*])") + f"^[{exponent}]"
         put = say.put("{factor} · {T}", factor=factor, T=TC_star) + f"^[{exponent}]"
-    yield Working("C_[C]", say.say("C_C", soil=hazard.soil), formula, put, C_C, "", "3.2.3")
+    yield Working("C_[C]", say.say("C_C", soil=hazard.soil), formula, put, C_C, "", clauses.SOIL)
     put = say.put("{C} · {T}", C=C_C, T=TC_star)
-    yield Working("T_[C]", say.say("TC"), "C_[C] T_[C]^[*]", put, spectrum.TC, "s", "3.2.3")
+    yield Working("T_[C]", say.say("TC"), "C_[C] T_[C]^[*]", put, spectrum.TC, "s", clauses.TC)

@@ -9,6 +9,7 @@ from math import pi
 import numpy as np
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.demand import (
     ABOVE,
     BELOW,
@@ -24,7 +25,7 @@ from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.language import Language
 
 G = STANDARD_GRAVITY
-DISPLACED = "C8.7.1.2.1.8"
+DISPLACED = clauses.NONLINEAR
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ def corrected(say: Language, at: At) -> Working:
     per_cent = 100 * at.damping
     return Working(
         f"η({at.xi})", say.say("eta"), say.formula("√(10/(5 + ξ)) ≥ 0.55"),
-        say.put("max(√(10/(5 + {xi})); 0.55)", xi=per_cent), correction(at.damping), "", "3.2.4",
+        say.put("max(√(10/(5 + {xi})); 0.55)", xi=per_cent), correction(at.damping), "", clauses.DAMPING,
     )  # fmt: skip
 
 
@@ -52,7 +53,7 @@ def peaks(say: Language, spectrum: Spectrum, state: str) -> Iterator[Working]:
     if isinstance(ground, GroundSpectrum):
         yield from _corners(say, ground, state)
         put = say.put("{ag} · {S} · {g}", ag=ground.ag, S=ground.S, g=G)
-        yield Working("a_[g] S", say.say("peak"), "a_[g] S g", put, ground.peak, "m/s²", "3.2.2")
+        yield Working("a_[g] S", say.say("peak"), "a_[g] S g", put, ground.peak, "m/s²", clauses.SPECTRUM)
     elif isinstance(ground, TableSpectrum):
         put = say.put("{a} · {g}", a=ground.ag, g=G)
         yield Working("a_[g] S", say.say("peak_of_table"), "S_[e](0) g", put, ground.peak, "m/s²", DISPLACED)
@@ -62,16 +63,16 @@ def peaks(say: Language, spectrum: Spectrum, state: str) -> Iterator[Working]:
 
 def _corners(say: Language, ground: GroundSpectrum, state: str) -> Iterator[Working]:
     yield Working(
-        "T_[B]", say.say("TB", state=state), "T_[C]/3", say.put("{T}/3", T=ground.TC), ground.TB, "s", "3.2.3"
+        "T_[B]", say.say("TB", state=state), "T_[C]/3", say.put("{T}/3", T=ground.TC), ground.TB, "s", clauses.TB
     )
     put = say.put("4 · {ag} + 1.6", ag=ground.ag)
-    yield Working("T_[D]", say.say("TD", state=state), say.formula("4 a_[g]/g + 1.6"), put, ground.TD, "s", "3.2.3")
+    yield Working("T_[D]", say.say("TD", state=state), say.formula("4 a_[g]/g + 1.6"), put, ground.TD, "s", clauses.TD)
 
 
 def _peak_of_floor(say: Language, floor: FloorSpectrum) -> Iterator[Working]:
-    yield Working("ψ", say.say("psi"), "z/H", say.put("{z}/{H}", z=floor.z, H=floor.H), floor.psi, "", "C7.2.6")
+    yield Working("ψ", say.say("psi"), "z/H", say.put("{z}/{H}", z=floor.z, H=floor.H), floor.psi, "", clauses.PSI)
     put = say.put("3 · {n}/(2 · {n} + 1)", n=float(floor.n))
-    yield Working("γ", say.say("gamma"), "3n/(2n + 1)", put, floor.gamma, "", "C7.2.6")
+    yield Working("γ", say.say("gamma"), "3n/(2n + 1)", put, floor.gamma, "", clauses.GAMMA)
     at = At("T_[1]", floor.T1, floor.xi1, "ξ_[1]")
     yield corrected(say, at)
     yield from acceleration(say, floor.ground, at)
@@ -80,7 +81,7 @@ def _peak_of_floor(say: Language, floor: FloorSpectrum) -> Iterator[Working]:
         S=floor.ground.acceleration(floor.T1, floor.xi1), gamma=floor.gamma, psi=floor.psi, xi=floor.xi1,
     )  # fmt: skip
     formula = "S_[e](T_[1]) γ ψ √(1 + 4 ξ_[1]^[2])"
-    yield Working("S_[Z]", say.say("S_Z"), formula, put, floor.peak, "m/s²", "C7.2.6")
+    yield Working("S_[Z]", say.say("S_Z"), formula, put, floor.peak, "m/s²", clauses.FLOOR_PEAK)
 
 
 def acceleration(say: Language, spectrum: GroundSpectrum | TableSpectrum, at: At) -> Iterator[Working]:
@@ -93,7 +94,7 @@ def acceleration(say: Language, spectrum: GroundSpectrum | TableSpectrum, at: At
     numbers |= {"TB": spectrum.TB, "TC": spectrum.TC, "TD": spectrum.TD, "T": at.T}
     yield Working(
         f"S_[e]({at.name})", say.say("S_e"), formula, say.put(put, **numbers),
-        spectrum.acceleration(at.T, at.damping), "m/s²", "3.2.2",
+        spectrum.acceleration(at.T, at.damping), "m/s²", clauses.SPECTRUM,
     )  # fmt: skip
 
 
@@ -147,18 +148,20 @@ def _of_ground(say: Language, ground: GroundSpectrum, at: At, symbol: str) -> It
     value = ground.displacement(at.T, at.damping)
     if start is None or start >= at.T:
         yield from acceleration(say, ground, at)
-        yield _squared(say, symbol, at.name, at.T, ground.acceleration(at.T, at.damping), "3.2.10")
+        yield _squared(say, symbol, at.name, at.T, ground.acceleration(at.T, at.damping), clauses.DISPLACEMENT)
         return
     level, numbers = say.formula("0.025 a_[g] S g T_[C] T_[D]"), "0.025 · {ag} · {S} · {g} · {TC} · {TD}"
     given = {"ag": ground.ag, "S": ground.S, "g": G, "TC": ground.TC, "TD": ground.TD, "T": at.T}
     given |= {"E": start, "F": GROUND, "F0": ground.F0, "eta": correction(at.damping)}
     if at.T > GROUND:
-        yield Working(symbol, say.say("S_De_ground"), level, say.put(numbers, **given), value, "m", "3.2.12")
+        yield Working(
+            symbol, say.say("S_De_ground"), level, say.put(numbers, **given), value, "m", clauses.DISPLACEMENT_GROUND
+        )
         return
     more = "({F0} · {eta} + (1 − {F0} · {eta}) · ({T} − {E})/({F} − {E}))"
     formula = f"{level} (F_[0] η + (1 − F_[0] η) (T − T_[E])/(T_[F] − T_[E]))"
     put = say.put(f"{numbers} · {more}", **given)
-    yield Working(symbol, say.say("S_De_long"), formula, put, value, "m", "3.2.11")
+    yield Working(symbol, say.say("S_De_long"), formula, put, value, "m", clauses.DISPLACEMENT_LONG)
 
 
 def _squared(say: Language, symbol: str, name: str, T: float, S_e: float, clause: str) -> Working:
@@ -181,17 +184,25 @@ def _of_floor(say: Language, floor: FloorSpectrum, at: At) -> Iterator[Working]:
     eta = correction(at.damping)
     A = floor.amplification(at.damping)
     put = say.put("1.1 · {eta}/√({xi})", eta=eta, xi=floor.xi1)
-    yield Working("A", say.say("A"), say.formula("1.1 ξ_[1]^[−1/2] η(ξ)"), put, A, "", "C7.2.7", "ours")
+    yield Working("A", say.say("A"), say.formula("1.1 ξ_[1]^[−1/2] η(ξ)"), put, A, "", clauses.AMPLIFICATION, "ours")
     alone = floor.alone(at.T, at.damping)
     formula, put = _branch_of_floor(floor, at.T)
     numbers = {"A": A, "S": floor.peak, "T": at.T, "low": BELOW * floor.T1, "high": ABOVE * floor.T1}
     yield Working(
-        f"S_[eZ]({at.name})", say.say("S_eZ"), say.formula(formula), say.put(put, **numbers), alone, "m/s²", "C7.2.5"
+        f"S_[eZ]({at.name})",
+        say.say("S_eZ"),
+        say.formula(formula),
+        say.put(put, **numbers),
+        alone,
+        "m/s²",
+        clauses.FLOOR_SPECTRUM,
     )
     put = say.put("{S} · {T}^[2]/(4 · π^[2])", S=alone, T=at.T)
     own = alone * (at.T / (2 * pi)) ** 2
     bounds, names = [own], ["d_[Z]"]
-    yield Working("d_[Z]", say.say("d_Z"), f"S_[eZ]({at.name}) {at.name}^[2]/(4 π^[2])", put, own, "m", "C8.7.1.12")
+    yield Working(
+        "d_[Z]", say.say("d_Z"), f"S_[eZ]({at.name}) {at.name}^[2]/(4 π^[2])", put, own, "m", clauses.FLOOR_DISPLACEMENT
+    )
     if at.T > floor.T1:
         bounds.append(floor.ground.displacement(at.T, at.damping))
         names.append("d_[g]")
@@ -205,7 +216,7 @@ def _of_floor(say: Language, floor: FloorSpectrum, at: At) -> Iterator[Working]:
     put = say.put(f"max({'; '.join('{' + name + '}' for name in shown)})", **shown)
     yield Working(
         f"S_[De]({at.name})", say.say("S_De_floor"), f"max({'; '.join(names)})", put,
-        floor.displacement(at.T, at.damping), "m", "C8.7.1.12",
+        floor.displacement(at.T, at.damping), "m", clauses.FLOOR_DISPLACEMENT,
     )  # fmt: skip
 
 
@@ -216,7 +227,7 @@ def _level(say: Language, floor: FloorSpectrum, A: float, bounds: list[float], n
     names.append("d_[b]")
     put = say.put("{A} · {S} · (1.1 · {T})^[2]/(4 · π^[2])", A=A, S=floor.peak, T=floor.T1)
     formula = "S_[eZ](T_[1]) (b T_[1])^[2]/(4 π^[2])"
-    yield Working("d_[b]", say.say("d_b"), formula, put, value, "m", "C8.7.1.12")
+    yield Working("d_[b]", say.say("d_b"), formula, put, value, "m", clauses.FLOOR_DISPLACEMENT)
 
 
 def _branch_of_floor(floor: FloorSpectrum, T: float) -> tuple[str, str]:
@@ -243,17 +254,29 @@ def at_own_period(say: Language, spectrum: Spectrum, T0: float, damping: float) 
         return
     A, eta = spectrum.amplification(damping), correction(damping)
     put = say.put("1.1 · {eta}/√({xi})", eta=eta, xi=spectrum.xi1)
-    yield Working("A", say.say("A"), say.formula("1.1 ξ_[1]^[−1/2] η(ξ)"), put, A, "", "C7.2.7", "ours")
+    yield Working("A", say.say("A"), say.formula("1.1 ξ_[1]^[−1/2] η(ξ)"), put, A, "", clauses.AMPLIFICATION, "ours")
     alone = spectrum.alone(T0, damping)
     formula, put = _branch_of_floor(spectrum, T0)
     numbers = {"A": A, "S": spectrum.peak, "T": T0, "low": BELOW * spectrum.T1, "high": ABOVE * spectrum.T1}
     symbol = "S_[eZ](T_[0])"
     if spectrum.T1 >= T0:
-        yield Working(symbol, say.say("S_eZ"), say.formula(formula), say.put(put, **numbers), alone, "m/s²", "C7.2.5")
+        yield Working(
+            symbol,
+            say.say("S_eZ"),
+            say.formula(formula),
+            say.put(put, **numbers),
+            alone,
+            "m/s²",
+            clauses.FLOOR_SPECTRUM,
+        )
         return
     own = "S_[eZ,1](T_[0])"
-    yield Working(own, say.say("S_eZ"), say.formula(formula), say.put(put, **numbers), alone, "m/s²", "C7.2.5")
+    yield Working(
+        own, say.say("S_eZ"), say.formula(formula), say.put(put, **numbers), alone, "m/s²", clauses.FLOOR_SPECTRUM
+    )
     yield from acceleration(say, spectrum.ground, at)
     under = spectrum.ground.acceleration(T0, damping)
     put = say.put("max({own}; {under})", own=alone, under=under)
-    yield Working(symbol, say.say("S_eZ_bound"), f"max({own}; S_[e](T_[0]))", put, max(alone, under), "m/s²", "C7.2.5")
+    yield Working(
+        symbol, say.say("S_eZ_bound"), f"max({own}; S_[e](T_[0]))", put, max(alone, under), "m/s²", clauses.FLOOR_BOUND
+    )

@@ -9,12 +9,14 @@ import numpy as np
 
 from rocking_cli.core.attached import Spot
 from rocking_cli.studies.verification.capacity import ExactCurve
+from rocking_cli.studies.verification.codes.italian import clauses
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
 from rocking_cli.studies.verification.displaced import Displaced
 from rocking_cli.studies.verification.results import State, Verified
+from rocking_cli.studies.verification.ties import pulls
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Item, Part, Sentence, Steps
+from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
 from rocking_cli.views.sheet.italian import chain as chains
 from rocking_cli.views.sheet.italian import spectra
 from rocking_cli.views.sheet.italian.chain import Scale
@@ -59,7 +61,7 @@ class Writer:
         rows = [self._accelerated("a_[0]^[*]", "α_[0]", curve.chain.alpha0, curve.a0, say.say("a0"), g)]
         yield Steps([*rows, *self._control()])
         end = Displaced(curve, curve.end)
-        yield Steps([Working("φ_[0]", say.say("phi_0"), "α(φ) = 0", "", curve.end, "rad", "C8.7.1.4")])
+        yield Steps([Working("φ_[0]", say.say("phi_0"), "α(φ) = 0", "", curve.end, "rad", clauses.D)])
         yield chains.at_work(say, end, self.scale)
         yield from chains.held(say, end, self.scale)
         rows = list(chains.multiplier(say, end, self.scale, "α(φ_[0])"))
@@ -69,7 +71,7 @@ class Writer:
         """a* from a multiplier."""
         chain, FC = self.curve.chain, self.curve.confidence
         put = self.say.put("{alpha} · {g}/({e} · {FC})", alpha=alpha, g=g, e=chain.e_star, FC=FC)
-        return Working(symbol, what, f"{name} g/(e^[*] FC)", put, value, "m/s²", "C8.7.1.3")
+        return Working(symbol, what, f"{name} g/(e^[*] FC)", put, value, "m/s²", clauses.A_STAR)
 
     def _control(self) -> Iterator[Working]:
         """x_C' of the control point."""
@@ -79,15 +81,15 @@ class Writer:
         if control.body is None:
             put = say.put("{a}/{b}", a=scale.weight(chain.first), b=scale.weight(chain.inertial))
             what, formula = say.say("control_barycentre"), "Σ (P+Q) x′/Σ (P+Q)"
-            yield Working("x_[C]′", what, formula, put, dx, "m", "C8.7.1.4", "ours")
+            yield Working("x_[C]′", what, formula, put, dx, "m", clauses.D, "ours")
             return
         what = say.say("control_point", body=control.body, x=say.number(control.at.real), y=say.number(control.at.imag))
         own = next(each for each in Displaced(curve, 0.0).blocks if control.body in each.block.bodies)
         if own.centre is None:
-            yield Working("x_[C]′", what, "x′", say.put("{x}", x=own.dx), dx, "m", "C8.7.1.4")
+            yield Working("x_[C]′", what, "x′", say.put("{x}", x=own.dx), dx, "m", clauses.D)
             return
         put = say.put("{t} · ({y} − {o})", t=own.turns, y=control.at.imag, o=scale.near(own.centre.imag))
-        yield Working("x_[C]′", what, "θ′ (y_[C] − y_[O])", put, dx, "m", "C8.7.1.4")
+        yield Working("x_[C]′", what, "θ′ (y_[C] − y_[O])", put, dx, "m", clauses.D)
 
     def _moved(self, position: Displaced, name: str, symbol: str, what: str) -> Iterator[Working]:
         """d_C and d at a position."""
@@ -106,12 +108,12 @@ class Writer:
             one, other = (x, control.at.real) if chain.direction > 0 else (control.at.real, x)
             put = say.put("{one} − {other}", one=scale.near(one), other=scale.near(other))
             formula = "|x_[C](φ) − x_[C](0)|"
-        yield Working(f"d_[C]({name})", say.say("d_C"), formula, put, d_C, "m", "C8.7.1.4")
+        yield Working(f"d_[C]({name})", say.say("d_C"), formula, put, d_C, "m", clauses.D)
         first, second = scale.weight(chain.first), scale.weight(chain.second)
         put = say.put("{d} · {b}/({x} · {a})", d=d_C, b=second, x=chain.sideways(control), a=first)
         formula = "d_[C] Σ (P+Q) x′^[2]/(x_[C]′ Σ (P+Q) x′)"
         d = curve.displacement_at(position.phi)
-        yield Working(symbol, what, formula, put, d, "m", "C8.7.1.4")
+        yield Working(symbol, what, formula, put, d, "m", clauses.D)
 
     def _state(self, rule: Rule) -> Iterator[Item]:
         """A limit state on the exact curve."""
@@ -120,9 +122,10 @@ class Writer:
         broken = rule.at_breaks and self.curve.broken is not None and at.d == self.curve.broken
         phi = self.curve.torn if broken and self.curve.torn is not None else self.curve.rotation(at.d)
         position = Displaced(self.curve, phi)
-        yield Steps([Working(f"φ_[{s}]", say.say("phi"), f"d(φ) = d_[{s}]", "", phi, "rad", "C8.7.1.4")])
+        yield Steps([Working(f"φ_[{s}]", say.say("phi"), f"d(φ) = d_[{s}]", "", phi, "rad", clauses.D)])
         yield chains.at_work(say, position, self.scale)
         yield from chains.held(say, position, self.scale)
+        yield from self._ties(rule, at)
         rows = list(self._moved(position, f"φ_[{s}]", f"d(φ_[{s}])", say.say("d_again", state=s)))
         rows += chains.multiplier(say, position, self.scale, f"α(φ_[{s}])")
         here = self.curve.acceleration_at(phi)
@@ -131,19 +134,29 @@ class Writer:
         rows.append(self._accelerated(symbol, f"α(φ_[{s}])", position.alpha, here, say.say("a_there"), g))
         yield Steps([*rows, *self._period_and_demand(rule, at, s, here)])
 
+    def _ties(self, rule: Rule, at: State) -> Iterator[Item]:
+        """Yield the force and elongation of ties, and of forces against the motion."""
+        say = self.say
+        rows = [
+            [pull.name, say.number(pull.force / 1e3), say.number(pull.elongation),
+             say.number(None if pull.strain is None else 100 * pull.strain, 3)]
+            for pull in pulls(self.curve, at.d)
+        ]  # fmt: skip
+        if rows:
+            heads = [say.say("tie"), "N [kN]", "ΔL [m]", "ΔL/L [%]"]
+            yield Grid(say.say("ties_at", state=rule.state), heads, rows, (1, 2, 3))
+
     def _allowed(self, rule: Rule, at: State) -> Working:
         """The displacement that a limit state allows."""
         say, curve, s = self.say, self.curve, rule.state
-        if rule.at_breaks and curve.broken is not None:
-            put = say.put("min({share} · {d0}; {d})", share=rule.share, d0=curve.d0, d=curve.broken)
-            formula = say.formula(f"min({rule.share:g} d_[0]^[*]; d_[t])")
-        elif rule.at_seats and curve.seat is not None:
-            put = say.put("min({share} · {d0}; {d})", share=rule.share, d0=curve.d0, d=curve.seat.d)
-            formula = say.formula(f"min({rule.share:g} d_[0]^[*]; d_[a])")
-        else:
-            put = say.put("{share} · {d0}", share=rule.share, d0=curve.d0)
-            formula = say.formula(f"{rule.share:g} d_[0]^[*]")
-        return Working(f"d_[{s}]", say.say("d_state", state=s), formula, put, at.d, "m", "C8.7.1.2.1.6")
+        ends = {"t": curve.broken if rule.at_breaks else None, "a": curve.seat.d if curve.seat is not None else None}
+        known = {name: d for name, d in ends.items() if d is not None}
+        formula, put = f"{rule.share:g} d_[0]^[*]", "{share} · {d0}"
+        if known:
+            formula = f"min({'; '.join([formula, *(f'd_[{name}]' for name in known)])})"
+            put = f"min({'; '.join([put, *(f'{{{name}}}' for name in known)])})"
+        formula, put = say.formula(formula), say.put(put, share=rule.share, d0=curve.d0, **known)
+        return Working(f"d_[{s}]", say.say("d_state", state=s), formula, put, at.d, "m", clauses.LIMITS)
 
     def _period_and_demand(self, rule: Rule, at: State, name: str, a: float) -> Iterator[Working]:
         """T, S_De there and the ratio; `a` is a* of the curve that `name` is on [m/s2]."""
@@ -151,7 +164,7 @@ class Writer:
         if T0 is not None:
             put = say.put("min({a}; 4 · π^[2] · {d}/{T}^[2])", a=a, d=at.d, T=T0)
             formula = f"min(a^[*]_[{name}]; 4 π^[2] d_[{s}]/T_[0]^[2])"
-            yield Working(f"a_[{name}]", say.say("a_elastic"), formula, put, at.a, "m/s²", "C8.7.1.6-9")
+            yield Working(f"a_[{name}]", say.say("a_elastic"), formula, put, at.a, "m/s²", clauses.ELASTIC)
         symbol = f"a_[{name}]" if T0 is not None else f"a^[*]_[{name}]"
         put = say.put(f"{rule.factor:g} · π · √({{d}}/{{a}})", d=at.d, a=at.a)
         formula = say.formula(f"{rule.factor:g} π √(d_[{s}]/{symbol})")
@@ -162,8 +175,9 @@ class Writer:
         yield from spectra.displacement(say, spectrum, spectra.At(f"T_[{name}]", at.T, rule.damping))
         put = say.put("{d}/{demand}", d=at.d, demand=at.demand)
         formula = f"d_[{s}]/S_[De](T_[{name}])"
-        what = say.say("passes" if at.passes else "fails", state=s)
-        yield Working(f"ρ_[{name}]", what, formula, put, at.ratio, "", "C8.7.1.2.1.6")
+        still = self.found.passes(s) and not at.passes and LINE not in name
+        what = say.say("passes" if at.passes else "passes_still" if still else "fails", state=s)
+        yield Working(f"ρ_[{name}]", what, formula, put, at.ratio, "", clauses.NONLINEAR)
 
     def _on_line(self, rule: Rule) -> Iterator[Working]:
         """The same limit state on the straight line."""
@@ -172,5 +186,5 @@ class Writer:
         name = f"{s},{LINE}"
         put = say.put("{a0} · (1 − {d}/{d0})", a0=curve.a0, d=at.d, d0=curve.d0)
         formula = f"a_[0]^[*] (1 − d_[{s}]/d_[0]^[*])"
-        yield Working(f"a^[*]_[{name}]", say.say("a_line"), formula, put, a, "m/s²", "C8.7.1.2.1.6")
+        yield Working(f"a^[*]_[{name}]", say.say("a_line"), formula, put, a, "m/s²", clauses.LINE)
         yield from self._period_and_demand(rule, at, name, a)

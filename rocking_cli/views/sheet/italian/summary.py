@@ -12,6 +12,8 @@ from rocking_cli.views.sheet.language import Language
 def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> Part:
     """The summary."""
     items: list[Item] = [verdict(say, found.first, where, each) for where, each in shown.items()]
+    for where, each in shown.items():
+        items += _starts_later(say, found.first, where, each)
     if len(shown) > 1:
         items += _which(say, found)
     for where, each in shown.items():
@@ -41,6 +43,17 @@ def verdict(say: Language, first: str, where: str, each: Verified) -> Sentence:
     return Sentence(text, answers=True, fails=not passes)
 
 
+def _starts_later(say: Language, first: str, where: str, each: Verified) -> Iterator[Item]:
+    """The other limit states at which the damage method governs: their ratio of displacements does not decide."""
+    for state in each.states:
+        counts = each.methods[each.governing[state]]
+        if state != first and each.governing[state] == f"damage_{state}" and each.passes(state) is not None:
+            other = each.methods[f"nonlinear_{state}"].a_g or 0.0
+            why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.asked)
+            key = "verdict_passes" if each.passes(state) else "verdict_fails"
+            yield Sentence(say.say(key, where=where, state=state, zeta=counts.zeta, why="@").replace("@", why))
+
+
 def _which(say: Language, found: Verification) -> Iterator[Item]:
     """Which direction governs."""
     least = found.governs
@@ -53,7 +66,7 @@ def _states(say: Language, where: str, each: Verified) -> Grid:
     rows = []
     for state, at in each.states.items():
         known = at.ratio is not None
-        outcome = say.say("unknown" if not known else "yes" if at.passes else "no")
+        outcome = say.say("unknown" if not known else "yes" if each.passes(state) else "no")
         rows.append([state, *(say.number(v, 4) for v in (at.d, at.demand, at.T, at.ratio)), outcome])
     damage = each.methods.get("SLD")
     if damage is not None and damage.zeta is not None:
@@ -73,7 +86,9 @@ def _methods(say: Language, where: str, each: Verified) -> Grid:
         line = each.straight_methods[key]
         numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.asked, method.zeta)]
         years = [_years(say, method)] if known else []
-        rows.append([say.say(f"method_{key}"), *numbers, *years, say.say("governs") if key == each.governs else ""])
+        rows.append(
+            [say.say(f"method_{key}"), *numbers, *years, say.say("governs") if key in each.governing.values() else ""]
+        )
     heads = [say.say("method"), f"a_[g] [g], {say.say('exact')}", f"a_[g] [g], {say.say('line')}"]
     heads += [f"{say.say('asked')} [g]", "ζ_[E]", *([say.say("TR_years")] if known else []), ""]
     return Grid(say.say("methods", where=where), heads, rows, range(1, len(heads) - 1))

@@ -1,6 +1,7 @@
 """What the ground, or a floor, asks of one degree of freedom: elastic spectra of the Italian code, floors, tables.
 
-Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3 [code: not yet checked against the printed text].
+Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3, checked against a transcription of both [code: not
+yet against the print].
 """
 
 from __future__ import annotations
@@ -178,7 +179,7 @@ class TableSpectrum:
         return float(self._at(np.array([period]), damping)[0])
 
     def displacement(self, period: float, damping: float) -> float:
-        """The largest S_e (t/2 pi)^2 from T0 to a period [m; C8.7.1.2.1.8]. Raises `InputError` beyond the table."""
+        """The largest S_e (t/2 pi)^2 from T0 to a period [m; §C8.7.1.2.1.8]. Raises `InputError` beyond the table."""
         t = self.governing(period, damping)
         return self.acceleration(t, damping) * (t / (2 * pi)) ** 2
 
@@ -224,7 +225,7 @@ class TableSpectrum:
 
 @dataclass(frozen=True)
 class FloorSpectrum:
-    """The spectrum at a height of a building, of its first mode [C7.2.5-7].
+    """The spectrum at a height of a building, of its first mode [C7.2.5-7, C7.2.10].
 
     Parameters
     ----------

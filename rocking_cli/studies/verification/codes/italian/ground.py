@@ -61,25 +61,40 @@ class Ground:
     def spectrum(self, state: str) -> Spectrum | None:
         """The spectrum where the structure stands; None where the file does not give the limit state."""
         ground = self.on_ground(state)
-        return None if ground is None else self._where_it_stands(ground)
+        return None if ground is None else self._where_it_stands(ground, state)
 
-    def at_return_period(self, TR: float) -> Spectrum:
-        """The spectrum where the structure stands at a return period [years], where the hazard is known."""
-        assert self.hazard is not None
-        return self._where_it_stands(self.hazard.spectrum(TR))
+    @property
+    def state_of_activation(self) -> str:
+        """The limit state whose ground the linear method takes: SLD, or SLV if the file does not give SLD likewise.
 
-    def _where_it_stands(self, ground: GroundSpectrum | TableSpectrum) -> Spectrum:
-        floor = self.site.floor
-        return ground if floor is None else FloorSpectrum(ground, floor.z, floor.H, floor.T1, floor.xi1, floor.n)
-
-    def capacity(self, state: str, demand: Callable[[Spectrum], float], capacity: float) -> float | None:
-        """The a_g at which a demand reaches a capacity [g]; F0 and T_C those of a limit state, T_D following.
-
-        None where the file does not give the limit state.
+        The ordinates of a table have S in them, which is not known: they are compared with those of a table only.
         """
-        spectrum = self.spectrum(state)
-        if spectrum is None:
-            return None
+        return "SLD" if type(self.on_ground("SLD")) is type(self.on_ground("SLV")) else "SLV"
+
+    @property
+    def of_activation(self) -> Spectrum:
+        """The spectrum that the linear method takes, on a floor with the mode of SLD."""
+        ground = self.on_ground(self.state_of_activation)
+        assert ground is not None  # SLV is always given
+        return self._where_it_stands(ground, "SLD")
+
+    def at_return_period(self, TR: float, state: str) -> Spectrum:
+        """The spectrum where the structure stands at a return period [years], with the mode of a limit state.
+
+        The hazard must be known.
+        """
+        assert self.hazard is not None
+        return self._where_it_stands(self.hazard.spectrum(TR), state)
+
+    def _where_it_stands(self, ground: GroundSpectrum | TableSpectrum, state: str) -> Spectrum:
+        floor = self.site.floor
+        if floor is None:
+            return ground
+        mode = floor.mode(state)
+        return FloorSpectrum(ground, floor.z, floor.H, mode.T1, mode.xi1, floor.n)
+
+    def capacity(self, spectrum: Spectrum, demand: Callable[[Spectrum], float], capacity: float) -> float:
+        """The a_g at which a demand reaches a capacity [g]; F0 and T_C those of a spectrum, T_D following."""
         own = demand(spectrum)
         in_ratio = spectrum.ag * capacity / own
         if abs(demand(spectrum.with_ag(in_ratio)) / capacity - 1) < AS_LARGE:
@@ -89,14 +104,14 @@ class Ground:
             low, high = high, 2 * high
         return root(lambda ag: demand(spectrum.with_ag(ag)) - capacity, low, high)
 
-    def lasts(self, demand: Callable[[Spectrum], float], capacity: float) -> tuple[float | None, bool]:
+    def lasts(self, state: str, demand: Callable[[Spectrum], float], capacity: float) -> tuple[float | None, bool]:
         """The return period at which a demand reaches a capacity [years], all of that period; whether it is beyond."""
         hazard = self.hazard
         if hazard is None:
             return None, False
 
         def over(TR: float) -> float:
-            return demand(self.at_return_period(TR)) - capacity
+            return demand(self.at_return_period(TR, state)) - capacity
 
         if over(hazard.first) >= 0:
             return hazard.first, True

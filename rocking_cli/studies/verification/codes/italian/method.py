@@ -1,7 +1,6 @@
 """The three methods of the Italian code for mechanisms of masonry: damage, linear, nonlinear.
 
-Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018 [code: not yet checked against the
-printed text].
+Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018: see `clauses`.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from math import pi, sqrt
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.verification.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.studies.verification.chain import Chain, Control
-from rocking_cli.studies.verification.codes.italian import wordings, workings
+from rocking_cli.studies.verification.codes.italian import clauses, wordings, workings
 from rocking_cli.studies.verification.codes.italian.demand import DAMPING, Spectrum
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
@@ -23,7 +22,9 @@ from rocking_cli.studies.verification.ties import elastic, lasting
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"
-DAMAGE, LINEAR, NONLINEAR, AT_COLLAPSE = "damage", "linear", "nonlinear", "nonlinear_SLC"
+DAMAGE, LINEAR, NONLINEAR = "damage", "linear", "nonlinear"
+OF_STATE = {"SLV": (DAMAGE, NONLINEAR), "SLC": (f"{DAMAGE}_SLC", f"{NONLINEAR}_SLC")}
+"""Of each limit state its two methods, by whether rocking starts and by displacement; the larger capacity governs."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +35,12 @@ class _Case:
     curve: CapacityCurve
 
     def state(self, rule: Rule) -> State:
-        """What the curve allows at a limit state, and what the site asks for [C8.7.1.2.1.6, C8.7.1.10-12]."""
+        """What the curve allows at a limit state, and what the site asks for [§C8.7.1.2.1.6, C8.7.1.10-12]."""
         site, curve = self.ground.site, self.curve
         d = rule.share * curve.d0
         if rule.at_breaks and curve.broken is not None:
             d = min(d, curve.broken)
-        if rule.at_seats and curve.seat is not None:
+        if curve.seat is not None:
             d = min(d, curve.seat.d)
         a = with_elastic_branch(curve.acceleration(d), d, site.own_period)
         T = rule.factor * pi * sqrt(d / a)
@@ -53,8 +54,22 @@ class _Case:
         spectrum = self.ground.spectrum(state)
         if spectrum is None:
             return Method(title, None, None, clause)
-        a_g = self.ground.capacity(state, demand, capacity)
-        return Method(title, a_g, spectrum.ag, clause, *self.ground.lasts(demand, capacity))
+        a_g = self.ground.capacity(spectrum, demand, capacity)
+        return Method(title, a_g, spectrum.ag, clause, *self.ground.lasts(state, demand, capacity))
+
+    def linear(self) -> Method:
+        """Return the capacity by the linear method: q times the a_g at which rocking starts at SLD [§C8.7.1.2.1.7]."""
+        start = self.ground.capacity(self.ground.of_activation, self.forces, self.curve.a0)
+        a_g = self.ground.site.q * start
+        asked = self.ground.on_ground("SLV")
+        assert asked is not None  # always given
+        lasts = self.ground.lasts("SLV", lambda spectrum: spectrum.ag, a_g)
+        return Method("linear (q times onset) at SLV", a_g, asked.ag, clauses.LINEAR, *lasts)
+
+    @property
+    def of_damage(self) -> str:
+        """The formula by which rocking starts."""
+        return clauses.DAMAGE if self.ground.site.own_period is None else clauses.DAMAGE_VIBRATING
 
     def forces(self, spectrum: Spectrum) -> float:
         """Acceleration demand on the element [m/s2]: the peak of the ground or floor, or the ordinate at its own T0."""
@@ -63,20 +78,22 @@ class _Case:
 
     def methods(self, states: Mapping[str, State]) -> dict[str, Method]:
         """Return the methods, by key."""
-        q, a0 = self.ground.site.q, self.curve.a0
+        a0 = self.curve.a0
         found = {
-            DAMAGE: self.method("onset of rocking at SLV", "C8.7.1.6-9", "SLV", self.forces, a0),
-            LINEAR: self.method("linear (q a0*) at SLV", "C8.7.1.6-9", "SLV", self.forces, q * a0),
+            DAMAGE: self.method("onset of rocking at SLV", self.of_damage, "SLV", self.forces, a0),
+            LINEAR: self.linear(),
         }
-        for key, rule in zip((NONLINEAR, AT_COLLAPSE), RULES, strict=True):
-            at = states[rule.state]
+        for rule in RULES:
+            at, (damage, nonlinear) = states[rule.state], OF_STATE[rule.state]
+            title = f"onset of rocking at {rule.state}"
+            found.setdefault(damage, self.method(title, self.of_damage, rule.state, self.forces, a0))
 
             def asked(spectrum: Spectrum, T: float = at.T, damping: float = rule.damping) -> float:
                 return spectrum.displacement(T, damping)
 
             title = f"nonlinear at {rule.state}"
-            found[key] = self.method(title, "C8.7.1.2.1.6", rule.state, asked, at.d)
-        found["SLD"] = self.method("onset of rocking at SLD", "C8.7.1.6-9", "SLD", self.forces, a0)
+            found[nonlinear] = self.method(title, clauses.NONLINEAR, rule.state, asked, at.d)
+        found["SLD"] = self.method("onset of rocking at SLD", self.of_damage, "SLD", self.forces, a0)
         return found
 
 
@@ -101,10 +118,9 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     """
     ground, taken = Ground(site), lasting(mechanism)
     found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
-    remarks = wordings.of_site(ground, list(found.values()))
-    if taken is not mechanism:
-        remarks = [wordings.of_ties_at_rest(elastic(mechanism)), *remarks]
-    return Verification(taken, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks)
+    otherwise = [wordings.of_ties_at_rest(elastic(mechanism))] if taken is not mechanism else []
+    remarks = [*otherwise, *wordings.of_site(ground, list(found.values()))]
+    return Verification(taken, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks, otherwise)
 
 
 def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, control: Control | None) -> Verified:
@@ -132,13 +148,14 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         straight_states=on_line,
         methods=methods,
         straight_methods=line.methods(on_line),
-        governs=_governs(methods),
+        governing={state: _governs(methods, *pair) for state, pair in OF_STATE.items()},
+        governs=_governs(methods, DAMAGE, NONLINEAR),
         workings=workings.of_direction(exact, states, methods, ground),
         remarks=remarks,
     )
 
 
-def _governs(methods: Mapping[str, Method]) -> str:
-    """The method that counts: the nonlinear one is never below damage."""
-    damage, nonlinear = methods[DAMAGE].a_g, methods[NONLINEAR].a_g
-    return DAMAGE if damage is not None and nonlinear is not None and damage > nonlinear else NONLINEAR
+def _governs(methods: Mapping[str, Method], damage: str, nonlinear: str) -> str:
+    """The method that governs of the two of a limit state: the nonlinear one is never below damage."""
+    start, moved = methods[damage].a_g, methods[nonlinear].a_g
+    return damage if start is not None and moved is not None and start > moved else nonlinear

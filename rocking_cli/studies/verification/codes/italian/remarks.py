@@ -14,10 +14,10 @@ ENGLISH = {
         "account."
     ),
     "seats": (
-        "The code also limits d_SLC by the loss of support of parts such as beams. This is not checked for loads "
-        "without a `seat` (length of support), and at least one load has none: give it."
+        "The code also limits d_SLV and d_SLC by the loss of support of parts such as beams. This is not checked for "
+        "loads without a `seat` (length of support), and at least one load has none: give it."
     ),
-    "seat": "The load {name} loses its seat of {length:.3g} m at d = {d:.4g} m, which limits d_SLC.",
+    "seat": "The load {name} loses its seat of {length:.3g} m at d = {d:.4g} m, which limits {limited}.",
     "no_soil": (
         "No soil class is given: at long periods, displacements are not reduced to the ground displacement, which is "
         "conservative."
@@ -25,6 +25,21 @@ ENGLISH = {
     "floor": (
         "The floor amplification A = 1.1 xi1^-1/2 eta(xi) is evaluated with xi1 as a ratio. This is our reading: with "
         "xi1 in per cent, as printed in the code, A would be a reduction."
+    ),
+    "one_mode": (
+        "The floor spectrum is that of the first mode alone. At SLD, and in the linear method, the code combines all "
+        "significant modes: the others are missing here, which may be unconservative for stiff elements and low floors."
+    ),
+    "same_mode": (
+        "Caution: T1 = {T1:g} s and xi1 = {xi1:g} of the floor are used at all limit states. At SLV and SLC, a damaged "
+        "building has a period 50 to 100 % longer than at SLD and a damping of 10 to 20 %: a single pair is "
+        "unconservative at SLD and in the linear method, or at SLV and SLC. Give `SLD: {{T1, xi1}}` in `floor`, and "
+        "T1 and xi1 of SLV beside it."
+    ),
+    "same_mode_SLC": "T1 = {T1:g} s and xi1 = {xi1:g} of the floor at SLV are used at SLC too.",
+    "linear_SLV": (
+        "The linear method multiplies by q the a_g at which rocking starts at SLD. The site file does not give SLD in "
+        "the same way as SLV, so F0, TC and S of SLV are used, which is our choice."
     ),
     "low_floor": (
         "The peak acceleration of the floor, S_Z = {floor:.4g} g, is below that of the ground, a_g S = {ground:.4g} "
@@ -42,15 +57,28 @@ ENGLISH = {
     ),
     "ties": (
         "A tie contributes to alpha0 with its force at rest. To model the rigid-plastic tie of the code, give its "
-        "yield force as the prestress, or as a force. The elastic ties here raise a* to at most {largest:.4g} m/s2, "
-        "{over:.3g} times a0*."
+        "yield force as a load, or as the `prestress` of a tie with `stiffness: 0`. The elastic ties here raise a* to "
+        "at most {largest:.4g} m/s2, {over:.3g} times a0*."
     ),
     "at_rest": (
         "With its elastic ties ({names}), a* would never vanish, and the code counts only what acts up to collapse. "
-        "The ties are therefore taken with their force at rest, here and in time histories. To count on more, give "
-        "the yield force as a load, or as a prestress without stiffness."
+        "The ties are therefore taken with their force at rest, here and in time histories, and their area and "
+        "stiffness have no effect. To count on more, give the yield force as a load, or as the `prestress` of a tie "
+        "with `stiffness: 0`."
     ),
     "carries": "At d_SLV the tie {name} carries {force:.4g} kN: check that the tie and its anchorages can resist it.",
+    "stretched": (
+        "Caution: at d_{state} the tie {name} is {e:.3g} m longer than at rest, {strain:.2g} % of its length. Beyond "
+        "about {most:g} %, a tie or its anchorages may have failed, and the force assumed may no longer be there."
+    ),
+    "follows": (
+        "At d_{state} the point of {name} has moved {e:.3g} m against its force. A tie that gives this force elongates "
+        "by less than {most:g} % only if it is longer than {length:.3g} m."
+    ),
+    "wide": (
+        "Caution: at d_{state} the centroid of a block moves {moved:.3g} m sideways, and the block is {thickness:.3g} "
+        "m thick. A free block falls at half its thickness: the verdict relies on ties or forces that follow this far."
+    ),
     "torn": (
         "The courses of the crossing walls lose their overlap at d = {d:.4g} m. d0* is therefore that of the curve "
         "without them, the only one that holds up to collapse."
@@ -83,10 +111,10 @@ ITALIAN = {
     "missing": "Il file del sito non assegna {states}: per tali stati limite non si esegue alcuna verifica.",
     "confidence": "FC = {FC:g}: vale {least:g}, quello di LC1, finché non si considera la resistenza a compressione.",
     "seats": (
-        "La norma limita d_SLC anche per la perdita dell'appoggio di elementi quali le travi: di un carico si può "
-        "assegnare l'appoggio (`seat`), e qui di qualcuno manca."
+        "La norma limita d_SLV e d_SLC anche per la perdita dell'appoggio di elementi quali le travi: di un carico si "
+        "può assegnare l'appoggio (`seat`), e qui di qualcuno manca."
     ),
-    "seat": "Il carico {name} perde il suo appoggio di {length:.3g} m a d = {d:.4g} m: d_SLC termina in quel punto.",
+    "seat": "Il carico {name} perde il suo appoggio di {length:.3g} m a d = {d:.4g} m, che limita {limited}.",
     "no_soil": (
         "La categoria di sottosuolo non è assegnata: ai lunghi periodi gli spostamenti non si riducono a quelli del "
         "terreno, a favore di sicurezza."
@@ -94,6 +122,21 @@ ITALIAN = {
     "floor": (
         "Il piano amplifica con A = 1,1 xi1^-1/2 eta(xi), con xi1 come rapporto: è la nostra lettura; in percentuale, "
         "come stampato, A sarebbe una riduzione."
+    ),
+    "one_mode": (
+        "Lo spettro alla quota è quello del solo primo modo. Allo SLD, e nel metodo lineare, la norma combina tutti i "
+        "modi significativi: qui mancano gli altri, talvolta a sfavore di sicurezza per elementi rigidi e quote basse."
+    ),
+    "same_mode": (
+        "Attenzione: T1 = {T1:g} s e xi1 = {xi1:g} dell'edificio valgono qui per tutti gli stati limite. Agli SLV e "
+        "SLC l'edificio danneggiato ha un periodo più lungo del 50-100 % rispetto allo SLD e uno smorzamento del 10-20 "
+        "%: una sola coppia è a sfavore di sicurezza allo SLD e nel metodo lineare, oppure allo SLV e allo SLC. Si "
+        "assegni `SLD: {{T1, xi1}}` in `floor`, accanto ai valori dello SLV."
+    ),
+    "same_mode_SLC": "T1 = {T1:g} s e xi1 = {xi1:g} dell'edificio allo SLV valgono anche per lo SLC.",
+    "linear_SLV": (
+        "Il metodo lineare moltiplica per q l'accelerazione a_g di attivazione allo SLD. Il file del sito non assegna "
+        "lo SLD nello stesso modo dello SLV: si usano F0, TC e S dello SLV, per nostra scelta."
     ),
     "low_floor": (
         "Il picco alla quota, S_Z = {floor:.4g} g, è minore di quello del terreno, a_g S = {ground:.4g} g: un solo "
@@ -111,15 +154,30 @@ ITALIAN = {
     ),
     "ties": (
         "Il tirante entra in alpha0 con la sua forza a riposo: il tirante rigido-plastico della norma si assegna con "
-        "la forza di snervamento come pretensione, o come forza. Ciò che qui è elastico porta a* al massimo a "
-        "{largest:.4g} m/s2, {over:.3g} volte a0*."
+        "la forza di snervamento come carico, o come `prestress` di un tirante con `stiffness: 0`. Ciò che qui è "
+        "elastico porta a* al massimo a {largest:.4g} m/s2, {over:.3g} volte a0*."
     ),
     "at_rest": (
         "Con ciò che è elastico ({names}) a* non si annullerebbe mai, e la norma considera quanto è presente fino al "
-        "collasso: qui e nelle analisi al passo esso agisce con la forza a riposo. Per contare "
-        "su di più si assegni la forza di snervamento come carico, o come pretensione senza rigidezza."
+        "collasso: qui e nelle analisi al passo esso agisce con la forza a riposo, e la sua area e la sua rigidezza "
+        "non hanno effetto. Per contare su di più si assegni la forza di snervamento come carico, o come `prestress` "
+        "di un tirante con `stiffness: 0`."
     ),
     "carries": "In d_SLV il tirante {name} porta {force:.4g} kN: il tirante e i suoi ancoraggi devono reggerli.",
+    "stretched": (
+        "Attenzione: in d_{state} il tirante {name} è più lungo di {e:.3g} m che a riposo, il {strain:.2g} % della sua "
+        "lunghezza. Oltre il {most:g} % circa il tirante o i suoi ancoraggi possono aver ceduto, e la forza assunta "
+        "può non esserci più."
+    ),
+    "follows": (
+        "In d_{state} il punto di {name} si è spostato di {e:.3g} m contro la sua forza. Un tirante che la fornisce si "
+        "allunga meno del {most:g} % solo se è più lungo di {length:.3g} m."
+    ),
+    "wide": (
+        "Attenzione: in d_{state} il baricentro di un blocco si sposta in orizzontale di {moved:.3g} m, e il blocco "
+        "è spesso {thickness:.3g} m. Un blocco isolato cade a metà del suo spessore: l'esito conta su tiranti o forze "
+        "che lo seguono fin lì."
+    ),
     "torn": (
         "I filari delle pareti ortogonali si sfilano a d = {d:.4g} m: d0* è quello della curva senza di essi, la sola "
         "presente fino al collasso."

@@ -1,8 +1,10 @@
-"""The limit states of displacement of the Italian code [C8.7.1.2.1.6, C8.7.1.10-11]."""
+"""The limit states of displacement of the Italian code [§C8.7.1.2.1.6, C8.7.1.10-11]."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from rocking_cli.studies.verification.codes.italian import clauses
 
 
 @dataclass(frozen=True)
@@ -16,9 +18,8 @@ class Rule:
     share : float
         Of d0*, that it allows.
     at_breaks : bool
-        Whether it ends where a tie breaks that takes more than half of the largest a*.
-    at_seats : bool
-        Whether it ends where a load is moved off its seat.
+        Whether it ends where a tie breaks that takes more than half of the largest a*. Where a load is moved off its
+        seat, both end: what ends SLC must not have happened at SLV either.
     factor : float
         Of pi sqrt(d/a*), its period.
     damping : float
@@ -30,13 +31,12 @@ class Rule:
     state: str
     share: float
     at_breaks: bool
-    at_seats: bool
     factor: float
     damping: float
     clause: str
 
 
 RULES = (
-    Rule("SLV", 0.4, True, False, 1.68, 0.08, "C8.7.1.10"),
-    Rule("SLC", 0.6, False, True, 1.56, 0.10, "C8.7.1.11"),
+    Rule("SLV", 0.4, True, 1.68, 0.08, clauses.T_SLV),
+    Rule("SLC", 0.6, False, 1.56, 0.10, clauses.T_SLC),
 )

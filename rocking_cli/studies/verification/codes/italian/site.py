@@ -12,6 +12,7 @@ from pydantic import Field
 from rocking_cli.core.fields import quantity
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
+from rocking_cli.processing.floor import Floor as MovingFloor
 from rocking_cli.studies.fragility.together import Part, Sound
 from rocking_cli.studies.verification.site_file import Site
 
@@ -86,14 +87,25 @@ def _no_function(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, s
             return
 
 
-class Floor(Part):
-    """The floor of a building on which the structure stands."""
+class Mode(Part):
+    """The first mode of a building at a limit state."""
+
+    T1: Period = quantity("first period of the building", unit="s")
+    xi1: float = quantity("damping ratio of the building: 0.05 for 5 %", gt=0, le=0.5)
+
+
+class Floor(Mode):
+    """The floor of a building on which the structure stands; its own T1 and xi1 are those of SLV."""
 
     z: float = quantity("height of the floor above the foundation", unit="m", gt=0, le=1000)
     H: float = quantity("height of the building", unit="m", gt=0, le=1000)
-    T1: Period = quantity("first period of the building", unit="s")
-    xi1: float = quantity("damping ratio of the building: 0.05 for 5 %", gt=0, le=0.5)
     n: int = quantity("number of storeys", ge=1, le=200)
+    SLD: Mode | None = Field(None, description="first period and damping ratio of the building at damage")
+    SLC: Mode | None = Field(None, description="first period and damping ratio of the building at collapse")
+
+    def mode(self, state: str) -> Mode:
+        """Return the first mode at a limit state: that of SLV if no other is given."""
+        return {"SLD": self.SLD, "SLC": self.SLC}.get(state) or self
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -107,7 +119,7 @@ KAPPA = {"cantilever": 6.2, "spanning": 2.2}
 
 
 class Element(Part):
-    """An element that is free to vibrate before it rocks, of which the code estimates the period [C8.7.1.6-9]."""
+    """An element that is free to vibrate before it rocks, of which the code estimates the period [C8.7.1.7]."""
 
     kind: Literal["cantilever", "spanning"] = Field(description="whether it is held at its foot or at both ends")
     L: float = quantity("its length", unit="m", gt=0, le=1000)
@@ -177,3 +189,12 @@ class ItalianSite(Shaking, Site):
     @classmethod
     def _needs_sizes(cls, given: dict[str, Any]) -> bool:
         return given.get("hazard") is None
+
+
+def floor_at(site: ItalianSite, state: str) -> MovingFloor | None:
+    """Return the floor on which the structure stands, with its mode at a limit state; None on the ground."""
+    floor = site.floor
+    if floor is None:
+        return None
+    mode = floor.mode(state)
+    return MovingFloor(mode.T1, mode.xi1, floor.z / floor.H, 3 * floor.n / (2 * floor.n + 1))

@@ -15,7 +15,7 @@ from rocking_cli.studies.verification.codes.italian.hazard import LONGEST, SHORT
 from rocking_cli.studies.verification.codes.italian.remarks import TEXTS
 from rocking_cli.studies.verification.codes.italian.rules import RULES
 from rocking_cli.studies.verification.results import Method, State, Verified
-from rocking_cli.studies.verification.ties import carried, elastic
+from rocking_cli.studies.verification.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.studies.verification.told import Told
 
 LONG = 4.0  # s: above it the code requires a study of the site, or records
@@ -58,12 +58,26 @@ def _of_spectrum(ground: Ground) -> list[str]:
     on_ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
     if isinstance(on_ground, GroundSpectrum) and on_ground.soil is None:
         said.append(_told("no_soil"))
+    if ground.state_of_activation != "SLD":
+        said.append(_told("linear_SLV"))
     if isinstance(spectrum, FloorSpectrum):
-        said.append(_told("floor"))
+        said += [_told("floor"), _told("one_mode"), *_of_modes(ground)]
         if spectrum.peak < spectrum.ground.peak:
             floor, under = (peak / STANDARD_GRAVITY for peak in (spectrum.peak, spectrum.ground.peak))
             said.append(_told("low_floor", floor=floor, ground=under))
     return said
+
+
+def _of_modes(ground: Ground) -> list[str]:
+    """Of a floor whose T1 and xi1 are the same at several limit states."""
+    floor = ground.site.floor
+    same = [state for state in ("SLD", "SLC") if floor is not None and getattr(floor, state) is None]
+    if floor is None or not same:
+        return []
+    values = {"T1": floor.T1, "xi1": floor.xi1}
+    if "SLD" in same:
+        return [_told("same_mode", **values)]
+    return [_told("same_mode_SLC", **values)] if ground.spectrum("SLC") is not None else []
 
 
 def _of_lives(ground: Ground) -> list[str]:
@@ -82,7 +96,7 @@ def _of_lives(ground: Ground) -> list[str]:
 def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -> list[str]:
     """Of one direction."""
     said = [*_of_line(curve, states), *_of_ties(curve, states), *_of_break(curve, states), *_of_seat(curve, states)]
-    said += _of_letter(curve.chain, curve)
+    said += [*_of_stretch(curve, states), *_of_letter(curve.chain, curve)]
     T0 = ground.site.own_period
     if T0 is not None:
         on = [rule.state for rule in RULES if states[rule.state].a < curve.acceleration(states[rule.state].d)]
@@ -111,6 +125,27 @@ def _of_ties(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     return said
 
 
+def _of_stretch(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+    """Ties that would be far too long, forces that follow far, and blocks that go as far as they are thick."""
+    said: dict[str, str] = {}
+    for state, at in states.items():
+        if state != "SLV" and at.demand is None:
+            continue
+        held = pulls(curve, at.d)
+        for pull in held:
+            e = pull.elongation
+            if pull.strain is None and state == "SLV" and e > 0:
+                text = _told("follows", state=state, name=pull.name, e=e, most=100 * STRETCHED, length=e / STRETCHED)
+                said.setdefault(pull.name, text)
+            elif pull.strain is not None and pull.strain > STRETCHED:
+                strain = {"strain": 100 * pull.strain, "most": 100 * STRETCHED}
+                said.setdefault(pull.name, _told("stretched", state=state, name=pull.name, e=e, **strain))
+        moved, thickness = furthest(curve, at.d)
+        if held and moved > WIDE * thickness / 2:
+            said.setdefault("", _told("wide", state=state, moved=moved, thickness=thickness))
+    return list(said.values())
+
+
 def of_ties_at_rest(ties: Sequence[Tie]) -> str:
     """That ties count as they pull at rest."""
     return _told("at_rest", names=", ".join(tie.name for tie in ties))
@@ -128,9 +163,10 @@ def _of_break(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
 
 def _of_seat(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     seat = curve.seat
-    if seat is None or states["SLC"].d != seat.d:
+    limited = [f"d_{state}" for state, at in states.items() if seat is not None and at.d == seat.d]
+    if seat is None or not limited:
         return []
-    return [_told("seat", name=seat.load, length=seat.length, d=seat.d)]
+    return [_told("seat", name=seat.load, length=seat.length, d=seat.d, limited=_named(limited))]
 
 
 def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:
