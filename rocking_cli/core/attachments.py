@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 from pydantic import ValidationError
-from pydantic_core import InitErrorDetails
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from rocking_cli.core.attached import Attached, Follow, Path, Spot, springs_of
 from rocking_cli.core.bodies import Body
@@ -27,12 +27,24 @@ STRETCHED = 1e-9  # of the length of its path, or of a metre: what counts as str
 Loc = tuple[str | int, ...]
 
 
-class Refused(ValueError):
-    """Something that does not fit the structure it is attached to; see `as_validation_error`."""
+class Refused(PydanticCustomError):
+    """Fields of a user that do not fit together, at `field` within `loc`; see `as_validation_error`.
+
+    A validator may raise it, as `geometry_error`; no plugin is blamed for it.
+    """
+
+    def __new__(cls, loc: Loc, field: str, reason: str) -> Refused:
+        return super().__new__(cls, "geometry", "{reason}", {"reason": reason, "field": (*loc, field)})
 
     def __init__(self, loc: Loc, field: str, reason: str) -> None:
         self.loc, self.field, self.reason = loc, field, reason
-        super().__init__(reason)
+
+    @classmethod
+    def first_of(cls, error: ValidationError) -> Refused:
+        """Return the first of the errors that another structure with the same fields has."""
+        first = error.errors(include_url=False)[0]
+        *loc, field = (*first["loc"], *first.get("ctx", {}).get("field", ())) or ("mechanism",)
+        return cls(tuple(loc), str(field), first["msg"])
 
 
 def as_validation_error(refused: Sequence[Refused], title: str) -> ValidationError:

@@ -344,7 +344,7 @@ class Mechanism(Described, ABC):
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
         """What a subclass says of its own mechanics is guarded: whatever fails there is an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
-        guard(cls, ANSWERS, _failed)
+        guard(cls, ANSWERS, _failed, but=Refused)
         for name in OF_THE_BARE:
             if isfunction(own := vars(cls).get(name)):
                 setattr(cls, name, _of_the_bare(own))
@@ -465,7 +465,10 @@ class Mechanism(Described, ABC):
         """u = N/(2 strength depth) of the joints of each direction [m]; empty if there is none to move."""
         if self.crushing is None:
             return {}
-        sound = self.model_copy(update={"crushing": None})
+        try:
+            sound = self.model_copy(update={"crushing": None})
+        except ValidationError as error:
+            raise Refused.first_of(error) from None
         per_metre = 2 * self.crushing.strength * (self.crushing.depth or self.depth or 1.0)
         moved = {direction: sound.bearing(direction) for direction in Direction}
         found = {s: {joint: max(force, 0.0) / per_metre for joint, force in moved[s].items()} for s in Direction}
@@ -489,7 +492,7 @@ class Mechanism(Described, ABC):
 
     def volume(self) -> float:
         """The volume that `density` makes the mass of [m3]: by default that of the outlines, `depth` deep."""
-        sketch = self.sketch()
+        deep, sketch = self._given_depth, self.sketch()
         area = 0.0
         for body in self.bodies():
             known: Sequence[Outline] = sketch.outlines.get(body.name, ()) if sketch.uniform else ()
@@ -497,9 +500,14 @@ class Mechanism(Described, ABC):
             if not shapes:
                 raise Refused((), "density", f"the shape of its {body.name} is not known: give its mass instead")
             area += sum(abs(_area(shape)) for shape in shapes)
+        return area * deep
+
+    @property
+    def _given_depth(self) -> float:
+        """Size out of plane that `density` needs [m]. Raises `Refused` if the file gives none."""
         if self.depth is None:
             raise Refused((), "depth", "is missing: density needs the size out of plane")
-        return area * self.depth
+        return self.depth
 
     def total_mass(self) -> float | None:
         """The mass of the whole structure by the file [kg]; None where `bodies` have theirs, or there is none."""
