@@ -130,9 +130,30 @@ class Refused(RockingError):
 
 
 class MechanismError(RockingError):
-    """A mechanism or plugin that does not hold its side of the contract, or whose mechanics has no answer."""
+    """A mechanism or plugin that does not hold its side of the contract."""
 
     exit_code = 3
+
+
+class StructureError(MechanismError):
+    """A structure for which its mechanism has no answer, such as one that cannot stand: its file is to be changed."""
+
+    exit_code = InputError.exit_code
+
+
+def of_structure(error: MechanismError, name: str) -> MechanismError:
+    """Return an error of the same kind whose message begins with the name of the structure, once.
+
+    Parameters
+    ----------
+    error : MechanismError
+        What its mechanism says.
+    name : str
+        What to call the structure.
+    """
+    said, begins = str(error), f"{name}: "
+    kind = type(error) if isinstance(error, StructureError) else MechanismError
+    return kind(said if said.startswith(begins) else begins + said)
 
 
 class PluginError(MechanismError):

@@ -12,7 +12,7 @@ from rocking_cli.cli import terminal
 from rocking_cli.cli.options import OPENING
 from rocking_cli.core import Mechanism
 from rocking_cli.core.size import doubtful_size
-from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.yaml_file import decoded
 from rocking_cli.structure import load_structure, parse_structure
@@ -41,7 +41,7 @@ def load(files: Sequence[str]) -> list[Mechanism]:
         except InputError as error:
             problems += error.problems
         except MechanismError as error:
-            raise MechanismError(f"{name_of(file)}: {error}") from error
+            raise of_structure(error, name_of(file)) from error
     if problems:
         raise InputError(*problems)
     for mechanism in found:

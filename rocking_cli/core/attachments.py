@@ -34,6 +34,7 @@ class Refused(PydanticCustomError):
     """
 
     def __new__(cls, loc: Loc, field: str, reason: str) -> Refused:
+        """Make it as pydantic knows such errors; braces in a message would be pydantic's."""
         return super().__new__(cls, "geometry", "{reason}", {"reason": reason, "field": (*loc, field)})
 
     def __init__(self, loc: Loc, field: str, reason: str) -> None:
@@ -212,7 +213,8 @@ def _holds(corners: np.ndarray, point: complex) -> bool:
     """Whether a point is in a polygon, or next to its edge."""
     a, b = corners, np.roll(corners, -1)
     edge = b - a
-    long = np.where(edge == 0, 1.0, np.abs(edge) ** 2)
+    long = np.abs(edge) ** 2
+    long[long == 0] = 1.0  # also of an edge so short that its square vanishes
     along = np.clip(((point - a) * edge.conj()).real / long, 0.0, 1.0)
     if np.abs(point - a - along * edge).min() <= OUTSIDE * float(np.abs(corners - corners.mean()).max()):
         return True

@@ -34,7 +34,7 @@ from rocking_cli.core.sketch import Outline, Sketch
 from rocking_cli.core.strength import Strength
 from rocking_cli.core.ties import Tie
 from rocking_cli.core.uncertainty import Uncertainty
-from rocking_cli.errors import FieldError
+from rocking_cli.errors import FieldError, InputError, Problem
 from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
@@ -592,7 +592,7 @@ class Mechanism(Described, ABC):
 
         Includes what is attached to the structure: see `rocking_cli.core.attached`.
         """
-        phi = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
+        phi = _rotations(phi)
         bodies, motions = self.weighed(), self.motion(phi, direction)
         total = coefficients(phi, direction, bodies, motions)
         if self._hung:
@@ -654,6 +654,17 @@ class Mechanism(Described, ABC):
             given = self.restitution
             return given.positive_to_negative if direction > 0 else given.negative_to_positive
         return self.restitution if self.restitution is not None else self.restitution_from_kinematics(direction)
+
+
+def _rotations(phi: Any) -> Reals:
+    """Rotations as an array of reals. Raises `InputError` for what is none."""
+    try:
+        found = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
+    except (TypeError, ValueError):
+        found = np.zeros(())
+    if found.ndim == 0:
+        raise InputError(Problem(f"must be an array of rotations, got {phi!r}", field="phi", hint="write [0.1]"))
+    return found
 
 
 def _of_the_bare(own: Callable[..., Any]) -> Callable[..., Any]:
