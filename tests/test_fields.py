@@ -6,7 +6,6 @@ A sample in the suite, always the same; `make fields` tries every field in every
 from __future__ import annotations
 
 import copy
-import json
 import os
 import random
 import re

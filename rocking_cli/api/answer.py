@@ -145,7 +145,9 @@ def _write(figure: Figure, path: Path) -> None:
 
 
 def _not_kept(question: str) -> Figure:
-    raise InputError(Problem(f"the plot of the answer {question!r} was not pickled with it", hint="ask again, and plot"))
+    raise InputError(
+        Problem(f"the plot of the answer {question!r} was not pickled with it", hint="ask again, and plot")
+    )
 
 
 def _found(columns: Columns) -> Columns:

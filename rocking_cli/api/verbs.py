@@ -66,7 +66,9 @@ def _structure(given: Structure) -> Prepared:
         return Prepared(given if given.name else given.model_copy(update={"name": given.mechanism}))
     if not isinstance(given, str | Path):
         hint = "make one, such as rk.Block(width=0.7, height=2.8)"
-        raise InputError(Problem(f"must be a mechanism or a YAML file, got {_kind(given)}", field="structure", hint=hint))
+        raise InputError(
+            Problem(f"must be a mechanism or a YAML file, got {_kind(given)}", field="structure", hint=hint)
+        )
     return Prepared(load_structure(given), str(given))
 
 
@@ -419,9 +421,7 @@ def _structure_figure(mechanism: Mechanism) -> Figure:
     return draw_structure(picture(mechanism), heading(mechanism))
 
 
-def _history_columns(
-    found: Mapping[ModelName, History], shaking: GroundMotion | None, mechanism: Mechanism
-) -> Columns:
+def _history_columns(found: Mapping[ModelName, History], shaking: GroundMotion | None, mechanism: Mechanism) -> Columns:
     from rocking_cli.studies.movements import Watched
     from rocking_cli.views import history_table
 

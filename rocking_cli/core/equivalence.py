@@ -12,7 +12,7 @@ import numpy as np
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.statics import Statics, statics
-from rocking_cli.errors import StructureError, PluginError, RockingError
+from rocking_cli.errors import PluginError, RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 
 AGREEMENT = 1e-9  # relative difference below which the two directions count as the same

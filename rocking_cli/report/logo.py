@@ -22,8 +22,8 @@ def _check_whole(data: bytes, kind: str, path: Path) -> None:
 
     try:
         if kind in KINDS:
-            with Image.open(io.BytesIO(data)) as picture:
-                picture.load()
+            Image.open(io.BytesIO(data)).verify()  # its checksums, which end the use of the object
+            Image.open(io.BytesIO(data)).load()
         else:
             fromstring(data)
     except Exception as error:  # of many kinds, without a base of their own

@@ -18,7 +18,7 @@ from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, O
 from rocking_cli.core.attached import Spring
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.size import extent
-from rocking_cli.errors import StructureError, RockingError
+from rocking_cli.errors import RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 from rocking_cli.studies.hung import Carried, End, Strand, carried, strands, walls
 

@@ -192,7 +192,9 @@ class StructureTable(Sequence["TableRow"]):
         if not {MECHANISM, BASE} & {column.path[0] for column in self.columns}:
             near = get_close_matches(MECHANISM, [column.path[0].lower() for column in self.columns], n=1)
             given = [column.heading for column in self.columns if near and column.path[0].lower() == near[0]]
-            hint = f"write {MECHANISM} instead of {given[0]}" if given else "add one that names the mechanism of each row"
+            hint = (
+                f"write {MECHANISM} instead of {given[0]}" if given else "add one that names the mechanism of each row"
+            )
             raise InputError(
                 Problem(
                     f"the table has neither a column {MECHANISM} nor a column {BASE}",

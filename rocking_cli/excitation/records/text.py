@@ -291,7 +291,9 @@ def _refuse_too_many(file: str, rows: int, columns: int) -> None:
     """Refuse a table larger than any record, before there is memory for it."""
     if rows > MOST_SAMPLES or rows * columns > MOST_NUMBERS:
         most = MOST_SAMPLES if rows > MOST_SAMPLES else MOST_NUMBERS // columns
-        raise InputError(Problem(f"a record has at most {most} samples in each column, this file has {rows} lines", file))
+        raise InputError(
+            Problem(f"a record has at most {most} samples in each column, this file has {rows} lines", file)
+        )
 
 
 def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> NDArray[np.float64] | None:

@@ -497,7 +497,9 @@ class Store:
     def _check_count(self) -> None:
         """Find out whether there are fewer runs than were finished."""
         try:
-            sealed = self._connection.execute("SELECT * FROM finished").fetchall() if self._has_table("finished") else []
+            sealed = (
+                self._connection.execute("SELECT * FROM finished").fetchall() if self._has_table("finished") else []
+            )
             # Afterwards, as somebody may be at work.
             self._finished = self._connection.execute("SELECT count(*) FROM run").fetchone()[0]
         except sqlite3.DatabaseError as error:

@@ -236,7 +236,10 @@ def _is_in_use_or_filled(place: Path) -> bool:
 def _others(aside: Path) -> str:
     """Say how many stores have been kept before this one."""
     number = aside.stem.rpartition("-")[2]
-    return f"; {int(number) - 1} earlier ones are beside it, to be removed by you" if number.isdecimal() else ""
+    if not number.isdecimal():
+        return ""
+    earlier = "an earlier one is" if number == "2" else f"{int(number) - 1} earlier ones are"
+    return f"; {earlier} kept beside it: remove what you do not need"
 
 
 def _create(path: Path) -> Path:

@@ -14,7 +14,7 @@ from rocking_cli.core.attached import PointMass, Spot
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
-from rocking_cli.errors import InputError, StructureError, Problem
+from rocking_cli.errors import InputError, Problem, StructureError
 from rocking_cli.studies.verification.chain import Chain, Control
 
 STEPS = 256  # to the end of a curve, between which it is held to be a function
