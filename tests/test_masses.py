@@ -134,10 +134,11 @@ DENSE = {
         "mechanism: symmetric_frame\ncolumn_width: 0.7\ncolumn_height: 3.2\nmass_ratio: 2.5\ndensity: 1900\n",
         1, "depth", "is missing",
     ),
-    "crushing under a load outside": (
+    "crushing under a tie outside": (
         "mechanism: rigid_body\npolygon: [[-1, 0], [0.5, 0], [0.5, 5], [-1, 5]]\ndensity: 1800\ndepth: 0.7\n"
-        "crushing: {strength: 1 MPa}\nloads:\n  - {name: rafter, mass: 600, at: [0.0, -5.0]}\n",
-        7, "loads[1].at", "lies outside body",
+        "crushing: {strength: 1 MPa}\nties:\n"
+        "  - {name: bar, from: {ground: [-3, 5]}, to: {at: [2, 5]}, stiffness: 1}\n",
+        7, "ties[1].to.at", "lies outside body",
     ),
     "no shape": (
         "mechanism: rigid_body\nR: 1.5\nalpha_deg: 14.0\ninertia_ratio: 1.3333\ndensity: 1800\ndepth: 1.0\n",

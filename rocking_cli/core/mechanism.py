@@ -16,7 +16,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from rocking_cli.core import equilibrium
 from rocking_cli.core.attached import Attached, ConstantForce, Follow, PointMass, Spring, springs_of
-from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
+from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, far_off, followed
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.collapse import CollapseMechanism
@@ -531,7 +531,7 @@ class Mechanism(Described, ABC):
         own: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if not self._is_laden:
             return own
-        carrier = Carrier.of(self.bodies(), self._shapes(), self.alike(), self.piece)
+        carrier = self._carrier
         taken = [*(thing.name for _, thing in own), *([INTERLOCK] if self.interlock is not None else [])]
         found = [*own, *attach(carrier, self.loads or [], self.ties or [], taken)]
         if self.interlock is not None:
@@ -545,6 +545,14 @@ class Mechanism(Described, ABC):
             carrier.spot(foot.body, top, ("interlock",), "height")
             found.append((("interlock",), self.interlock.attached(foot, density, self.gravity)))
         return found
+
+    @property
+    def _carrier(self) -> Carrier:
+        return Carrier.of(self.bodies(), self._shapes(), self.alike(), self.piece)
+
+    def far_off(self) -> list[str]:
+        """Return which of its loads are far off the bodies that carry them, a sentence each without a full stop."""
+        return list(far_off(self._carrier, self.loads)) if self.loads else []
 
     @property
     def _is_laden(self) -> bool:
