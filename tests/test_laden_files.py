@@ -9,6 +9,7 @@ import pytest
 from rocking_cli import Registry, load_structure
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
+from rocking_cli.structure import parse_structure
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 
@@ -147,7 +148,9 @@ def test_a_load_may_stand_above_its_block():
     assert not laden.far_off()
 
 
-@pytest.mark.parametrize(("at", "off"), [([0.0, 10.0], None), ([0.0, 10.2], "1"), ([-15.8, 2.0], "3"), ([5.59, 1], None)])
+@pytest.mark.parametrize(
+    ("at", "off"), [([0.0, 10.0], None), ([0.0, 10.2], "1"), ([-15.8, 2.0], "3"), ([5.59, 1], None)]
+)
 def test_a_load_far_from_its_block_is_doubted(tmp_path, at, off):
     """The block is 1 m x 5 m, hypot(1, 5) = 5.099 m large."""
     file = tmp_path / "s.yaml"
@@ -169,3 +172,31 @@ def test_hundreds_of_each_stand(tmp_path):
     file.write_text(f"{HEAVY}loads:\n{loads}ties:\n{ties}", encoding="utf-8")
     structure = load_structure(file)
     assert len(structure.attached) == 600
+
+
+def test_a_kinematic_rebound_is_that_of_the_impacts_in_sequence():
+    """Of a plain rectangle: (1 - 1.5 sin^2 alpha)^2 |1 - 1.5 cos^2 alpha| with tan alpha = b/h."""
+    block = Registry()["block"]
+    leaning = block(width=0.6, height=2.8, one_sided="positive", rebound="kinematic")
+    square = 0.6**2 / (0.6**2 + 2.8**2)  # sin^2 alpha
+    assert leaning.eta(Direction.POSITIVE) == pytest.approx((1 - 1.5 * square) ** 2 * abs(1 - 1.5 * (1 - square)))
+    assert leaning.restitution_is_kinematic
+    assert leaning.enlarged(2.0).eta(Direction.POSITIVE) == pytest.approx(leaning.eta(Direction.POSITIVE))
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ("rebound: kinematic", "requires one_sided"),
+        ("one_sided: positive\nrebound: kinematic\nloads: [{name: a, mass: 5, at: [0, 1]}]",
+         "cannot be kinematic: only for a plain rectangle does it follow from the shape; give a number"),
+        ("one_sided: positive\nloads: [{name: a, mass: 5, at: [0, 1]}]", "is missing: only for a plain rectangle"),
+        ("one_sided: positive\nrebound: kinematics", "must be a number, got the text 'kinematics'"),
+    ],
+)  # fmt: skip
+def test_a_rebound_that_does_not_follow_is_refused(fields, said):
+    text = "mechanism: block\nwidth: 1\nheight: 5\ndensity: 2000\ndepth: 1\n" + fields + "\n"
+    with pytest.raises(InputError) as error:
+        parse_structure(text, "s.yaml", "s")
+    (problem,) = error.value.problems
+    assert problem.field == "rebound" and said in problem.message

@@ -16,7 +16,16 @@ from pydantic import Field, ValidationError, model_validator
 
 from rocking_cli.core import equilibrium
 from rocking_cli.core.attached import Attached, ConstantForce, Follow, PointMass, Spring, springs_of
-from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, far_off, followed
+from rocking_cli.core.attachments import (
+    Carrier,
+    Loc,
+    Refused,
+    as_validation_error,
+    attach,
+    check_stretched,
+    far_off,
+    followed,
+)
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.collapse import CollapseMechanism
@@ -48,6 +57,9 @@ OF_THE_BARE = (
     "coefficients", "kinetic_inertia", "potential_energy", "uplift", "critical_rotation", "restitution_from_kinematics",
 )  # fmt: skip
 """Those whose overrides are closed forms of the bare mechanism: with loads or ties the general solvers answer."""
+KINEMATIC = "kinematic"
+"""What a file says of a rebound that follows from the shape."""
+NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
 LATER = {"dampers": "a damper", "inerters": "an inerter"}
 """What structures will have one day, and is refused by name until then."""
 ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
@@ -116,7 +128,11 @@ class Mechanism(Described, ABC):
         description="the only direction it rocks in, such as away from side walls that it leans on",
     )
     rebound: float | None = quantity(
-        "rate after an impact on them over that before", example=0.5, default=None, ge=0, lt=1
+        "rate after an impact on them over that before; of a plain rectangle also `kinematic`",
+        example=0.5,
+        default=None,
+        ge=0,
+        lt=1,
     )
     loads: list[Load] | None = Field(
         None,
@@ -173,6 +189,16 @@ class Mechanism(Described, ABC):
             if isinstance(data, dict) and key in data and key not in cls.model_fields:
                 raise geometry_error(key, f"{LATER[key]} is not in this version: leave it out")
         return data
+
+    @model_validator(mode="before")
+    @classmethod
+    def _rebound_from_impacts(cls, data: Any) -> Any:
+        """Leave `rebound: kinematic` to the theory of impacts, as if it were not given."""
+        if not isinstance(data, dict) or data.get("rebound") != KINEMATIC:
+            return data
+        if data.get("one_sided") is None:
+            raise geometry_error("rebound", NEEDS_A_SIDE)
+        return {**data, "rebound": None}
 
     def __init__(self, /, **fields: Any) -> None:
         try:
@@ -293,12 +319,13 @@ class Mechanism(Described, ABC):
 
     def _check_one_sided(self) -> None:
         if self.one_sided is None and self.rebound is not None:
-            raise Refused((), "rebound", "requires one_sided: otherwise the structure rocks through to the other side")
+            raise Refused((), "rebound", NEEDS_A_SIDE)
         if self.one_sided is not None and self.restitution is not None:
             raise Refused((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
         if self.one_sided is not None and self.rebound is None and self.rebound_from_impacts() is None:
-            reason = "is missing: only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
-            raise Refused((), "rebound", reason)
+            what = f"cannot be {KINEMATIC}" if "rebound" in self.model_fields_set else "is missing"
+            why = "only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
+            raise Refused((), "rebound", f"{what}: {why}")
 
     def _check_strength(self) -> None:
         if not isinstance(self.strength, Strength):  # None, or a field of a plugin of that name
