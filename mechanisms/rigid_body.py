@@ -199,7 +199,7 @@ class RigidBody(SingleBody):
         return super().total_mass()
 
     def volume(self) -> float:
-        """Of a polygon the area that its inertia has too: the arcs of rounded feet are exact, however they are drawn."""
+        """Of a polygon the area that its inertia has too: arcs of rounded feet are exact, however they are drawn."""
         if self._way != "polygon":
             return super().volume()
         return self._given_depth * sum(sign * piece.mass for sign, piece in self._pieces)

@@ -11,7 +11,7 @@ from rocking_cli.core import Direction, Statics
 from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.restitution import why_none
-from rocking_cli.core.size import doubts
+from rocking_cli.core.size import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.holding import NOT_CHECKED, joints_in_words, why_unknown
 from rocking_cli.dynamics.model import ModelName
@@ -178,7 +178,7 @@ def doubts(content: Assessment) -> list[str]:
         said.append(content.mechanism.caution)
     said += [
         f"Check the sizes and their units: {doubt}{'' if doubt.endswith('?') else '.'}"
-        for doubt in doubts(content.mechanism)
+        for doubt in doubts_about_size(content.mechanism)
     ]
     etas = content.structure.etas
     given = restitution_source(content.mechanism) == "given"
