@@ -10,7 +10,7 @@ STAMP := $(VENV)/.installed
 RELEASE_STAMP := $(VENV)/.installed-release
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz properties lint type contracts check bench validation stub pictures \
+.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench validation stub pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -69,6 +69,9 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 
 fuzz: setup  ## Hostile records, structures and command lines; INPUTS=100000 is how many
 	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FUZZ'] = '$(or $(INPUTS),10000)'; sys.exit(pytest.main(['-q', 'tests/test_fuzz.py']))"
+
+fields: setup  ## Every field of every example and starter, spoilt in every way; PAIRS=1000 is how many pairs as well
+	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FIELDS'] = '$(or $(PAIRS),1000)'; sys.exit(pytest.main(['-q', 'tests/test_fields.py']))"
 
 properties: setup  ## New examples for every property test, random ones; EXAMPLES=1000 is how many for each
 	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_PROPERTIES'] = '$(or $(EXAMPLES),500)'; sys.exit(pytest.main(['-q', '-n', 'auto', '-m', 'hypothesis', '--ignore=tests/test_fuzz.py', 'tests']))"

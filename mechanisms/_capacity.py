@@ -41,10 +41,16 @@ def read_curve(path: Path) -> tuple[list[Point], list[int]]:
     return points, lines
 
 
+LEAST = 1e-12  # of displacements and ratios that are not zero: slopes of smaller ones overflow
+
+
 def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:
     """What keeps points [displacement, ratio] from being the curve of a rocking structure, and at which of them."""
     if not np.isfinite(points).all():
         return int(np.argmin(np.isfinite(points).all(axis=1))), "must be finite numbers"
+    for k, values in enumerate(points):
+        if any(0 < abs(value) < LEAST for value in values):
+            return k, f"has a value closer to zero than {LEAST:g}: write 0"
     if points[0][0] != 0:
         return 0, f"begins at {points[0][0]:g} m: the first point is at rest, with the ratio at uplift"
     for k, ((d, _), (after, _)) in enumerate(pairwise(points), 1):

@@ -17,6 +17,7 @@ from rocking_cli.core.fields import Described, Name
 SCAN = 24  # places of a crack at which it is looked for first; of two, of either
 EDGE = 1e-6  # of its line: as near to its ends as a crack may come
 SAME_PLACE = 1e-5  # of its line: the cracks of both directions that are nearer are one
+NONE = 1e100  # stands for an infinite lambda, as searches subtract values
 FINE = 1e-9  # of its line: how near to the least it is sought
 
 
@@ -258,22 +259,22 @@ def weakest(lambda_at: Callable[[Mapping[str, float]], float], names: Sequence[s
     """
     from scipy.optimize import Bounds, minimize, minimize_scalar
 
+    def at(*shares: float) -> float:
+        return min(lambda_at(dict(zip(names, map(float, shares), strict=True))), NONE)
+
     shares = (np.arange(SCAN) + 0.5) / SCAN
     if len(names) == 1:
-        values = np.array([lambda_at({names[0]: float(share)}) for share in shares])
+        values = np.array([at(share) for share in shares])
         k = int(values.argmin())
         low = EDGE if k == 0 else float(shares[k - 1])
         high = 1 - EDGE if k == SCAN - 1 else float(shares[k + 1])
-        found = minimize_scalar(
-            lambda share: lambda_at({names[0]: float(share)}), bounds=(low, high), method="bounded",
-            options={"xatol": FINE},
-        )  # fmt: skip
+        found = minimize_scalar(at, bounds=(low, high), method="bounded", options={"xatol": FINE})
         return {names[0]: float(found.x)}
     coarse = shares[::2]
     grid = [(float(one), float(other)) for one in coarse for other in coarse]
-    start = min(grid, key=lambda pair: lambda_at(dict(zip(names, pair, strict=True))))
+    start = min(grid, key=lambda pair: at(*pair))
     result = minimize(
-        lambda pair: lambda_at(dict(zip(names, (float(each) for each in pair), strict=True))), start,
+        lambda pair: at(*pair), start,
         method="Nelder-Mead", bounds=Bounds([EDGE] * 2, [1 - EDGE] * 2), options={"xatol": FINE, "fatol": 0.0},
     )  # fmt: skip
     return dict(zip(names, (float(each) for each in result.x), strict=True))

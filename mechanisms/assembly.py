@@ -37,7 +37,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
-from rocking_cli.errors import MechanismError
+from rocking_cli.errors import StructureError
 
 ABOVE = 1e-6  # of how far they are apart: hinges that are above one another
 SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
@@ -215,7 +215,7 @@ class Assembly(Membered):
                 why += f"; if it leans there, give one_sided: {direction.opposite.label}"
             raise self._refused(("blocks",), why) from None
         except analysis.AssemblyFault as error:
-            raise MechanismError(str(error)) from None
+            raise StructureError(str(error)) from None
 
     def _check_lead(self, direction: Direction) -> None:
         """Refuse a block that cannot lead."""
@@ -316,7 +316,7 @@ class Assembly(Membered):
         try:
             return analysis.linkage(self._blocks, self._contacts, self._guides, self._collapse(direction))
         except analysis.AssemblyFault as error:
-            raise MechanismError(f"in the {direction.label} direction {error}") from None
+            raise StructureError(f"in the {direction.label} direction {error}") from None
 
     def _joint(self, k: int) -> str:
         contact = self._contacts[k]
@@ -336,11 +336,11 @@ class Assembly(Membered):
     @per_direction
     def _linkage(self, direction: Direction) -> LinkageMotion:
         if direction not in self.directions:
-            raise MechanismError(f"it cannot rock in the {direction.label} direction")
+            raise StructureError(f"it cannot rock in the {direction.label} direction")
         found = self._groups(direction)
         if found.slides:
             where = ", ".join(self._joint(k) for k in found.slides)
-            raise MechanismError(
+            raise StructureError(
                 f"in the {direction.label} direction the mechanism slides between {where} at "
                 f"{self._collapse(direction).multiplier:.4g} g: no rocking model exists for sliding. `rocking "
                 "collapse` shows the mechanism and the friction required"
@@ -372,12 +372,12 @@ class Assembly(Membered):
                     f"friction of {mu} allows is carried between {', and between '.join(joints)}, because joints "
                     f"without friction never slide: give `friction`, such as {mu}"
                 )
-            raise MechanismError(f"in the {direction.label} direction {why}") from None
+            raise StructureError(f"in the {direction.label} direction {why}") from None
         self._check_slips_off(direction, linkage)
         turns = float(linkage.motions(np.zeros(1))[lead].dpsi[0])
         number = next(k for k, group in enumerate(found.groups) if lead in group)
         if turns * found.velocity[number, 2] < 0:
-            raise MechanismError(
+            raise StructureError(
                 f"in the {direction.label} direction {lead} turns the other way as the rest goes {direction.label}: "
                 "let another block lead"
             )
@@ -401,7 +401,7 @@ class Assembly(Membered):
                 gap = ((b - a) * (contact.normal * turn).conjugate()).real
                 if gap <= OFF * contact.length:
                     what = "goes into" if gap < -OFF * contact.length else "slides along"
-                    raise MechanismError(
+                    raise StructureError(
                         f"in the {direction.label} direction {contact.b} {what} {contact.a} as it moves: no "
                         "rocking model exists for that"
                     )
@@ -483,7 +483,7 @@ class Assembly(Membered):
         return ""
 
     def collapse(self, direction: Direction) -> CollapseMechanism:
-        """The weakest mechanism of a direction. Raises `MechanismError` where there is none."""
+        """The weakest mechanism of a direction. Raises `StructureError` where there is none."""
         found = self._groups(direction)
         state = self._collapse(direction)
         friction = self._needed(direction)
@@ -541,7 +541,7 @@ class Assembly(Membered):
             push = np.full(1, -int(direction) * share * self.gravity + 0j)
             found = self._admissible(direction, here, Going(np.zeros(1), np.zeros(1), push))[0]
             if found is None:
-                raise MechanismError(f"the forces in its joints at {phi:.4g} rad could not be found")
+                raise StructureError(f"the forces in its joints at {phi:.4g} rad could not be found")
             return found, share
 
         try:

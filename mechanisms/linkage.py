@@ -33,7 +33,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.fields import Name
 from rocking_cli.core.ties import Place, Tie
-from rocking_cli.errors import MechanismError
+from rocking_cli.errors import MechanismError, StructureError
 
 MOST_CRACKS = 2  # in a direction
 ALIKE = 1e-6  # of the size of the structure: how far an image may be from the body it is of
@@ -282,7 +282,7 @@ class Linkage(Membered):
 
     def _linkage(self, direction: Direction) -> LinkageMotion:
         if direction not in self._linkages:
-            raise MechanismError(f"it cannot rock in the {direction.label} direction")
+            raise StructureError(f"it cannot rock in the {direction.label} direction")
         return self._linkages[direction]
 
     def piece(self, body: str, at: complex) -> str:

@@ -198,6 +198,12 @@ class RigidBody(SingleBody):
             return sum(sign * piece.mass for sign, piece in self._pieces)
         return super().total_mass()
 
+    def volume(self) -> float:
+        """Of a polygon the area that its inertia has too: arcs of rounded feet are exact, however they are drawn."""
+        if self._way != "polygon":
+            return super().volume()
+        return self._given_depth * sum(sign * piece.mass for sign, piece in self._pieces)
+
     def _of_parts(self, key: str) -> list[float | None]:
         """Density or depth of every plate among the parts: its own, or that of the body."""
         own = [getattr(part, key) for part in self.parts or () if not part.opening]

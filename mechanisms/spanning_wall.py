@@ -146,7 +146,7 @@ class SpanningWall(Mechanism):
 
     def volume(self) -> float:
         """Of the wall; its cuts may depend on its weight."""
-        return self.thickness * self.height * self.depth if self.depth is not None else super().volume()
+        return self.thickness * self.height * self._given_depth
 
     def bodies(self) -> Sequence[Body]:
         cuts = self._cuts

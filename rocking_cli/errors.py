@@ -92,12 +92,6 @@ class FieldError(InputError, ValueError):
     """Fields that a mechanism made in Python does not have, or values that they cannot have; a `ValueError` too."""
 
 
-def about(name: str | None, error: Exception) -> str:
-    """The message of an error that begins with the name of what it is about, once."""
-    text = str(error)
-    return text if text.startswith(f"{name}: ") else f"{name}: {text}"
-
-
 def renamed(error: InputError, arguments: Mapping[str, str]) -> InputError:
     """The same problems, with other names for the arguments of a function, which stand in backticks: `dt`.
 
@@ -136,9 +130,30 @@ class Refused(RockingError):
 
 
 class MechanismError(RockingError):
-    """A mechanism or plugin that does not hold its side of the contract, or whose mechanics has no answer."""
+    """A mechanism or plugin that does not hold its side of the contract."""
 
     exit_code = 3
+
+
+class StructureError(MechanismError):
+    """A structure for which its mechanism has no answer, such as one that cannot stand: its file is to be changed."""
+
+    exit_code = InputError.exit_code
+
+
+def of_structure(error: MechanismError, name: str) -> MechanismError:
+    """Return an error of the same kind whose message begins with the name of the structure, once.
+
+    Parameters
+    ----------
+    error : MechanismError
+        What its mechanism says.
+    name : str
+        What to call the structure.
+    """
+    said, begins = str(error), f"{name}: "
+    kind = type(error) if isinstance(error, StructureError) else MechanismError
+    return kind(said if said.startswith(begins) else begins + said)
 
 
 class PluginError(MechanismError):

@@ -68,7 +68,7 @@ def of_document(document: Document, default_name: str, folder: Path, registry: R
     fields = {key: value for key, value in document.data.items() if key != "mechanism"}
     if cls is not None:
         try:
-            mechanism = cls.from_fields({"name": default_name, **fields}, folder)
+            mechanism = cls.from_fields({**fields, "name": fields.get("name", default_name) or default_name}, folder)
         except ValidationError as error:
             lister = f"`rocking mechanisms {cls.mechanism}` lists the fields"
             found = error.errors(include_url=False)

@@ -2,6 +2,9 @@
 
 import doctest
 import json
+import pickle
+import time
+from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 
 import numpy as np
@@ -10,8 +13,10 @@ from mypy import api as mypy
 from pydantic import ValidationError
 
 import rocking_cli as rk
+from rocking_cli.api.answer import Answer
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import history
+from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES, PROJECT
 from tests.test_cli import run_json
 
@@ -246,3 +251,54 @@ def test_a_motion_keeps_samples_of_its_own():
 def test_factors_in_several_dimensions_are_refused(scales):
     with pytest.raises(rk.InputError, match="scales must be one factor or a list of them"):
         rk.respond_each(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", models="nonlinear", scales=scales)
+
+
+# --- what is refused, and what travels
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda block: rk.equiv({"mechanism": "block"}), "structure must be a mechanism or a YAML file, got a dict"),
+        (lambda block: rk.respond(rk.build_models(block)[0], ACCEL), "structure must be a mechanism or a YAML file"),
+        (lambda block: rk.respond(block, np.zeros(9)), "motion must be a ground motion, a pulse or a file, got a nd"),
+        (lambda block: rk.spectrum(block, ACCEL, count=-1), "count must be a whole number of at least 1, got -1"),
+        (lambda block: rk.spectrum(block, ACCEL, count=0), "count must be a whole number of at least 1, got 0"),
+        (lambda block: block.coefficients(0.1, rk.Direction.POSITIVE), "phi must be an array of rotations, got 0.1"),
+        (lambda block: block.coefficients("a", rk.Direction.POSITIVE), "phi must be an array of rotations, got 'a'"),
+        (lambda block: block.kinetic_inertia(0.1, rk.Direction.POSITIVE), "phi must be an array of rotations"),
+    ],
+)
+def test_an_argument_of_another_kind_is_an_error_of_the_tool(ask, said):
+    with pytest.raises(rk.InputError, match=said):
+        ask(rk.Block(width=0.7, height=2.8))
+
+
+def test_answers_can_be_pickled_with_their_plots():
+    block = rk.Block(width=0.7, height=2.8)
+    for answer in (rk.equiv(block), rk.respond(block, "sine:0.3g:0.8s", models="nonlinear")):
+        copy = pickle.loads(pickle.dumps(answer))
+        assert copy.to_dict() == answer.to_dict() and copy.sentences == answer.sentences
+        columns = answer.columns()
+        assert all(np.array_equal(copy.columns()[name], columns[name]) for name in columns)
+        assert len(copy.plot().axes) == len(answer.plot().axes)
+        assert pickle.loads(pickle.dumps(copy)).to_dict() == answer.to_dict()
+    many = pickle.loads(pickle.dumps(rk.respond_each(block, "sine:0.3g:0.8s", models="nonlinear")))
+    with pytest.raises(rk.InputError, match="the plot of the answer 'responses' was not pickled with it"):
+        many.plot()
+
+
+def test_threads_draw_one_after_another(monkeypatch):
+    """Matplotlib fails where two threads draw at once."""
+    drawing, most = [], []
+
+    def figure():
+        drawing.append(1)
+        most.append(len(drawing))
+        time.sleep(0.01)
+        drawing.pop()
+
+    answer = Answer("q", None, View({}, []), dict, figure)
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda _: answer.plot(), range(8)))
+    assert max(most) == 1

@@ -384,5 +384,5 @@ def test_no_number_is_minus_nothing():
 
 
 def test_the_name_of_a_structure_begins_a_message_once():
-    assert errors.about("pier", errors.MechanismError("pier: it locks")) == "pier: it locks"
-    assert errors.about("pier", errors.MechanismError("it locks")) == "pier: it locks"
+    for text in ("pier: it locks", "it locks"):
+        assert str(errors.of_structure(errors.MechanismError(text), "pier")) == "pier: it locks"

@@ -10,6 +10,7 @@ import time
 import pytest
 from click.testing import CliRunner
 
+from rocking_cli.__main__ import run
 from rocking_cli.cli import endings
 from rocking_cli.cli.main import main
 from tests.conftest import EXAMPLES
@@ -73,6 +74,29 @@ def test_an_interrupt_ends_any_command_with_130(monkeypatch):
     monkeypatch.setattr("rocking_cli.cli.structures.load", interrupt)
     result = CliRunner().invoke(main, ["equiv", str(EXAMPLES / "block.yaml")])
     assert result.exit_code == 130 and result.stderr == "error: interrupted\n"
+
+
+def test_an_interrupt_during_the_first_imports_ends_it_with_130(monkeypatch, capsys):
+    class Interrupting:
+        def find_spec(self, name, path=None, target=None):
+            if name == "rocking_cli.cli.main":
+                raise KeyboardInterrupt
+
+    monkeypatch.delitem(sys.modules, "rocking_cli.cli.main")
+    monkeypatch.setattr(sys, "meta_path", [Interrupting(), *sys.meta_path])
+    with pytest.raises(SystemExit) as ended:
+        run()
+    assert ended.value.code == 130 and capsys.readouterr().err == "error: interrupted\n"
+
+
+@pytest.mark.parametrize("given", ["x", "-1", "1.5", "9" * 12, "٣"])
+def test_a_date_of_build_that_is_none_is_named(monkeypatch, given):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", given)
+    result = CliRunner().invoke(main, ["equiv", str(EXAMPLES / "block.yaml")])
+    assert result.exit_code == 2
+    assert result.stderr.startswith("error: SOURCE_DATE_EPOCH must be a whole number of at most 11 digits")
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    assert CliRunner().invoke(main, ["equiv", str(EXAMPLES / "block.yaml")]).exit_code == 0
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux has it")  # noqa: PTH110

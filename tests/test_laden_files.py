@@ -7,7 +7,9 @@ import re
 import pytest
 
 from rocking_cli import Registry, load_structure
+from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
+from rocking_cli.structure import parse_structure
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 
@@ -28,10 +30,10 @@ def tie(fields, of=HEAVY):
 
 CASES = [
     # places
-    (load("mass: 5, at: [0.6, 1]"), 7, "loads[1].at", r"\[0.6, 1\] lies outside block, whose corners are from x"),
     (load("mass: 5, at: [0.1, 1], body: colums", FRAME), 7, "loads[1].body", "no body 'colums': did you mean columns"),
     (load("mass: 5, at: [0.1, 1]", FRAME), 7, "loads[1].body", "is missing: say which body, of columns, beam"),
-    (tie("from: {ground: [-3, 1]}, to: {at: [0, 9]}, stiffness: 1"), 7, "ties[1].to.at", "lies outside block"),
+    (tie("from: {ground: [-3, 1]}, to: {at: [0, 9]}, stiffness: 1"), 7, "ties[1].to.at",
+     r"\[0, 9\] lies outside block, whose corners are from x"),
     (tie("path: [{ground: [0, 0]}, {at: [0, 9]}], stiffness: 1"), 7, "ties[1].path[2].at", "lies outside block"),
     (tie("bed: {from: [-0.5, 0], to: [0.7, 0]}, modulus: 1"), 7, "ties[1].bed.to", "lies outside block"),
     # what nothing stretches
@@ -122,16 +124,40 @@ def test_a_wrong_file_gets_one_message_at_its_place(text, line, field, said, tmp
 
 def test_the_command_line_says_the_same(tmp_path):
     file = tmp_path / "s.yaml"
-    file.write_text(load("mass: 5, at: [0.6, 1]"), encoding="utf-8")
+    file.write_text(load("mass: 5, at: [0, 1], weight: 2"), encoding="utf-8")
     for command in (("equiv",), ("respond", "--release", "1deg"), ("draw",)):
-        assert f"{file}:7:28: loads[1].at" in run(*command, file, code=2).stderr.replace("\n", "")
+        assert f"{file}:7:44: loads[1].weight" in run(*command, file, code=2).stderr.replace("\n", "")
 
 
 def test_in_python_the_argument_is_named():
-    with pytest.raises(InputError, match=r"loads\[1\]\.at: \[0\.6, 1\] lies outside block"):
-        Registry()["block"](
-            width=1.0, height=5.0, mass=1.0, restitution=0.9, loads=[{"name": "a", "mass": 5.0, "at": [0.6, 1.0]}]
-        )
+    bar = {"name": "t", "from": {"ground": [-3.0, 1.0]}, "to": {"at": [0.6, 1.0]}, "stiffness": 1.0}
+    with pytest.raises(InputError, match=r"ties\[1\]\.to\.at: \[0\.6, 1\] lies outside block"):
+        Registry()["block"](width=1.0, height=5.0, mass=1.0, restitution=0.9, ties=[bar])
+
+
+def test_a_load_may_stand_above_its_block():
+    """The centre of mass of a statue above its pedestal, against the sums of both by hand."""
+    b, h, M, m, y = 0.5, 2.5, 9000.0, 700.0, 7.2
+    laden = Registry()["block"](
+        width=2 * b, height=2 * h, mass=M, restitution=0.9, loads=[{"name": "statue", "mass": m, "at": [0.0, y]}]
+    )
+    assert laden.uplift(Direction.POSITIVE) == pytest.approx((M + m) * b / (M * h + m * y), rel=1e-12)
+    inertia = 4 / 3 * M * (b**2 + h**2) + m * (b**2 + y**2)
+    assert laden.kinetic_inertia([0.0], Direction.POSITIVE)[0] == pytest.approx(inertia, rel=1e-12)
+    assert not laden.far_off()
+
+
+@pytest.mark.parametrize(
+    ("at", "off"), [([0.0, 10.0], None), ([0.0, 10.2], "1"), ([-15.8, 2.0], "3"), ([5.59, 1], None)]
+)
+def test_a_load_far_from_its_block_is_doubted(tmp_path, at, off):
+    """The block is 1 m x 5 m, hypot(1, 5) = 5.099 m large."""
+    file = tmp_path / "s.yaml"
+    file.write_text(load(f"mass: 5, at: {at}"), encoding="utf-8")
+    said = " ".join(run("equiv", file).stderr.split())
+    assert ("times the size of block away from it" in said) == (off is not None)
+    if off is not None:
+        assert f"the load a at [{at[0]:g}, {at[1]:g}] m is {off} times the size of block away" in said
 
 
 def test_none_of_them_is_bare():
@@ -145,3 +171,31 @@ def test_hundreds_of_each_stand(tmp_path):
     file.write_text(f"{HEAVY}loads:\n{loads}ties:\n{ties}", encoding="utf-8")
     structure = load_structure(file)
     assert len(structure.attached) == 600
+
+
+def test_a_kinematic_rebound_is_that_of_the_impacts_in_sequence():
+    """Of a plain rectangle: (1 - 1.5 sin^2 alpha)^2 |1 - 1.5 cos^2 alpha| with tan alpha = b/h."""
+    block = Registry()["block"]
+    leaning = block(width=0.6, height=2.8, one_sided="positive", rebound="kinematic")
+    square = 0.6**2 / (0.6**2 + 2.8**2)  # sin^2 alpha
+    assert leaning.eta(Direction.POSITIVE) == pytest.approx((1 - 1.5 * square) ** 2 * abs(1 - 1.5 * (1 - square)))
+    assert leaning.restitution_is_kinematic
+    assert leaning.enlarged(2.0).eta(Direction.POSITIVE) == pytest.approx(leaning.eta(Direction.POSITIVE))
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ("rebound: kinematic", "requires one_sided"),
+        ("one_sided: positive\nrebound: kinematic\nloads: [{name: a, mass: 5, at: [0, 1]}]",
+         "cannot be kinematic: only for a plain rectangle does it follow from the shape; give a number"),
+        ("one_sided: positive\nloads: [{name: a, mass: 5, at: [0, 1]}]", "is missing: only for a plain rectangle"),
+        ("one_sided: positive\nrebound: kinematics", "must be a number, got the text 'kinematics'"),
+    ],
+)  # fmt: skip
+def test_a_rebound_that_does_not_follow_is_refused(fields, said):
+    text = "mechanism: block\nwidth: 1\nheight: 5\ndensity: 2000\ndepth: 1\n" + fields + "\n"
+    with pytest.raises(InputError) as error:
+        parse_structure(text, "s.yaml", "s")
+    (problem,) = error.value.problems
+    assert problem.field == "rebound" and said in problem.message

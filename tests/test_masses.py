@@ -11,6 +11,8 @@ import pytest
 from mechanisms.wall import Wall
 from rocking_cli import Registry, load_structure
 from rocking_cli.core import Direction
+from rocking_cli.errors import InputError
+from rocking_cli.structure import parse_structure
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -117,3 +119,38 @@ def test_the_same_with_a_mass_of_the_whole(name, given):
         assert heavy.uplift(direction) == pytest.approx(bare.uplift(direction), rel=1e-12)
         assert heavy.critical_rotation(direction) == pytest.approx(bare.critical_rotation(direction), rel=1e-9)
         assert heavy.eta(direction) == pytest.approx(bare.eta(direction), rel=1e-12)
+
+
+DENSE = {
+    "spanning wall": (
+        "mechanism: spanning_wall\nthickness: 0.3\nheight: 3.0\nhinge: weakest\noverburden: 20 kN\ndensity: 1800\n",
+        1, "depth", "is missing",
+    ),
+    "polygon": (
+        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [0.9, 3.2], [0.2, 3.0]]\ndensity: 2400\n",
+        1, "depth", "is missing",
+    ),
+    "columns": (
+        "mechanism: symmetric_frame\ncolumn_width: 0.7\ncolumn_height: 3.2\nmass_ratio: 2.5\ndensity: 1900\n",
+        1, "depth", "is missing",
+    ),
+    "crushing under a tie outside": (
+        "mechanism: rigid_body\npolygon: [[-1, 0], [0.5, 0], [0.5, 5], [-1, 5]]\ndensity: 1800\ndepth: 0.7\n"
+        "crushing: {strength: 1 MPa}\nties:\n"
+        "  - {name: bar, from: {ground: [-3, 5]}, to: {at: [2, 5]}, stiffness: 1}\n",
+        7, "ties[1].to.at", "lies outside body",
+    ),
+    "no shape": (
+        "mechanism: rigid_body\nR: 1.5\nalpha_deg: 14.0\ninertia_ratio: 1.3333\ndensity: 1800\ndepth: 1.0\n",
+        5, "density", "the shape of its body is not known: give its mass instead",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", DENSE)
+def test_masses_that_cannot_be_had_are_the_mistake_of_the_file(name):
+    text, line, field, said = DENSE[name]
+    with pytest.raises(InputError) as caught:
+        parse_structure(text, "s.yaml", "s")
+    (found,) = caught.value.problems
+    assert (found.line, found.field) == (line, field) and said in found.message

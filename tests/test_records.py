@@ -6,7 +6,9 @@ import os
 import runpy
 import sys
 import time as clock
+import tracemalloc
 import zipfile
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -1172,6 +1174,35 @@ def test_what_expands_too_far_is_refused(write, monkeypatch):
     place = lying.index(b"PK\x01\x02") + 24
     lying[place : place + 4] = (1000).to_bytes(4, "little")  # says in its list that it is small
     assert problems(write(bytes(lying)))
+
+
+@pytest.mark.parametrize("pack", [partial(gzip.compress, compresslevel=1), lambda data: zipped(a=data)])
+def test_what_was_packed_a_thousand_times_smaller_is_refused_before_it_fills_the_memory(write, pack):
+    path = write(pack(b"0\n" * 20_000_000))
+    tracemalloc.start()
+    try:
+        (found,) = problems(path)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert "unpacked it is larger than" in found.message and most < 60e6
+
+
+def test_more_samples_than_a_record_has_are_refused_before_they_are_read(write, monkeypatch):
+    monkeypatch.setattr("rocking_cli.excitation.records.text.MOST_SAMPLES", 1000)
+    monkeypatch.setattr("rocking_cli.excitation.records.text.MOST_NUMBERS", 4000)
+    monkeypatch.setattr("rocking_cli.excitation.records.simcenter.MOST_SAMPLES", 1000)
+    (found,) = problems(write(b"# unit: g\n" + b"0\n" * 1001), dt=0.01)
+    assert "at most 1000 samples in each column" in found.message
+    (found,) = problems(write(b"0 1 2 3 4 5 6 7 8 9\n" * 401))
+    assert "at most 400 samples in each column" in found.message
+    (found,) = problems(write(b'{"dT": 0.01, "accel_data": [' + b"0.5, " * 1001 + b"1.0]}"))
+    assert "at most 1000 samples" in found.message
+    (found,) = problems(write(b"0 " * 1_000_000))
+    assert "a line of numbers has at most 1000000 characters" in found.message and found.line == 1
+    at2 = "A\nB\nACCELERATION IN UNITS OF G\nNPTS= 20000001, DT= .005 SEC\n 0.1 0.2\n"
+    (found,) = problems(write(at2.encode()))
+    assert "must be a whole number from 0 to 20000000" in found.message and found.line == 4
 
 
 def test_a_hostile_name_in_an_archive_is_shown_escaped(write):

@@ -233,3 +233,13 @@ def test_a_wrong_file_is_told(text, said):
     with pytest.raises(InputError) as caught:
         parse_structure(text, "b.yaml", "b", {"rigid_body": RigidBody})
     assert said in " ".join(str(caught.value).split())
+
+
+def test_rounded_feet_have_the_mass_of_their_arcs():
+    """Each foot loses the corner outside its quarter of a circle: (1 - pi/4) r^2."""
+    r, density, depth = 0.2, 2000.0, 0.5
+    body = RigidBody(polygon=box(0.0, 0.0, 1.0, 4.0), corner_radius=r, density=density, depth=depth)
+    (weighed,) = body.weighed()
+    assert weighed.mass == pytest.approx(density * depth * (4.0 - 2 * (1 - pi / 4) * r**2), rel=1e-13)
+    sharp = RigidBody(polygon=box(0.0, 0.0, 1.0, 4.0), density=density, depth=depth)
+    assert sharp.weighed()[0].mass == pytest.approx(4000.0, rel=1e-13)

@@ -203,3 +203,62 @@ def test_restart_puts_a_store_with_a_damaged_header_aside(sound, place, place_in
     result = command("fragility", sound.study, "--store", place, "--restart", "--json")
     assert result.exit_code == 0 and shown(result.stdout) == sound.shown
     assert place.with_name("study.before.db").read_bytes() == content
+
+
+def test_a_page_that_lost_its_runs_is_told_by_their_number(sound, place):
+    """The header of a page says how many rows are on it: with a smaller number SQLite finds nothing wrong."""
+    whole = bytearray(sound.store.read_bytes())
+    told = []
+    for start in range(4096, len(whole), 4096):
+        if whole[start] != 13 or whole[start + 4] < 40:  # no leaf of a table, or one of few rows
+            continue
+        content = bytearray(whole)
+        content[start + 4] -= 5
+        place.write_bytes(content)
+        with closing(sqlite3.connect(place)) as connection:
+            there = connection.execute("SELECT count(*) FROM run").fetchone()[0]
+        if there < 240:
+            told.append(240 - there)
+            result = command("results", place)
+            assert result.exit_code == 5
+            assert f"parts of the file are damaged: {240 - there} finished runs are missing" in result.stderr
+    assert told and set(told) == {5}
+    mended = command("fragility", sound.study, "--store", place, "--json")
+    assert shown(mended.stdout) == sound.shown
+    assert command("results", place).stderr == ""
+
+
+@pytest.mark.parametrize("column", [b"outcome", b"peak_ratio", b"number", b"reason"])
+def test_a_damaged_name_of_a_column_is_a_damaged_store(sound, place, column):
+    content = bytearray(sound.store.read_bytes())
+    for name in (b"CREATE TABLE run", b"CREATE TABLE sample"):
+        at = content.index(column, content.index(name)) if column in content[content.index(name) :][:400] else 0
+        if at:
+            content[at + 1] = 0xFF
+    place.write_bytes(content)
+    result = command("results", place)
+    assert result.exit_code == 2 and f"{place}: the store is damaged" in result.stderr
+
+
+def test_what_a_killed_restart_left_is_removed_unless_it_has_runs(sound, place):
+    fresh, filled = place.with_name("study.new.db"), place.with_name("study.new-2.db")
+    fresh.touch()
+    filled.write_bytes(sound.store.read_bytes())
+    other = place.with_name("study.news.db")
+    other.touch()
+    command("fragility", sound.study, "--store", place, "--restart")
+    assert names(place.parent) == ["study.before.db", "study.db", "study.new-2.db", "study.news.db"]
+
+
+def test_a_restart_keeps_no_store_without_runs_and_counts_those_that_it_keeps(sound, place, monkeypatch):
+    def end(*arguments):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("rocking_cli.studies.fragility.campaign.run", end)
+        for _ in range(3):
+            command("fragility", sound.study, "--store", place, "--restart")
+    assert names(place.parent) == ["study.before.db", "study.db"]  # only the first had runs
+    command("fragility", sound.study, "--store", place)
+    said = command("fragility", sound.study, "--store", place, "--restart").stderr
+    assert "study.before-2.db; an earlier one is kept beside it: remove what you do not need" in said

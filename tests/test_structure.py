@@ -86,6 +86,8 @@ WRONG = {
     "truth for a number": ("mechanism: block\nwidth: true\nheight: 4\n", 2, 8, "width", "got true"),
     "nothing for a number": ("mechanism: block\nwidth:\nheight: 4\n", 2, 7, "width", "got nothing"),
     "list for a number": ("mechanism: block\nwidth: [1]\nheight: 4\n", 2, 8, "width", "got a list"),
+    "tiny width": ("mechanism: block\nwidth: 1e-300\nheight: 4\n", 2, 8, "width", "must be at least 1e-06 m, got 1e-300"),
+    "tiny density": (BLOCK + "density: 1e-7\n", 4, 10, "density", "must be at least 1e-06 kg/m3, got 1e-07"),
     "zero": ("mechanism: block\nwidth: 0\nheight: 4\n", 2, 8, "width", "must be more than 0 m, got 0"),
     "negative": ("mechanism: block\nwidth: 1\nheight: -4\n", 3, 9, "height", "must be more than 0 m, got -4"),
     "infinite": ("mechanism: block\nwidth: .inf\nheight: 4\n", 2, 8, "width", "finite"),
@@ -351,3 +353,7 @@ def test_a_plugin_takes_units_without_a_line_of_its_own():
 def test_a_file_that_ends_too_early_has_a_line(text, line):
     (problem,) = problems(BLOCK + text)
     assert problem.line == line and "not YAML" in problem.message
+
+
+def test_a_name_that_is_left_empty_is_that_of_the_file():
+    assert parse_structure("mechanism: block\nname:\nwidth: 1\nheight: 4\n", "f.yaml", "f").name == "f"

@@ -182,6 +182,7 @@ class TestRows:
             ('block,x,1,"[1, 2"', "t.csv:3: height: not YAML"),
             ('block,x,1,"0,5"', "write a decimal point"),
             ("arch,x,1,2", "is not a field of arch"),
+            (f"block,x,{'9' * 5000},2", "width: a number of 5000 digits is beyond the range of numbers"),
         ],
     )  # fmt: skip
     def test_bad_rows_are_named_and_the_others_done(self, row, said):
@@ -206,6 +207,19 @@ class TestRows:
         assert "t.csv:1: widht is not a field of block" in said and "did you mean width?" in said
         assert "owner is not a field of block" in said
         assert rows(table("mechanism,name,width,height,# owner\nblock,a,1,2,me\n"))["a"].width == 1
+
+    def test_a_heading_in_capitals_or_of_endless_depth_is_named(self):
+        said = run("survey", table("Mechanism,NAME,Width\nblock,a,0.3\n"), code=2).stderr
+        assert "neither a column mechanism nor a column file" in said and "write mechanism instead of Mechanism" in said
+        said = run("survey", table(f"mechanism,loads{'.a' * 1000}\nblock,1\n"), code=2).stderr
+        assert "t.csv:1: 'loads.a.a" in said and "has more than 20 parts" in said
+
+    def test_a_file_in_a_row_is_named_with_what_is_wrong_in_it(self):
+        Path("typo.yaml").write_text("mechanism: block\nwidth: 0.7\nhight: 2.8\n", encoding="utf-8")
+        said = run("survey", table("name,file\na,typo.yaml\nb,wall.csv\n"), code=2).stderr
+        assert "t.csv:2: typo.yaml: hight is not a field of block" in said
+        assert "t.csv:2: typo.yaml: height is missing" in said
+        assert "t.csv:3: file: 'wall.csv' is not a structure file: its name must end in .yaml or .yml" in said
 
     def test_short_rows_are_taken_and_said(self):
         result = run("survey", table("mechanism,name,width,height,restitution\nblock,a,0.5,2\n"))

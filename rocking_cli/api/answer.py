@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from html import escape
 from importlib.util import find_spec
 from pathlib import Path
+from threading import RLock
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rocking_cli.errors import InputError, Problem
@@ -48,6 +50,13 @@ class Answer(Generic[R]):
     view: View
     columns: Callable[[], Columns]
     figure: Callable[[], Figure]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a pickle keeps: everything but a plot whose function is not that of a module."""
+        data = self.view.data() if callable(self.view.data) else self.view.data
+        columns, figure = partial(_found, self.columns()), self.figure
+        figure = figure if isinstance(figure, partial) else partial(_not_kept, self.question)
+        return {**vars(self), "view": View(data, self.view.parts), "columns": columns, "figure": figure}
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "result":
@@ -94,16 +103,10 @@ class Answer(Generic[R]):
         matplotlib.figure.Figure
             Figure to change, or to show in a notebook.
         """
-        figure = self.figure()
-        if file is not None:
-            from rocking_cli.io.files import check_writable, write_whole
-            from rocking_cli.plotting.style import save
-
-            path = Path(file)
-            if path.suffix.lower() not in (".png", ".svg", ".pdf"):
-                raise InputError(Problem("give a file name that ends in .png, .svg or .pdf", str(file)))
-            check_writable(path)
-            write_whole(path, lambda stream: save(figure, stream, format=path.suffix[1:].lower()))
+        with _DRAWING:
+            figure = self.figure()
+            if file is not None:
+                _write(figure, Path(file))
         return figure
 
     def __repr__(self) -> str:
@@ -125,6 +128,30 @@ class MappingAnswer(Answer[Mapping[K, V]], Mapping[K, V]):
 
     def __len__(self) -> int:
         return len(self.result)
+
+
+_DRAWING = RLock()
+"""Held while a plot is drawn or written: matplotlib is not made for several threads."""
+
+
+def _write(figure: Figure, path: Path) -> None:
+    from rocking_cli.io.files import check_writable, write_whole
+    from rocking_cli.plotting.style import save
+
+    if path.suffix.lower() not in (".png", ".svg", ".pdf"):
+        raise InputError(Problem("give a file name that ends in .png, .svg or .pdf", str(path)))
+    check_writable(path)
+    write_whole(path, lambda stream: save(figure, stream, format=path.suffix[1:].lower()))
+
+
+def _not_kept(question: str) -> Figure:
+    raise InputError(
+        Problem(f"the plot of the answer {question!r} was not pickled with it", hint="ask again, and plot")
+    )
+
+
+def _found(columns: Columns) -> Columns:
+    return columns
 
 
 def _html(part: Table | str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.oscillator import ResponseSpectrum
+    from rocking_cli.studies.contact import Contact
     from rocking_cli.studies.equivalent import EquivalentResponses
     from rocking_cli.studies.fragility.assess import Fragility
     from rocking_cli.studies.linearisation import Linearisation
@@ -62,6 +64,11 @@ def _with_gaps(values: NDArray[np.bool_], missing: NDArray[np.bool_]) -> Any:
 def _structure(given: Structure) -> Prepared:
     if isinstance(given, Mechanism):
         return Prepared(given if given.name else given.model_copy(update={"name": given.mechanism}))
+    if not isinstance(given, str | Path):
+        hint = "make one, such as rk.Block(width=0.7, height=2.8)"
+        raise InputError(
+            Problem(f"must be a mechanism or a YAML file, got {_kind(given)}", field="structure", hint=hint)
+        )
     return Prepared(load_structure(given), str(given))
 
 
@@ -76,7 +83,23 @@ def _read(given: Motion) -> GroundMotion | Pulse:
         return given
     if isinstance(given, str) and given.partition(":")[0] in PulseShapes() and not Path(given).exists():
         return parse_pulse(given)
+    if not isinstance(given, str | Path):
+        hint = "make one with rk.GroundMotion(name, dt, acceleration), the acceleration in m/s2"
+        what = f"must be a ground motion, a pulse or a file, got {_kind(given)}"
+        raise InputError(Problem(what, field="motion", hint=hint))
     return read_record(given)
+
+
+def _kind(given: object) -> str:
+    """Return the type of a value, for messages: `a dict`."""
+    name = type(given).__name__
+    return f"{'an' if name[0].lower() in 'aeiou' else 'a'} {name}"
+
+
+def _check_count(name: str, count: int, least: int = 1) -> None:
+    """Refuse a number of values of which there are too few. Raises `InputError`."""
+    if not isinstance(count, int) or count < least:
+        raise InputError(Problem(f"must be a whole number of at least {least}, got {count!r}", field=name))
 
 
 def _each(given: Any) -> list[Any]:
@@ -127,15 +150,9 @@ def equiv(structure: Structure) -> Answer[Equivalence | None]:
     from rocking_cli.views import equiv as views
 
     ready = _structure(structure)
-    mechanism, found = ready.mechanism, ready.equivalence if ready.why_no_block is None else None
-
-    def draw() -> Figure:
-        from rocking_cli.plotting.structure import draw_structure
-        from rocking_cli.studies.picture import picture
-
-        return draw_structure(picture(mechanism), heading(mechanism))
-
-    return Answer("equivalent block", found, views.view(ready), lambda: views.table([ready]), draw)
+    found = ready.equivalence if ready.why_no_block is None else None
+    columns, figure = partial(views.table, [ready]), partial(_structure_figure, ready.mechanism)
+    return Answer("equivalent block", found, views.view(ready), columns, figure)
 
 
 def draw(structure: Structure, *, at: float | None = None) -> Answer[Picture]:
@@ -221,13 +238,8 @@ def collapse(structure: Structure) -> MappingAnswer[Direction, CollapseMechanism
     mechanism = _structure(structure).mechanism
     found = collapses(mechanism)
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.structure import draw_structure
-        from rocking_cli.studies.picture import picture
-
-        return draw_structure(picture(mechanism), heading(mechanism))
-
-    return MappingAnswer("weakest mechanism", found, view(mechanism, found), lambda: table(found), figure)
+    columns, figure = partial(table, found), partial(_structure_figure, mechanism)
+    return MappingAnswer("weakest mechanism", found, view(mechanism, found), columns, figure)
 
 
 def record(motion: Motion, *, scale: float = 1.0) -> Answer[Measures]:
@@ -386,8 +398,6 @@ def respond(
     'rocks'
     """
     from rocking_cli.studies.contact import Contacts
-    from rocking_cli.studies.movements import Watched
-    from rocking_cli.views import history_table
     from rocking_cli.views.response import runs_view
 
     ready = _structure(structure)
@@ -399,19 +409,40 @@ def respond(
     nonlinear = found.get("nonlinear")
     contacts = {1: Contacts(ready.mechanism).check(nonlinear, shaking)} if nonlinear is not None else {}
 
-    def columns() -> Columns:
-        runs = {str(name): run for name, run in found.items()}
-        blocks = list(history_table.blocks(runs, shaking, watched=Watched(ready.mechanism)))
-        return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
-
-    def figure() -> Figure:
-        from rocking_cli.plotting.history import draw_history
-
-        checked = list(contacts.values()) if ready.mechanism.friction is not None else []
-        watched = Watched(ready.mechanism)
-        return draw_history(found, shaking, title, uplift=ready.uplift, contacts=checked, watched=watched)
-
+    columns = partial(_history_columns, found, shaking, ready.mechanism)
+    figure = partial(_history_figure, found, shaking, ready, title, contacts)
     return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism, contacts), columns, figure)
+
+
+def _structure_figure(mechanism: Mechanism) -> Figure:
+    from rocking_cli.plotting.structure import draw_structure
+    from rocking_cli.studies.picture import picture
+
+    return draw_structure(picture(mechanism), heading(mechanism))
+
+
+def _history_columns(found: Mapping[ModelName, History], shaking: GroundMotion | None, mechanism: Mechanism) -> Columns:
+    from rocking_cli.studies.movements import Watched
+    from rocking_cli.views import history_table
+
+    runs = {str(name): run for name, run in found.items()}
+    blocks = list(history_table.blocks(runs, shaking, watched=Watched(mechanism)))
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+
+def _history_figure(
+    found: Mapping[ModelName, History],
+    shaking: GroundMotion | None,
+    ready: Prepared,
+    title: str,
+    contacts: Mapping[int, Contact],
+) -> Figure:
+    from rocking_cli.plotting.history import draw_history
+    from rocking_cli.studies.movements import Watched
+
+    checked = list(contacts.values()) if ready.mechanism.friction is not None else []
+    watched = Watched(ready.mechanism)
+    return draw_history(found, shaking, title, uplift=ready.uplift, contacts=checked, watched=watched)
 
 
 def respond_each(
@@ -561,6 +592,7 @@ def spectrum(
     from rocking_cli.studies import spectrum as study
     from rocking_cli.views import spectrum as views
 
+    _check_count("count", count)
     shapes = [study.shape_of(_structure(each).mechanism, model, eta) for each in _each(structures)]
     shapes += [study.blocks_of(alpha, model, eta) for alpha in slenderness]
     shaking = [_motion(each) for each in _each(motions)]

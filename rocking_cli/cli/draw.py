@@ -72,10 +72,10 @@ def command(file: str | None, ratio: float | None, plot: Path | None, as_json: b
 
 
 def _picture(mechanism: Mechanism) -> Picture:
-    from rocking_cli.errors import MechanismError, about
+    from rocking_cli.errors import MechanismError, of_structure
     from rocking_cli.studies.picture import picture
 
     try:
         return picture(mechanism)
     except MechanismError as error:
-        raise MechanismError(about(mechanism.name, error)) from error
+        raise of_structure(error, mechanism.name or mechanism.mechanism) from error

@@ -49,9 +49,10 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
             if len(mechanisms) == 1:
                 raise
             terminal.error(str(error))
+            refused = error
             bad += 1
     if not found:
-        ctx.exit(MechanismError.exit_code)
+        ctx.exit(refused.exit_code)
     if as_csv:
         lines = io.BytesIO()
         write_csv(lines, [equiv.table(found)], digits=None)

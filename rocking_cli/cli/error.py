@@ -59,7 +59,7 @@ def command(
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 24-25.
     """
     from rocking_cli.cli import structures
-    from rocking_cli.errors import RockingError, about
+    from rocking_cli.errors import MechanismError, of_structure
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies.linearisation import compare
     from rocking_cli.views.error import view
@@ -69,8 +69,8 @@ def command(
     blocks = structure.equivalence
     try:
         curves, asked = compare(structure.mechanism, blocks, amplitudes, accelerations)
-    except RockingError as error:
-        raise type(error)(about(structure.name, error)) from error
+    except MechanismError as error:
+        raise of_structure(error, structure.name) from error
     if plot is not None:
         from rocking_cli.plotting.linearisation import draw_linearisation
 

@@ -17,7 +17,7 @@ import click
 from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
 from rocking_cli.cli.help import Context
-from rocking_cli.errors import CacheWarning, InputError, PluginWarning, RockingError
+from rocking_cli.errors import CacheWarning, InputError, PluginWarning, Problem, RockingError
 from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
@@ -28,6 +28,7 @@ COMMANDS = (
 )  # fmt: skip
 DO_WITHOUT = ("info",)
 """Commands that run even if the user's defaults are invalid."""
+LATEST = 11  # digits of SOURCE_DATE_EPOCH, up to the year 5138
 
 
 class _Context(Context):
@@ -51,6 +52,15 @@ class _Context(Context):
             warnings.simplefilter("always", PluginWarning)
             warnings.showwarning = _show(warnings.showwarning)
             return super().invoke(callback, *args, **named)
+
+
+def _check_environment() -> None:
+    """Refuse a date of build that no library can read. Raises `InputError`."""
+    given = os.environ.get("SOURCE_DATE_EPOCH", "0")
+    if not (given.isascii() and given.isdecimal() and len(given) <= LATEST):
+        hint = "unset this environment variable, or give seconds since 1970"
+        what = f"must be a whole number of at most {LATEST} digits, got {cut(repr(given))}"
+        raise InputError(Problem(what, field="SOURCE_DATE_EPOCH", hint=hint))
 
 
 def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
@@ -113,6 +123,7 @@ class LazyGroup(click.Group):
                 stream.reconfigure(errors="replace")  # a name that an old code page cannot spell ends nothing
         began = monotonic()
         try:
+            _check_environment()
             with endings.in_order():
                 return super().invoke(ctx)
         except click.ClickException as error:

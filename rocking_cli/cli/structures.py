@@ -11,8 +11,8 @@ import click
 from rocking_cli.cli import terminal
 from rocking_cli.cli.options import OPENING
 from rocking_cli.core import Mechanism
-from rocking_cli.core.size import doubtful_size
-from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, about
+from rocking_cli.core.size import doubts as odd
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.yaml_file import decoded
 from rocking_cli.structure import load_structure, parse_structure
@@ -41,7 +41,7 @@ def load(files: Sequence[str]) -> list[Mechanism]:
         except InputError as error:
             problems += error.problems
         except MechanismError as error:
-            raise MechanismError(about(name_of(file), error)) from error
+            raise of_structure(error, name_of(file)) from error
     if problems:
         raise InputError(*problems)
     for mechanism in found:
@@ -65,9 +65,8 @@ def warn_misleading(structure: Prepared, model: str) -> None:
 
 
 def doubts(mechanism: Mechanism) -> list[str]:
-    """Return the doubts about the sizes that were read."""
-    doubt = doubtful_size(mechanism)
-    return [f"{mechanism.name}: {doubt}"] if doubt is not None else []
+    """Return the doubts about the sizes and places that were read."""
+    return [f"{mechanism.name}: {doubt}" for doubt in odd(mechanism)]
 
 
 def load_each(files: Sequence[str]) -> tuple[list[Mechanism], list[str], int]:

@@ -122,7 +122,7 @@ def command(ctx: click.Context, file: str, asked: GroundMotions, site: str | Non
     _report(found, table.sheet.file)
     if not found.rows:
         first = found.bad[0].error
-        ctx.exit(MechanismError.exit_code if isinstance(first, MechanismError) else InputError.exit_code)
+        ctx.exit(first.exit_code if isinstance(first, MechanismError) else InputError.exit_code)
     results.write(found, table.sheet.file)
     from rocking_cli.views.survey import view
 

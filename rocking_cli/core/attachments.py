@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 from pydantic import ValidationError
-from pydantic_core import InitErrorDetails
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from rocking_cli.core.attached import Attached, Follow, Path, Spot, springs_of
 from rocking_cli.core.bodies import Body
@@ -21,18 +21,32 @@ from rocking_cli.text import did_you_mean
 
 OUTSIDE = 1e-6  # of the size of a body: how far outside it a point may be by rounding
 POINTS = ("top", "centroid")  # what answers call points of the structure itself
+FAR = 1.0  # of the size of a body: how far off it a load may be without a word
 LOOKED_AT = 129  # rotations at which it is seen whether a tie stretches
 STRETCHED = 1e-9  # of the length of its path, or of a metre: what counts as stretching
 
 Loc = tuple[str | int, ...]
 
 
-class Refused(ValueError):
-    """Something that does not fit the structure it is attached to; see `as_validation_error`."""
+class Refused(PydanticCustomError):
+    """Fields of a user that do not fit together, at `field` within `loc`; see `as_validation_error`.
+
+    A validator may raise it, as `geometry_error`; no plugin is blamed for it.
+    """
+
+    def __new__(cls, loc: Loc, field: str, reason: str) -> Refused:
+        """Make it as pydantic knows such errors; braces in a message would be pydantic's."""
+        return super().__new__(cls, "geometry", "{reason}", {"reason": reason, "field": (*loc, field)})
 
     def __init__(self, loc: Loc, field: str, reason: str) -> None:
         self.loc, self.field, self.reason = loc, field, reason
-        super().__init__(reason)
+
+    @classmethod
+    def first_of(cls, error: ValidationError) -> Refused:
+        """Return the first of the errors that another structure with the same fields has."""
+        first = error.errors(include_url=False)[0]
+        *loc, field = (*first["loc"], *first.get("ctx", {}).get("field", ())) or ("mechanism",)
+        return cls(tuple(loc), str(field), first["msg"])
 
 
 def as_validation_error(refused: Sequence[Refused], title: str) -> ValidationError:
@@ -95,7 +109,7 @@ class Carrier:
 
     def spot(self, name: str | None, point: complex, loc: Loc, field: str) -> Spot:
         """A point of a body. Raises `Refused` if it lies outside it."""
-        body = self.body(name if name is None else self.piece(name, point), loc)
+        body = self.carrying(name, point, loc)
         shapes = self.outlines.get(body, ())
         if shapes and not any(_holds(np.asarray(shape), point) for shape in shapes):
             corners = np.concatenate([np.asarray(shape) for shape in shapes])
@@ -108,6 +122,19 @@ class Carrier:
                 f"{high:.4g} m and from y = {bottom:.4g} to {top:.4g} m: coordinates are those of `rocking draw`",
             )
         return Spot(body, point)
+
+    def carrying(self, name: str | None, point: complex, loc: Loc) -> str:
+        """Return the body, or the piece of it, that carries a point. Raises `Refused`."""
+        return self.body(name if name is None else self.piece(name, point), loc)
+
+    def off(self, body: str, point: complex) -> float:
+        """Return how far a point lies from a body, over the size of that body; 0 if its shape is not known."""
+        shapes = [np.asarray(shape) for shape in self.outlines.get(body, ())]
+        if not shapes or any(_holds(shape, point) for shape in shapes):
+            return 0.0
+        corners = np.concatenate(shapes)
+        size = abs(complex(np.ptp(corners.real), np.ptp(corners.imag)))
+        return min(_from_edges(shape, point) for shape in shapes) / size
 
     def foot(self, name: str | None, loc: Loc) -> Spot:
         """The point of a body under its centroid at the height of its lowest corner. Raises `Refused`."""
@@ -132,7 +159,7 @@ def attach(
     for k, load in enumerate(loads):
         loc: Loc = ("loads", k)
         _own_name(load.name, names, own, loc)
-        body = carrier.spot(load.body, complex(*load.at), loc, "at").body or ""
+        body = carrier.carrying(load.body, complex(*load.at), loc)  # what stands on it may be anywhere
         yield loc, load.attached(body, carrier.count(body, each=load.each))
     for k, tie in enumerate(ties):
         loc = ("ties", k)
@@ -142,6 +169,18 @@ def attach(
         if not bodies:
             raise Refused(loc, "from", "both ends are on the ground, so no motion stretches it")
         yield loc, tie.attached(spots, max(carrier.count(body, each=tie.each) for body in bodies))
+
+
+def far_off(carrier: Carrier, loads: Sequence[Load]) -> Iterator[str]:
+    """Say which loads lie further from their bodies than these are large, a sentence each without a full stop."""
+    for load in loads:
+        at = complex(*load.at)
+        body = carrier.carrying(load.body, at, ())
+        if (off := carrier.off(body, at)) > FAR:
+            yield (
+                f"the load {load.name} at [{at.real:g}, {at.imag:g}] m is {off:.2g} times the size of {body} away from "
+                "it: are its coordinates those of `rocking draw`?"
+            )
 
 
 def _own_name(name: str, names: set[str], own: Collection[str], loc: Loc) -> None:
@@ -196,14 +235,21 @@ def followed(bodies: Sequence[Body], motions: Sequence[RigidMotion], shape: tupl
     return follow
 
 
+def _from_edges(corners: np.ndarray, point: complex) -> float:
+    """Return the distance of a point from the edges of a polygon [m]."""
+    edge = np.roll(corners, -1) - corners
+    long = np.abs(edge) ** 2
+    long[long == 0] = 1.0  # also of an edge so short that its square vanishes
+    along = np.clip(((point - corners) * edge.conj()).real / long, 0.0, 1.0)
+    return float(np.abs(point - corners - along * edge).min())
+
+
 def _holds(corners: np.ndarray, point: complex) -> bool:
     """Whether a point is in a polygon, or next to its edge."""
+    if _from_edges(corners, point) <= OUTSIDE * float(np.abs(corners - corners.mean()).max()):
+        return True
     a, b = corners, np.roll(corners, -1)
     edge = b - a
-    long = np.where(edge == 0, 1.0, np.abs(edge) ** 2)
-    along = np.clip(((point - a) * edge.conj()).real / long, 0.0, 1.0)
-    if np.abs(point - a - along * edge).min() <= OUTSIDE * float(np.abs(corners - corners.mean()).max()):
-        return True
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = a.real + (point.imag - a.imag) / edge.imag * edge.real
     spans = (a.imag > point.imag) != (b.imag > point.imag)

@@ -8,12 +8,12 @@ import numpy as np
 
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.kinematics import Reals
-from rocking_cli.errors import MechanismError
+from rocking_cli.errors import StructureError
 
 SCAN_POINTS = 513  # where the first sign change of G is looked for; far finer than any linkage turns
 
 
-class NoCriticalRotation(MechanismError):
+class NoCriticalRotation(StructureError):
     """The motion reaches its kinematic limit before the structure is in unstable equilibrium."""
 
 
@@ -29,15 +29,15 @@ def uplift_acceleration(at: Callable[[Reals], Coefficients], gravity: float) -> 
 
     Raises
     ------
-    MechanismError
+    StructureError
         If the structure does not stand (V'(0) <= 0) or the ground cannot start the mechanism (B(0) <= 0).
     """
     rest = at(np.zeros(1))
     restoring = float(rest.restoring(gravity)[0])
     if not restoring > 0:
-        raise MechanismError("the structure cannot stand: at rest, its weight does not keep this mechanism closed")
+        raise StructureError("the structure cannot stand: at rest, its weight does not keep this mechanism closed")
     if not rest.B[0] > 0:
-        raise MechanismError("no horizontal ground acceleration starts this mechanism in this direction")
+        raise StructureError("no horizontal ground acceleration starts this mechanism in this direction")
     return float(restoring / rest.B[0])  # Eq. 10
 
 

@@ -12,13 +12,13 @@ import numpy as np
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.statics import Statics, statics
-from rocking_cli.errors import MechanismError, PluginError, RockingError
+from rocking_cli.errors import PluginError, RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 
 AGREEMENT = 1e-9  # relative difference below which the two directions count as the same
 
 
-class NoEquivalentBlock(MechanismError):
+class NoEquivalentBlock(StructureError):
     """A structure that stands and rocks, but as no single block does."""
 
 
@@ -158,8 +158,8 @@ def _held_to_numbers(mechanism: Mechanism) -> Iterator[None]:
         raise plugin_error(what, type(mechanism).__module__, error) from error
 
 
-def _beyond_range(error: BaseException | None) -> MechanismError:
-    return MechanismError(
+def _beyond_range(error: BaseException | None) -> StructureError:
+    return StructureError(
         f"its equivalent block is beyond the range of numbers ({error}): check the sizes and their units"
     )
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from pydantic.fields import FieldInfo
+from pydantic_core import InitErrorDetails, PydanticCustomError, PydanticKnownError
 
 from rocking_cli.text import cut, is_one_line
 from rocking_cli.units import UnitError, read, split
@@ -23,6 +24,13 @@ def _shown_as_it_is(name: str) -> str:
 Restitution = Annotated[float, Field(gt=0, le=1)]
 Name = Annotated[str, AfterValidator(_shown_as_it_is)]
 """What a user calls something: shown on terminals, in pictures and on pages."""
+
+
+LEAST = {
+    "m": 1e-6, "m2": 1e-12, "m3": 1e-18, "s": 1e-6, "kg": 1e-6, "kg/m3": 1e-6, "kg m2": 1e-18, "N/m3": 1e-6, "Pa": 1e-3,
+    "m/s2": 1e-6, "g": 1e-6, "deg": 1e-6, "years": 1e-6,
+}  # fmt: skip
+"""Least value of a quantity that must be positive, by its unit: far below any structure, far above underflow."""
 
 
 def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
@@ -98,6 +106,13 @@ def in_unit(value: Any, unit: str) -> Any:
     return found
 
 
+def least(field: FieldInfo) -> float:
+    """Return the least value of a field that must be positive; 0 if it need not be, or has no unit."""
+    extra = field.json_schema_extra
+    positive = any(getattr(rule, "gt", None) == 0 for rule in field.metadata)
+    return LEAST.get(str(extra.get("unit")), 0.0) if positive and isinstance(extra, dict) else 0.0
+
+
 class Described(BaseModel):
     """What a user describes by fields: unknown ones are refused, and one that has a unit takes texts with units."""
 
@@ -118,6 +133,14 @@ class Described(BaseModel):
             return value
         extra = cls.model_fields[info.field_name or ""].json_schema_extra
         return in_unit(value, str(extra["unit"])) if isinstance(extra, dict) and extra.get("unit") else value
+
+    @field_validator("*", mode="after")
+    @classmethod
+    def _not_too_small(cls, value: Any, info: ValidationInfo) -> Any:
+        """Refuse a positive quantity so small that what follows from it vanishes."""
+        if isinstance(value, float) and 0 < value < least(cls.model_fields[info.field_name or ""]):
+            raise PydanticKnownError("greater_than_equal", {"ge": least(cls.model_fields[info.field_name or ""])})
+        return value
 
 
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]

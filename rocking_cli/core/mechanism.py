@@ -16,7 +16,16 @@ from pydantic import Field, ValidationError, model_validator
 
 from rocking_cli.core import equilibrium
 from rocking_cli.core.attached import Attached, ConstantForce, Follow, PointMass, Spring, springs_of
-from rocking_cli.core.attachments import Carrier, Loc, Refused, as_validation_error, attach, check_stretched, followed
+from rocking_cli.core.attachments import (
+    Carrier,
+    Loc,
+    Refused,
+    as_validation_error,
+    attach,
+    check_stretched,
+    far_off,
+    followed,
+)
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.collapse import CollapseMechanism
@@ -34,7 +43,7 @@ from rocking_cli.core.sketch import Outline, Sketch
 from rocking_cli.core.strength import Strength
 from rocking_cli.core.ties import Tie
 from rocking_cli.core.uncertainty import Uncertainty
-from rocking_cli.errors import FieldError
+from rocking_cli.errors import FieldError, InputError, Problem
 from rocking_cli.plugins.errors import blame, guard
 
 ANSWERS = (
@@ -48,6 +57,9 @@ OF_THE_BARE = (
     "coefficients", "kinetic_inertia", "potential_energy", "uplift", "critical_rotation", "restitution_from_kinematics",
 )  # fmt: skip
 """Those whose overrides are closed forms of the bare mechanism: with loads or ties the general solvers answer."""
+KINEMATIC = "kinematic"
+"""What a file says of a rebound that follows from the shape."""
+NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
 LATER = {"dampers": "a damper", "inerters": "an inerter"}
 """What structures will have one day, and is refused by name until then."""
 ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
@@ -116,7 +128,11 @@ class Mechanism(Described, ABC):
         description="the only direction it rocks in, such as away from side walls that it leans on",
     )
     rebound: float | None = quantity(
-        "rate after an impact on them over that before", example=0.5, default=None, ge=0, lt=1
+        "rate after an impact on them over that before; of a plain rectangle also `kinematic`",
+        example=0.5,
+        default=None,
+        ge=0,
+        lt=1,
     )
     loads: list[Load] | None = Field(
         None,
@@ -173,6 +189,16 @@ class Mechanism(Described, ABC):
             if isinstance(data, dict) and key in data and key not in cls.model_fields:
                 raise geometry_error(key, f"{LATER[key]} is not in this version: leave it out")
         return data
+
+    @model_validator(mode="before")
+    @classmethod
+    def _rebound_from_impacts(cls, data: Any) -> Any:
+        """Leave `rebound: kinematic` to the theory of impacts, as if it were not given."""
+        if not isinstance(data, dict) or data.get("rebound") != KINEMATIC:
+            return data
+        if data.get("one_sided") is None:
+            raise geometry_error("rebound", NEEDS_A_SIDE)
+        return {**data, "rebound": None}
 
     def __init__(self, /, **fields: Any) -> None:
         try:
@@ -293,9 +319,13 @@ class Mechanism(Described, ABC):
 
     def _check_one_sided(self) -> None:
         if self.one_sided is None and self.rebound is not None:
-            raise Refused((), "rebound", "requires one_sided: otherwise the structure rocks through to the other side")
+            raise Refused((), "rebound", NEEDS_A_SIDE)
         if self.one_sided is not None and self.restitution is not None:
             raise Refused((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
+        asked = "rebound" in self.model_fields_set and self.rebound is None
+        if self.one_sided is not None and asked and self.rebound_from_impacts() is None:
+            why = "only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
+            raise Refused((), "rebound", f"cannot be {KINEMATIC}: {why}")
 
     def _check_strength(self) -> None:
         if not isinstance(self.strength, Strength):  # None, or a field of a plugin of that name
@@ -341,7 +371,7 @@ class Mechanism(Described, ABC):
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
         """What a subclass says of its own mechanics is guarded: whatever fails there is an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
-        guard(cls, ANSWERS, _failed)
+        guard(cls, ANSWERS, _failed, but=Refused)
         for name in OF_THE_BARE:
             if isfunction(own := vars(cls).get(name)):
                 setattr(cls, name, _of_the_bare(own))
@@ -470,7 +500,10 @@ class Mechanism(Described, ABC):
         """u = N/(2 strength depth) of the joints of each direction [m]; empty if there is none to move."""
         if self.crushing is None:
             return {}
-        sound = self.model_copy(update={"crushing": None})
+        try:
+            sound = self.model_copy(update={"crushing": None})
+        except ValidationError as error:
+            raise Refused.first_of(error) from None
         per_metre = 2 * self.crushing.strength * (self.crushing.depth or self.depth or 1.0)
         moved = {direction: sound.bearing(direction) for direction in Direction}
         found = {s: {joint: max(force, 0.0) / per_metre for joint, force in moved[s].items()} for s in Direction}
@@ -494,7 +527,7 @@ class Mechanism(Described, ABC):
 
     def volume(self) -> float:
         """The volume that `density` makes the mass of [m3]: by default that of the outlines, `depth` deep."""
-        sketch = self.sketch()
+        deep, sketch = self._given_depth, self.sketch()
         area = 0.0
         for body in self.bodies():
             known: Sequence[Outline] = sketch.outlines.get(body.name, ()) if sketch.uniform else ()
@@ -502,9 +535,14 @@ class Mechanism(Described, ABC):
             if not shapes:
                 raise Refused((), "density", f"the shape of its {body.name} is not known: give its mass instead")
             area += sum(abs(_area(shape)) for shape in shapes)
+        return area * deep
+
+    @property
+    def _given_depth(self) -> float:
+        """Size out of plane that `density` needs [m]. Raises `Refused` if the file gives none."""
         if self.depth is None:
             raise Refused((), "depth", "is missing: density needs the size out of plane")
-        return area * self.depth
+        return self.depth
 
     def total_mass(self) -> float | None:
         """The mass of the whole structure by the file [kg]; None where `bodies` have theirs, or there is none."""
@@ -528,7 +566,7 @@ class Mechanism(Described, ABC):
         own: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if not self._is_laden:
             return own
-        carrier = Carrier.of(self.bodies(), self._shapes(), self.alike(), self.piece)
+        carrier = self._carrier
         taken = [*(thing.name for _, thing in own), *([INTERLOCK] if self.interlock is not None else [])]
         found = [*own, *attach(carrier, self.loads or [], self.ties or [], taken)]
         if self.interlock is not None:
@@ -542,6 +580,14 @@ class Mechanism(Described, ABC):
             carrier.spot(foot.body, top, ("interlock",), "height")
             found.append((("interlock",), self.interlock.attached(foot, density, self.gravity)))
         return found
+
+    @property
+    def _carrier(self) -> Carrier:
+        return Carrier.of(self.bodies(), self._shapes(), self.alike(), self.piece)
+
+    def far_off(self) -> list[str]:
+        """Return which of its loads are far off the bodies that carry them, a sentence each without a full stop."""
+        return list(far_off(self._carrier, self.loads)) if self.loads else []
 
     @property
     def _is_laden(self) -> bool:
@@ -589,7 +635,7 @@ class Mechanism(Described, ABC):
 
         Includes what is attached to the structure: see `rocking_cli.core.attached`.
         """
-        phi = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
+        phi = _rotations(phi)
         bodies, motions = self.weighed(), self.motion(phi, direction)
         total = coefficients(phi, direction, bodies, motions)
         if self._hung:
@@ -652,6 +698,17 @@ class Mechanism(Described, ABC):
             given = self.restitution
             return given.positive_to_negative if direction > 0 else given.negative_to_positive
         return self.restitution if self.restitution is not None else self.restitution_from_kinematics(direction)
+
+
+def _rotations(phi: Any) -> Reals:
+    """Rotations as an array of reals. Raises `InputError` for what is none."""
+    try:
+        found = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
+    except (TypeError, ValueError):
+        found = np.zeros(())
+    if found.ndim == 0:
+        raise InputError(Problem(f"must be an array of rotations, got {phi!r}", field="phi", hint="write [0.1]"))
+    return found
 
 
 def _of_the_bare(own: Callable[..., Any]) -> Callable[..., Any]:

@@ -51,3 +51,9 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
     if not odd:
         return f"it is {size:.3g} m large: are the units right?"
     return f"{', '.join(says for says, _ in odd)}: did you mean {' and '.join(meant for _, meant in odd)}?"
+
+
+def doubts(mechanism: Mechanism) -> list[str]:
+    """Return what is odd about the size of a structure and the places of its loads, a sentence each, no full stop."""
+    size = doubtful_size(mechanism)
+    return [*([size] if size is not None else []), *mechanism.far_off()]

@@ -13,7 +13,7 @@ from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics,
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.statics import STRAIGHT
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
-from rocking_cli.errors import InputError, MechanismError, Problem, about
+from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 
 
@@ -147,8 +147,7 @@ class Prepared:
         try:
             yield
         except MechanismError as error:
-            kind = NoEquivalentBlock if isinstance(error, NoEquivalentBlock) else MechanismError
-            raise kind(about(self.name, error)) from error
+            raise of_structure(error, self.name) from error
         except InputError as error:
             if self.file is None:
                 raise

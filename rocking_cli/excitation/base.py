@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking_cli.errors import InputError
 
 STANDARD_GRAVITY = 9.80665  # m/s2
+MOST_SAMPLES = 20_000_000  # of a record: more than a day at 200 samples a second
 
 
 class Doubt(NamedTuple):

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.yaml_file import Place
+from rocking_cli.io.yaml_file import DEEPEST, Place
 from rocking_cli.text import cut, did_you_mean
 
 MOST = 10_000  # entries of a list
@@ -23,6 +23,8 @@ def words(text: str) -> tuple[str, ...]:
     if not all(found):
         hint = "write words with a dot between them, such as loads.0.mass"
         raise InputError(Problem(f"{cut(repr(text))} is not a valid field", hint=hint))
+    if len(found) > DEEPEST:
+        raise InputError(Problem(f"{cut(repr(text))} has more than {DEEPEST} parts: no field lies so deep"))
     return found
 
 

@@ -44,7 +44,9 @@ def plugin_error(what: str, module: str, error: BaseException) -> PluginError:
     return PluginError(f"{what}: {type(error).__name__}{f': {said}' if said else ''}{_place(module, error)}")
 
 
-def guard(cls: type, methods: Iterable[str], what: Callable[[type, str], str]) -> None:
+def guard(
+    cls: type, methods: Iterable[str], what: Callable[[type, str], str], *, but: type[Exception] = RockingError
+) -> None:
     """Wrap those of some methods that a class itself defines in `blame`.
 
     Parameters
@@ -55,11 +57,13 @@ def guard(cls: type, methods: Iterable[str], what: Callable[[type, str], str]) -
         Names of methods.
     what : callable
         Returns the beginning of the message from the class of an object and the name of a method.
+    but : type, optional
+        See `blame`.
     """
     for name in methods:
         method = vars(cls).get(name)
         if isfunction(method):
-            setattr(cls, name, _guarded(method, cls.__module__, what))
+            setattr(cls, name, _guarded(method, cls.__module__, what, but))
 
 
 def own_traceback(error: BaseException | None) -> str | None:
@@ -74,10 +78,12 @@ def own_traceback(error: BaseException | None) -> str | None:
     return None
 
 
-def _guarded(method: Callable[..., Any], module: str, what: Callable[[type, str], str]) -> Callable[..., Any]:
+def _guarded(
+    method: Callable[..., Any], module: str, what: Callable[[type, str], str], but: type[Exception]
+) -> Callable[..., Any]:
     @wraps(method)
     def guarded(self: Any, *args: Any, **named: Any) -> Any:
-        with blame(what(type(self), method.__name__), module):
+        with blame(what(type(self), method.__name__), module, but=but):
             return method(self, *args, **named)
 
     return guarded

@@ -3,13 +3,33 @@
 from __future__ import annotations
 
 import base64
+import io
 from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_bytes
+from rocking_cli.text import cut, printable
 
 LARGEST = 1_000_000  # bytes: the page is mailed
 KINDS = {"image/png": b"\x89PNG\r\n\x1a\n", "image/jpeg": b"\xff\xd8\xff"}  # and how their files begin
+
+
+def _check_whole(data: bytes, kind: str, path: Path) -> None:
+    """Refuse a picture that no browser can show. Raises `InputError`."""
+    from xml.etree.ElementTree import fromstring
+
+    from PIL import Image
+
+    try:
+        if kind in KINDS:
+            Image.open(io.BytesIO(data)).verify()  # its checksums, which end the use of the object
+            Image.open(io.BytesIO(data)).load()
+        else:
+            fromstring(data)
+    except Exception as error:  # of many kinds, without a base of their own
+        reason = " ".join(str(error).split()) or type(error).__name__
+        what = f"the logo is damaged: {printable(cut(reason))}"
+        raise InputError(Problem(what, str(path), hint="save the picture again")) from None
 
 
 def embedded(path: Path) -> str:
@@ -33,4 +53,5 @@ def embedded(path: Path) -> str:
         raise InputError(
             Problem("the file is not a PNG, JPEG or SVG picture", str(path), hint="convert the logo to one of them")
         )
+    _check_whole(data, kind, path)
     return f"data:{kind};base64,{base64.b64encode(data).decode()}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
-from rocking_cli.errors import InputError, MechanismError, Problem, about
+from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 
 
 def collapses(mechanism: Mechanism) -> Mapping[Direction, CollapseMechanism]:
@@ -28,7 +28,7 @@ def collapses(mechanism: Mechanism) -> Mapping[Direction, CollapseMechanism]:
         try:
             each = mechanism.collapse(direction)
         except MechanismError as error:
-            raise MechanismError(about(mechanism.name, error)) from error
+            raise of_structure(error, mechanism.name or mechanism.mechanism) from error
         if each is None:
             hint = "`rocking new assembly` prints one; `rocking equiv` has the uplift of any structure"
             raise InputError(

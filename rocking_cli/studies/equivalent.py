@@ -19,7 +19,7 @@ from rocking_cli.dynamics.model import ModelName, build_model, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.prepared import with_restitution
 from rocking_cli.dynamics.verdict import CLOSE
-from rocking_cli.errors import InputError, MechanismError, Problem, about
+from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
@@ -192,7 +192,7 @@ def _equivalence(mechanism: Mechanism) -> Equivalence:
     try:
         return equivalent_block(mechanism)
     except MechanismError as error:
-        raise MechanismError(about(_name(mechanism), error)) from error
+        raise of_structure(error, _name(mechanism)) from error
 
 
 def _lifted_first(
@@ -236,7 +236,7 @@ def _member(
     try:
         history = follow(build_model(shaken, "nonlinear"), own.sampled().scaled(polarity), tail=_tail(own, block.p))
     except MechanismError as error:
-        raise MechanismError(about(_name(mechanism), error)) from error
+        raise of_structure(error, _name(mechanism)) from error
     return Member(
         _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history,
         mechanism.own_caution(),

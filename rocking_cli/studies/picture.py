@@ -18,7 +18,7 @@ from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, O
 from rocking_cli.core.attached import Spring
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.size import extent
-from rocking_cli.errors import MechanismError, RockingError
+from rocking_cli.errors import RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 from rocking_cli.studies.hung import Carried, End, Strand, carried, strands, walls
 
@@ -383,7 +383,7 @@ def picture(mechanism: Mechanism) -> Picture:
 
     Raises
     ------
-    MechanismError
+    StructureError
         If the plugin fails.
     """
     try:
@@ -407,7 +407,7 @@ def _picture(mechanism: Mechanism) -> Picture:
     limit = {direction: FURTHEST * mechanism.limit(direction) for direction in mechanism.directions}
     seen = {direction: limit[direction] if phi is None else phi for direction, phi in phi_cr.items()}
     if not (min(seen.values()) > 0 and extent(mechanism) > TINIEST):
-        raise MechanismError("it is too small to be drawn: check the sizes and their units")
+        raise StructureError("it is too small to be drawn: check the sizes and their units")
     parts = tuple(
         Part(
             body.name,

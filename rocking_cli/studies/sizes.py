@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import exp, isclose, log, pi
 
 from pydantic import ValidationError
@@ -11,12 +12,12 @@ from rocking_cli.core import (
     Equivalence,
     EquivalentBlock,
     Mechanism,
-    NoEquivalentBlock,
     equivalent_block,
 )
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.model import Model, ModelName, build_model
-from rocking_cli.errors import InputError, MechanismError, Problem, about
+from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
+from rocking_cli.io.field_problems import of_arguments
 
 ALIKE = 1e-7  # relative difference, of what shape alone decides where it does, that solvers and rounding may make
 TRIED = ((0.1, 0.5, 0.9), (10.0, 2.0, 1.1))  # scales at which that is looked at: of each row the first that there is
@@ -46,9 +47,8 @@ class Sizes:
         try:
             return self.mechanism.enlarged(scale)
         except ValidationError as error:
-            first = error.errors()[0]
-            place = [*first["loc"], *(first["ctx"]["field"] if first["type"] == "geometry" else ())]
-            message = f"{self._named(scale)} cannot be built: {'.'.join(map(str, place))}: {first['msg']}"
+            first, *_ = of_arguments(type(self.mechanism), error.errors(include_url=False), self.mechanism.mechanism)
+            message = f"{self._named(scale)} cannot be built: {replace(first, hint=None)}"
             raise InputError(Problem(message, hint="choose other sizes")) from None
 
     def equivalence(self, scale: float) -> Equivalence:
@@ -57,8 +57,7 @@ class Sizes:
             try:
                 self._known[scale] = equivalent_block(self.at(scale))
             except MechanismError as error:
-                kind = NoEquivalentBlock if isinstance(error, NoEquivalentBlock) else MechanismError
-                raise kind(about(self._named(scale), error)) from error
+                raise of_structure(error, self._named(scale)) from error
         return self._known[scale]
 
     def block(self, scale: float) -> EquivalentBlock:

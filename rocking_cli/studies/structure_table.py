@@ -27,6 +27,7 @@ YAML = (".yaml", ".yml")
 NOTE = "#"
 """What a heading begins with whose column is for people only."""
 THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+", re.ASCII)
+DIGITS = 308  # of the largest whole number that is a float
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _UNIT = re.compile(r"(.*?)\s*\[([^\]]*)\]\s*", re.DOTALL)
 
@@ -58,6 +59,7 @@ class _RowDocument(Document):
     """The data of a row, whose problems name the table, the line and the heading of the column."""
 
     line: int = 0
+    base: str = ""
     columns: dict[Place, str] = field(default_factory=dict)
 
     def problem(
@@ -68,8 +70,9 @@ class _RowDocument(Document):
 
     def at(self, place: Place, message: str, hint: str | None = None, *, key: bool = False) -> Problem:
         """A problem with what a column holds, or with a field that none has."""
-        own = (self.columns[place[:k]] for k in range(len(place), 0, -1) if place[:k] in self.columns)
-        return self.problem(message, None, next(own, None) or spell(place), hint)
+        own = next((self.columns[place[:k]] for k in range(len(place), 0, -1) if place[:k] in self.columns), None)
+        of_file = ": ".join(each for each in (cut(one_line(self.base)), spell(place)) if each)
+        return self.problem(message, None, own or of_file, hint)
 
 
 class _Kept(Registry):
@@ -188,7 +191,10 @@ class StructureTable(Sequence["TableRow"]):
                 continue
         if not {MECHANISM, BASE} & {column.path[0] for column in self.columns}:
             near = get_close_matches(MECHANISM, [column.path[0].lower() for column in self.columns], n=1)
-            hint = f"is {near[0]} meant to be {MECHANISM}?" if near else "add one that names the mechanism of each row"
+            given = [column.heading for column in self.columns if near and column.path[0].lower() == near[0]]
+            hint = (
+                f"write {MECHANISM} instead of {given[0]}" if given else "add one that names the mechanism of each row"
+            )
             raise InputError(
                 Problem(
                     f"the table has neither a column {MECHANISM} nor a column {BASE}",
@@ -262,7 +268,7 @@ class TableRow:
             If the mechanism's plugin cannot be used.
         """
         table, row = self.table, self.row
-        document = _RowDocument("structure", table.sheet.file, [], line=row.line)
+        document = _RowDocument("structure", table.sheet.file, [], line=row.line, base=table.base_of(row))
         document.values[()] = document.values[(MECHANISM,)] = yaml.Mark(document.file, 0, row.line - 1, 0, None, 0)
         if row.too_many is not None:
             what = f"has more cells than headings; the first extra cell is {cut(one_line(row.too_many))!r}"
@@ -274,6 +280,9 @@ class TableRow:
             folder = (table.folder / based).parent
             default = one_line(Path(based).stem) or default
         self._fill(document, based)
+        if MECHANISM not in document.data and not based and (named := table.text(row, BASE)):
+            what = f"{cut(one_line(named))!r} is not a structure file: its name must end in .yaml or .yml"
+            document.problems.append(document.problem(what, None, BASE, "or give the mechanism of the row"))
         document.check()
         document.data = closed(document.data)
         return of_document(document, default, folder, table.registry)
@@ -352,6 +361,8 @@ def _one(text: str, column: Column, *, decimal_comma: bool) -> Any:
         )
     if decimal_comma and DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
+    if len(text.lstrip("+-")) > DIGITS and text.lstrip("+-").isdecimal():
+        raise InputError(Problem(f"a number of {len(text.lstrip('+-'))} digits is beyond the range of numbers"))
     if _NUMBER.fullmatch(text):
         return _with_unit(float(text) if re.search(r"[.eE]", text) else int(text), column.unit)
     return {"true": True, "false": False}.get(text.lower(), text)

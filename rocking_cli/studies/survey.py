@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.size import doubtful_size
+from rocking_cli.core.size import doubts
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
@@ -337,7 +337,7 @@ def _alone(place: int, entry: Entry, structure: Prepared, site: SiteFile | None)
         block.kappa2 if block is not None else nan,
         structure.etas[k],
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
-        doubtful_size(mechanism),
+        "; ".join(doubts(mechanism)) or None,
         mechanism.own_caution() or None,
         ratio=_ratio(structure, site) if site is not None else nan,
     )

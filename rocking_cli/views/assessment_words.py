@@ -11,7 +11,7 @@ from rocking_cli.core import Direction, Statics
 from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.restitution import why_none
-from rocking_cli.core.size import doubtful_size
+from rocking_cli.core.size import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.holding import NOT_CHECKED, joints_in_words, why_unknown
 from rocking_cli.dynamics.model import ModelName
@@ -174,9 +174,10 @@ def doubts(content: Assessment) -> list[str]:
             f"The mechanism {content.mechanism.mechanism} has not been verified: check its results independently."
         )
     said += content.mechanism.cautions()
-    size = doubtful_size(content.mechanism)
-    if size is not None:
-        said.append(f"Check the sizes and their units: {size}{'' if size.endswith('?') else '.'}")
+    said += [
+        f"Check the sizes and their units: {doubt}{'' if doubt.endswith('?') else '.'}"
+        for doubt in doubts_about_size(content.mechanism)
+    ]
     etas = content.structure.etas
     given = restitution_source(content.mechanism) == "given"
     if not content.mechanism.rocks_both_ways:

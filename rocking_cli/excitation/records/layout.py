@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
+from rocking_cli.excitation.base import MOST_SAMPLES, NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
 from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, resolve_unit
@@ -26,7 +26,6 @@ _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 TENTH_OF_G = "g/10"
 _GRID = 1e-3  # s; times of digitised films are printed with three decimals
 _LONGEST = 3600.0  # s; films ran for a minute or two, and each second is a thousand samples
-_MOST = 2_000_000_000  # numbers; no file that is read holds more
 _WIDEST = 1000  # characters to a number
 _TOUCHING = "the rows do not keep to columns of {} characters, so that numbers that touch cannot be told apart"
 
@@ -148,6 +147,7 @@ def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> 
     InputError
         If one is no finite number, there are more or fewer than there must be, or a few rows leave their columns.
     """
+    lines.check_lengths(file)
     values = array("d")  # a list would hold an object for each
     index = block.start
     leaving: list[int] = []  # line numbers
@@ -312,7 +312,7 @@ def straight_lines(
 
 
 def whole_number(
-    file: str, line_number: int, line: str, token: str, what: str, *, least: int = 1, most: int = _MOST
+    file: str, line_number: int, line: str, token: str, what: str, *, least: int = 1, most: int = MOST_SAMPLES
 ) -> int:
     """A whole number of the header from `least` to `most`; `what` says which it is."""
     digits = token.strip()

@@ -5,10 +5,15 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import overload
+
+from rocking_cli.errors import InputError, Problem
 
 PAGE = 1 << 16
 """Characters of a page, at least: a page ends where a line does."""
+LONGEST = 1_000_000
+"""Characters of a line of numbers, at most: a thousand columns of a thousand characters."""
 
 
 class Lines(Sequence[str]):
@@ -68,6 +73,13 @@ class Lines(Sequence[str]):
         for number in range(bisect_right(self._firsts, start) - 1, len(self._firsts)):
             skipped = max(start - self._firsts[number], 0)
             yield self._firsts[number] + skipped, self._cut(number)[skipped:]
+
+    def check_lengths(self, file: str) -> None:
+        """Refuse a line so long that its numbers would fill the memory. Raises `InputError`."""
+        ends = [*self._firsts[1:], self._length]
+        for (start, end), number in zip(pairwise(self._starts), ends, strict=True):
+            if end - start > PAGE + LONGEST:  # the last line of a page is the only one that goes beyond it
+                raise InputError(Problem(f"a line of numbers has at most {LONGEST} characters", file, number))
 
     def _cut(self, number: int) -> list[str]:
         return self._text[self._starts[number] : self._starts[number + 1] - 1].split("\n")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import MOST_SAMPLES, GroundMotion
 from rocking_cli.excitation.records.layout import Channel, choose
 from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
 from rocking_cli.excitation.records.sensor import Wanted
@@ -22,6 +22,7 @@ BINARY = True
 TAKES_WANTED = True
 
 _LEAST = 48  # bytes of a header
+LARGEST = 4 * MOST_SAMPLES  # bytes, as if nothing were compressed
 _YEARS = range(1900, 2101)
 _DAYS = range(1, 367)
 
@@ -52,6 +53,9 @@ def read(
     if _version_3(data):
         hint = "convert it to miniSEED 2 first"
         raise InputError(Problem("this is miniSEED 3, which obspy does not read", file, hint=hint))
+    if len(data) > LARGEST:
+        message = f"the file has {len(data) / 1e6:.4g} MB: a record of at most {MOST_SAMPLES} samples has less"
+        raise InputError(Problem(message, file, hint="cut the motion out of the file first"))
     unit = wanted.unit(file, [], units)
     segments: dict[str, list[Any]] = {}
     for trace in traces(data, file, "MSEED"):

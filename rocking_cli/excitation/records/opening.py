@@ -16,7 +16,9 @@ from rocking_cli.io.files import read_at_most, read_bytes
 
 STANDARD_INPUT = "-"
 LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB
-EXPANDED = 500_000_000  # bytes of what was compressed: a thousand times smaller a file may be, and no record
+EXPANDED = 500_000_000  # bytes of what was compressed
+RATIO = 200  # times as large, unpacked, as a packed record of more than `SMALL` may be: sixty is much
+SMALL = 10_000_000  # bytes
 MEMBERS = 10_000  # files in an archive
 LISTED = 30  # of them in a message
 
@@ -142,11 +144,11 @@ def _from_standard_input() -> bytes:
 def _of_gzip(data: bytes, file: str) -> bytes:
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as stream:
-            found = read_at_most(stream, EXPANDED)
+            found = read_at_most(stream, _most(len(data)))
     except Exception as error:  # of many kinds, without a base of their own
         raise InputError(_damaged("gzip file", error, file)) from None
     if found is None:
-        raise InputError(_too_large(file))
+        raise InputError(_too_large(file, len(data)))
     return found
 
 
@@ -171,15 +173,16 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
     member, inside = members[place], f"{file}/{names[place]}"
     if member.flag_bits & 1:
         raise InputError(Problem("it needs a password", inside, hint=_UNPACK))
-    if member.file_size > EXPANDED:
-        raise InputError(_too_large(inside))
+    packed = min(member.compress_size, len(data))
+    if member.file_size > _most(packed):
+        raise InputError(_too_large(inside, packed))
     try:
         with archive.open(member) as stream:
-            found = read_at_most(stream, EXPANDED)
+            found = read_at_most(stream, _most(packed))
     except Exception as error:  # of many kinds, without a base of their own
         raise InputError(_damaged("zip archive", error, inside)) from None
     if found is None:
-        raise InputError(_too_large(inside))
+        raise InputError(_too_large(inside, packed))
     return found, names[place], len(names) > 1, channel
 
 
@@ -224,8 +227,15 @@ def _damaged(what: str, error: Exception, file: str) -> Problem:
     return Problem(f"the {what} cannot be unpacked: {_printable(reason)}", file, hint=hint)
 
 
-def _too_large(file: str) -> Problem:
-    return Problem(f"this cannot be a record file: unpacked it is larger than {EXPANDED / 1e6:.4g} MB", file)
+def _most(packed: int) -> int:
+    """Bytes that a record of so many packed ones may have."""
+    return min(EXPANDED, max(RATIO * packed, SMALL))
+
+
+def _too_large(file: str, packed: int) -> Problem:
+    most = _most(packed)
+    size = f"{most / 1e6:.4g} MB" + (f", {RATIO} times its packed size" if SMALL < most < EXPANDED else "")
+    return Problem(f"this cannot be a record file: unpacked it is larger than {size}", file)
 
 
 def _printable(text: str) -> str:

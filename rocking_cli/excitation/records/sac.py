@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import Doubt, GroundMotion
+from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import choose
 from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
 from rocking_cli.excitation.records.sensor import Wanted
@@ -72,6 +72,9 @@ def read(
     if said != wanted.quantity and not wanted.raw:
         message = f"the header says the values are a {said}, not {_A[wanted.quantity]} (IDEP)"
         raise InputError(Problem(message, file, hint="give the file with the acceleration, or say `from` what it is"))
+    if header.npts > MOST_SAMPLES:
+        message = f"the header says {header.npts} points: a record has at most {MOST_SAMPLES}"
+        raise InputError(Problem(message, file))
     size = _HEADER + 4 * header.npts
     if len(data) != size + (_FOOTER if header.version == 7 else 0):
         message = f"the header says {header.npts} points, which do not make the {len(data)} bytes of the file"

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import Doubt, GroundMotion
+from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import in_si
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_info
@@ -33,6 +33,8 @@ def read(
 ) -> GroundMotion:
     """Read a SimCenter JSON file; arguments, result and errors are those of `registry.Reader.read`."""
     only_channel(file, channel)
+    if text.count(",") > MOST_SAMPLES:
+        raise InputError(Problem(f"a record has at most {MOST_SAMPLES} samples, this file has more values", file))
     try:
         data: dict[str, Any] = json.loads(text, parse_int=_whole, object_pairs_hook=_each_once)
     except _TwiceError as error:

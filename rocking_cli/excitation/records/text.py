@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import Doubt, GroundMotion
+from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.record_csv import DONE
 from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, labels
 from rocking_cli.excitation.records.lines import Lines
@@ -33,6 +33,7 @@ _QUOTED = re.compile(r'"([^"]*)"')
 _HEAD = 100_000  # characters looked at to recognise a format: a large file is not searched to its end
 _HUGE = 1e30  # no time or acceleration in any unit; far below where sums and conversions overflow
 _INTERVALS = (1e-9, 1e6)  # s; beyond them sums overflow, and nothing was ever recorded so
+MOST_NUMBERS = 4 * MOST_SAMPLES  # of a table
 _DT_TOLERANCE = 1e-3  # a given interval may be the rounded form of the file's, or the other way round
 
 
@@ -56,6 +57,7 @@ def read(
     start = _first_row(lines)
     if start is None:
         raise InputError(Problem("no numbers found", file=file))
+    lines.check_lengths(file)
     head = lines[:start]
     if '"' in lines[start]:
         text = _unquoted(file, start + 1, lines[start], text)
@@ -269,6 +271,7 @@ def _table(
 ) -> NDArray[np.float64]:
     """All columns as the rows of an array; by numpy's own, fast parser, by the careful one on a page it gives up."""
     columns = len(names)
+    _refuse_too_many(file, len(lines) - start, columns)
     table = np.empty((columns, len(lines) - start))  # rather too wide: blank lines and comments hold nothing
     filled = 0
     for first, page in lines.pages(start):
@@ -282,6 +285,15 @@ def _table(
         table[:, filled : filled + len(part)] = part.T
         filled += len(part)
     return table[:, :filled]
+
+
+def _refuse_too_many(file: str, rows: int, columns: int) -> None:
+    """Refuse a table larger than any record, before there is memory for it."""
+    if rows > MOST_SAMPLES or rows * columns > MOST_NUMBERS:
+        most = MOST_SAMPLES if rows > MOST_SAMPLES else MOST_NUMBERS // columns
+        raise InputError(
+            Problem(f"a record has at most {most} samples in each column, this file has {rows} lines", file)
+        )
 
 
 def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> NDArray[np.float64] | None:

@@ -79,6 +79,7 @@ CREATE TABLE run (
     peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL{columns},
     checksum INTEGER NOT NULL
 );
+CREATE TABLE finished (runs INTEGER NOT NULL, checksum INTEGER NOT NULL)
 """
 # What was measured, beyond the peaks of the records; the places that a value does not depend on are NULL.
 MEASURED = """CREATE TABLE measured (
@@ -228,6 +229,8 @@ class Store:
         Numbers of the runs that do not agree with their checksums; they count as not finished.
     unreadable : bool
         Whether pages of the file are damaged, so that runs may be missing.
+    missing : int
+        Finished runs that the store counted and that cannot be found any more.
     checked : bool
         Whether its runs have checksums: those of the first versions have none.
     with_joints : bool
@@ -240,6 +243,7 @@ class Store:
         self.path = path
         self.damaged: list[int] = []
         self.unreadable = False
+        self.missing = 0
         self.checked = True
         self.with_joints = True
         self.columns = COLUMNS
@@ -248,6 +252,8 @@ class Store:
         self._there = False
         self._say: Say = lambda text: None
         self._salt = 0
+        self._finished = 0  # runs that are in the file
+        self._more = False  # whether there are more than its count says
         self._last = monotonic()
 
     @classmethod
@@ -343,6 +349,7 @@ class Store:
         """Keep what is finished, and let others write."""
         try:
             if self._connection.in_transaction:  # not after a full disk, which has undone the last one
+                self._seal_count()
                 self._connection.execute("COMMIT")
             with suppress(sqlite3.Error):  # it tells nobody anything any more
                 self._connection.execute("PRAGMA busy_timeout = 0")
@@ -367,11 +374,13 @@ class Store:
             new._fill(plan, facts)
             for rows in old._blocks(0, plan.size):
                 new._insert_runs(rows)
+            new._seal_count()
 
         self._connection = _nothing()
         self._go_on_with(exchange(self.path, old._connection, fill, self._say))
-        self.damaged, self.unreadable, self.checked = [], False, True
+        self.damaged, self.unreadable, self.missing, self.checked = [], False, 0, True
         self._check_plan()
+        self._check_count()
 
     def doubts(self) -> list[str]:
         """What is wrong with the runs, a sentence each."""
@@ -386,7 +395,9 @@ class Store:
             what = "1 run is damaged and left out" if count == 1 else f"{count} runs are damaged and left out"
             found.append(f"{what}: {named}")
         if self.unreadable:
-            found.append("parts of the file are damaged: finished runs may be missing")
+            what = "1 finished run is" if self.missing == 1 else f"{self.missing} finished runs are"
+            how_many = what if self.missing else "finished runs may be"
+            found.append(f"parts of the file are damaged: {how_many} missing")
         return found
 
     def begin(self, plan: Plan, facts: Mapping[str, Any]) -> None:
@@ -447,6 +458,7 @@ class Store:
         self.note(facts)
         self.keep(plan.measured)
         self._salt = _salt(self.fact("hash"))
+        self._connection.execute("INSERT INTO finished VALUES (0, ?)", (self._of_count(0),))
 
     def keep(self, measured: Measured) -> None:
         """Keep what was measured, in place of what was there."""
@@ -465,8 +477,37 @@ class Store:
         self._seal()
 
     def _has_measured(self) -> bool:
+        return self._has_table("measured")
+
+    def _has_table(self, name: str) -> bool:
         names = self._connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
-        return ("measured",) in names.fetchall()
+        return (name,) in names.fetchall()
+
+    def _of_count(self, runs: int) -> int:
+        """Checksum of a number of finished runs."""
+        return crc32(str(runs).encode(), self._salt)
+
+    def _seal_count(self) -> None:
+        """Keep how many runs are finished, so that those of a page that is lost are missed."""
+        if self._more and self._has_table("finished"):  # stores of earlier versions do not have it
+            sealed = self._finished, self._of_count(self._finished)
+            self._connection.execute("UPDATE finished SET runs = ?, checksum = ?", sealed)
+        self._more = False
+
+    def _check_count(self) -> None:
+        """Find out whether there are fewer runs than were finished."""
+        try:
+            sealed = (
+                self._connection.execute("SELECT * FROM finished").fetchall() if self._has_table("finished") else []
+            )
+            # Afterwards, as somebody may be at work.
+            self._finished = self._connection.execute("SELECT count(*) FROM run").fetchone()[0]
+        except sqlite3.DatabaseError as error:
+            self._unless_corrupt(error)
+            return
+        for runs, checksum in sealed:
+            self.unreadable |= checksum != self._of_count(runs) or self._finished < runs
+            self.missing = max(runs - self._finished, 0) if checksum == self._of_count(runs) else 0
 
     def _measured(self, shape: tuple[int, int, int]) -> Measured:
         """What was measured, of so many samples, records and levels."""
@@ -548,6 +589,7 @@ class Store:
 
     def _check_runs(self) -> None:
         """Find the runs that do not agree with their checksums."""
+        self._check_count()
         size = self.plan().size
         strangers = self._connection.execute("SELECT id FROM run WHERE id < 0 OR id >= ?", (size,))
         try:
@@ -634,9 +676,12 @@ class Store:
         columns = [*(getattr(rows, name).tolist() for name in self.columns), rows.checksums(self._salt).tolist()]
         marks = ", ".join("?" * len(columns))
         self._connection.executemany(f"INSERT INTO run VALUES ({marks})", zip(*columns, strict=True))
+        self._finished += len(rows)
+        self._more = self._more or len(rows) > 0
 
     def commit(self) -> None:
         """Make safe what has been added, and keep others from writing."""
+        self._seal_count()
         self._connection.execute("COMMIT")
         self._connection.execute("BEGIN IMMEDIATE")
         self._last = monotonic()

@@ -6,8 +6,10 @@ delete what another process fills at this moment.
 
 from __future__ import annotations
 
+import glob
 import os
 import platform
+import re
 import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -60,6 +62,8 @@ def in_words(path: Path) -> Iterator[None]:
             raise damaged(path, str(error)) from error
         problem = Problem(f"the store cannot be used: {error}", str(path), hint=HINTS.get(code))
         raise StoreError(str(problem)) from error
+    except UnicodeDecodeError as error:  # of a name in its tables, which `sqlite3` reads itself
+        raise damaged(path, "its tables are not those of a store") from error
 
 
 def open_store(path: Path) -> sqlite3.Connection:
@@ -169,6 +173,9 @@ def exchange(
     sqlite3.Connection
         To the new store, locked.
     """
+    locked = old.in_transaction
+    if locked:  # nobody else is exchanging this store
+        _sweep(path)
     fresh = _create(path)
     try:
         connection = sqlite3.connect(fresh, isolation_level=None)
@@ -179,10 +186,12 @@ def exchange(
         finally:
             connection.close()
         os.chmod(fresh, path.stat().st_mode & 0o777)  # noqa: PTH101
+        worthless = locked and not _has_runs(old)
         if os.name == "nt":  # where an open file cannot be replaced
             old.close()
-        aside = _keep(path)
-        say(f"the store as it was is kept as {aside}")
+        if not worthless:
+            aside = _keep(path)
+            say(f"the store as it was is kept as {aside}{_others(aside)}")
         fresh.replace(path)
     except BaseException:
         for end in ("", "-journal"):
@@ -191,6 +200,46 @@ def exchange(
     finally:
         old.close()
     return open_locked(path)
+
+
+def _has_runs(connection: sqlite3.Connection) -> bool:
+    """Whether a store has runs, or may have some that cannot be read."""
+    try:
+        return not tables(connection) or connection.execute("SELECT 1 FROM run LIMIT 1").fetchone() is not None
+    except sqlite3.Error:
+        return True
+
+
+def _sweep(path: Path) -> None:
+    """Remove what a process that was killed began to put in the place of a store: files without a single run."""
+    for left in path.parent.glob(f"{glob.escape(path.stem)}.new*{glob.escape(path.suffix)}"):
+        if not re.fullmatch(r"\.new(-\d+)?", left.stem.removeprefix(path.stem)) or left.is_symlink():
+            continue
+        with suppress(sqlite3.Error, OSError, InputError):
+            if left.stat().st_size and _is_in_use_or_filled(left):
+                continue
+            for end in ("", "-journal"):
+                Path(f"{left}{end}").unlink(missing_ok=True)
+
+
+def _is_in_use_or_filled(place: Path) -> bool:
+    """Whether a store has runs. Raises `sqlite3.Error` if somebody is at work on it, `InputError` if it is none."""
+    connection = open_store(place)
+    try:
+        connection.execute("PRAGMA busy_timeout = 0")
+        connection.execute("BEGIN IMMEDIATE")
+        return tables(connection) > 0 and _has_runs(connection)
+    finally:
+        connection.close()
+
+
+def _others(aside: Path) -> str:
+    """Say how many stores have been kept before this one."""
+    number = aside.stem.rpartition("-")[2]
+    if not number.isdecimal():
+        return ""
+    earlier = "an earlier one is" if number == "2" else f"{int(number) - 1} earlier ones are"
+    return f"; {earlier} kept beside it: remove what you do not need"
 
 
 def _create(path: Path) -> Path:

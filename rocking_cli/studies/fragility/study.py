@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.core import Mechanism
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.selection import select
 from rocking_cli.io.field_problems import say
@@ -214,7 +214,7 @@ def _structure(
         document.problems += _of_file(document, _within(document, place, "file"), entry.file, file, error)
         return None
     except MechanismError as error:
-        raise MechanismError(f"{entry.file}: {error}") from error
+        raise of_structure(error, entry.file) from error
     fields = [name for name, info in type(structure).model_fields.items() if info.annotation in (float, float | None)]
     known = [*fields, RESTITUTION]
     for name in _varied(document, place):

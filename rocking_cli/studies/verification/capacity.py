@@ -14,7 +14,7 @@ from rocking_cli.core.attached import PointMass, Spot
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, Problem, StructureError
 from rocking_cli.studies.verification.chain import Chain, Control
 
 STEPS = 256  # to the end of a curve, between which it is held to be a function
@@ -121,7 +121,7 @@ class ExactCurve:
         drives = self.chain.mechanism.coefficients(phi, self.chain.direction).B
         moves = np.diff(self.chain.displacement(phi, self.control))
         if not ((drives > 0).all() and (moves > 0).all()):
-            raise MechanismError(
+            raise StructureError(
                 f"in the {self.chain.direction.label} direction, the displacement of the control point does not "
                 "increase up to the critical rotation, so it cannot serve as the abscissa of a capacity curve; "
                 "choose another control point"

@@ -18,6 +18,7 @@ from rocking_cli.studies.verification.site_file import Site
 
 SIZES = ("ag", "F0", "TC", "S")
 MOST = 10_000  # rows of a table
+LEAST = 0.001  # s, of a period
 Period = Annotated[float, Field(gt=0, le=100)]
 Ordinate = Annotated[list[Annotated[float, Field(ge=0, le=1000)]], Field(min_length=2, max_length=2)]
 Row = Annotated[list[Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=4, max_length=4)]
@@ -35,7 +36,7 @@ class Shaking(Part):
 
     ag: float | None = quantity("ground acceleration on rock", unit="g", symbol="a_g", default=None, gt=0, le=10)
     F0: float | None = quantity("maximum spectral amplification", default=None, ge=1, le=10)
-    TC: float | None = quantity("end of its level part", unit="s", symbol="T_C", default=None, gt=0, le=10)
+    TC: float | None = quantity("end of its level part", unit="s", symbol="T_C", default=None, ge=LEAST, le=10)
     S: float | None = quantity("factor of soil and topography", default=None, ge=0.5, le=5)
     spectrum: list[Ordinate] | None = _ordinates()
 
@@ -182,6 +183,9 @@ class ItalianSite(Shaking, Site):
             if given.get(name) is None:
                 yield (name,), f"is missing: a hazard needs the {cls.model_fields[name].description}"
         if sound("hazard"):
+            for k, row in enumerate(given["hazard"]):
+                if row[-1] < LEAST:
+                    yield ("hazard", k), f"has T_C* = {row[-1]:g} s: a period must be at least {LEAST:g} s"
             for k, (before, after) in enumerate(pairwise(given["hazard"]), 1):
                 if after[0] <= before[0]:
                     yield ("hazard", k), f"return periods must increase, got {after[0]:g} after {before[0]:g} years"
