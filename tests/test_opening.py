@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from itertools import pairwise, product
 from math import isnan, nan
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from rocking_cli import GroundMotion, Registry, load_structure, read_record, res
 from rocking_cli.core import Direction
 from rocking_cli.core.released import Undetermined, impulses, released
 from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.holding import joints_in_words
+from rocking_cli.dynamics.joints import _calm
 from rocking_cli.dynamics.model import build_models
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.outcome import OUTCOME
@@ -326,6 +329,15 @@ def test_which_joints_bear_elsewhere_in_the_other_direction():
         assert changes.tolist() == [expected[label]] * 2, label
 
 
+@pytest.mark.parametrize(("most", "fast"), [(5.0, 5.0), (7.0, 6.0)])
+def test_the_calm_is_no_faster_than_any_cell_may_be(most, fast):
+    """Bounds -2 + y/10 and 3 - y/2 meet zero at y = 20 and 6; cells past phi_cr, half way, do not count."""
+    cells = np.tile([-2.0, 0.1, 3.0, -0.5, most], (8, 2, 1))
+    cells[4:] = -0.1, 0.1, 0.1, -0.1, 0.01
+    table, side = SimpleNamespace(q=lambda phi: phi, end=1.0), SimpleNamespace(reference=0.5)
+    assert _calm(cells, [table, table], [side, side]) == pytest.approx((2.0, fast))
+
+
 def test_a_batch_says_what_single_histories_say():
     made = structure("masonry/portal.yaml")
     (model,) = build_models(made, ("nonlinear",))
@@ -346,6 +358,22 @@ def test_what_is_beyond_is_no_result():
     assert (found.impacts[:, 0] <= found.known_to).all() and len(found.impacts) == found.impact_count
     assert found.lower_bound <= found.peak_ratio
     assert found.peak_ratio == pytest.approx(np.nanmax(np.abs(found.ratio)), rel=1e-3)
+
+
+def test_samples_end_with_the_record_where_nothing_later_is_a_result():
+    motion = read_record(ACCEL)
+    short = replace(motion, acceleration=2 * motion.acceleration[:361])
+    found = respond(structure("masonry/portal.yaml"), short, models=("nonlinear",))["nonlinear"]
+    whole = respond(structure("masonry/portal.yaml", opening=1e3), short, models=("nonlinear",))["nonlinear"]
+    assert found.unknown and found.known_to < short.duration < whole.impacts[-1, 0]  # it rocks on after the record
+    assert found.time[-1] == pytest.approx(short.duration) and whole.time[-1] > short.duration
+
+
+def test_what_to_do_next_depends_on_whether_the_body_is_alone():
+    portal = joints_in_words(history(structure("masonry/portal.yaml"), 2.0))
+    assert "describe the structure as a linkage that hinges at the joint that opens" in portal
+    body = joints_in_words(history(Registry()["block"](width=1.0, height=5.0, friction=0.1)))
+    assert "has slid by" in body and body.endswith("For stronger motions, assume that it overturns.")
 
 
 def test_a_wider_limit_keeps_the_result():
