@@ -14,6 +14,7 @@ import pytest
 from rocking_cli import GroundMotion, Registry, load_structure, read_record, respond
 from rocking_cli.core import Direction
 from rocking_cli.core.released import Undetermined, impulses, released
+from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.holding import joints_in_words
 from rocking_cli.dynamics.joints import _calm
@@ -374,6 +375,53 @@ def test_what_to_do_next_depends_on_whether_the_body_is_alone():
     assert "describe the structure as a linkage that hinges at the joint that opens" in portal
     body = joints_in_words(history(Registry()["block"](width=1.0, height=5.0, friction=0.1)))
     assert "has slid by" in body and body.endswith("For stronger motions, assume that it overturns.")
+
+
+def test_the_lower_bound_is_the_largest_rotation_until_the_first_warning():
+    """Of a block that slides as it comes back: it has rocked further by then than it is tilted at that moment."""
+    found = history(Registry()["block"](width=1.0, height=5.0, friction=0.3, opening=1e3), 1.2)
+    ratio = abs(found.ratio)
+    assert np.interp(found.warned, found.time, ratio) < 0.1 * found.lower_bound
+    assert found.lower_bound == pytest.approx(ratio[found.time <= found.warned].max(), rel=1e-3)
+    assert found.lower_bound < 0.2 * found.peak_ratio
+
+
+def test_what_slides_in_one_motion_adds_to_what_slid_before():
+    """At rest the rate ends and the slip stays: of two pulses with quiet between the slip is that of either alone."""
+    made = Registry()["block"](width=1.0, height=5.0, friction=0.1, restitution=0.01, opening=1e3)
+    time = 0.005 * np.arange(1600)
+    one, other = (
+        np.where((time > at) & (time < at + 0.4), size * 9.80665 * np.sin(2 * np.pi * (time - at) / 0.4), 0.0)
+        for at, size in ((0.5, 0.5), (5.0, 0.3))
+    )
+    slips = [
+        respond(made, GroundMotion("pulses", 0.005, a), models=("nonlinear",))["nonlinear"].check.largest
+        for a in (one, other, one + other)
+    ]
+    assert min(slips) > 0.1 and slips[2] == pytest.approx(slips[0] + slips[1], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("end", "before", "accelerations", "time", "after"),
+    [
+        (0, (0.0, 0.0), (-1.0, 3.0), 2.0, (1.125, 2.25)),  # opens 1.5 s before the end
+        (0, (0.5, 1.0), (1.0, 2.0), 1.0, (0.5 + 1 + 4 / 6, 2.5)),
+        (0, (0.1, -1.0), (0.0, 0.0), 1.0, (0.0, 0.0)),  # closes, without rebound
+        (0, (0.0, 0.0), (-2.0, -1.0), 1.0, (0.0, 0.0)),
+        (2, (0.5, 1.0), (-4.0, -4.0), 1.0, (0.5 + 1 / 8, 0.0)),  # stops after v^2/2a, and stays there
+        (2, (0.5, 0.0), (-4.0, -4.0), 1.0, (0.5, 0.0)),
+        (3, (0.5, 2.0), (0.0, -1.0), 1.0, (0.5 + 2 - 1 / 6, 1.5)),
+    ],
+)
+def test_an_opening_and_a_slip_step_by_step(end, before, accelerations, time, after):
+    """Rows 0 and 1 of a joint are its ends, 2 and 3 its slip in either sense; the acceleration is straight."""
+    kept = np.zeros((1, kernels.KEPT))
+    at, rate = [(kernels.GAP, kernels.GAP_RATE), (kernels.SLIP, kernels.SLIP_RATE)][end // 2]
+    columns = [at + end % 2, rate + end % 2]
+    kept[0, columns] = before
+    moves = kernels.advance_opening.py_func(kept, 0, end, *accelerations, time)
+    assert kept[0, columns] == pytest.approx(after)
+    assert moves == (after[1] > 0 or (end < 2 and after[0] > 0))
 
 
 def test_a_wider_limit_keeps_the_result():
