@@ -382,3 +382,10 @@ def test_record_takes_lists_and_patterns(tmp_path):
     assert [each["pga"] for each in said] == pytest.approx([0.55, 1.1])
     run("record", tmp_path / "two.yaml", "--plot", tmp_path / "two.png", "-o", tmp_path / "clean")
     assert run_json("record", tmp_path / "clean" / "two.csv")["pga"] == pytest.approx(1.1)
+
+
+@pytest.mark.parametrize(("dt", "every"), [(0.004, 2), (0.0005, 16), (0.02, 1)])
+def test_a_resampled_pulse_is_shown_as_often_as_before(dt, every):
+    """Every eighth sample of 1 ms is shown, one in 8 ms; where samples are farther apart than that, each."""
+    pulse = GroundMotion("pulse", 0.001, np.sin(np.linspace(0.0, 6.0, 1001)), every=8)
+    assert process(pulse, parse_steps([{"resample": dt}])).every == every
