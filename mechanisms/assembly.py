@@ -37,7 +37,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
-from rocking_cli.errors import StructureError
+from rocking_cli.errors import MechanismError, StructureError
 
 ABOVE = 1e-6  # of how far they are apart: hinges that are above one another
 SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding

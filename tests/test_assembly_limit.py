@@ -915,3 +915,16 @@ def test_a_wall_held_at_its_top_stays_held_when_displaced():
         assert place.multiplier(*weights(blocks)) == approx(work.imag / work.real, rel=1e-6)
     with pytest.raises(NoAnswer, match="2 independent ways"):
         replace(place, guides=()).multiplier(*weights(blocks))
+
+
+def test_parts_on_one_line_that_bear_opposite_ways_are_two_joints():
+    """A body stands on a pedestal, and its foot reaches under an arm of the ground on the line of its base."""
+    corners = ((0, 0), (5, 0), (5, 2), (2, 2), (2, 1), (4, 1), (4, 0.3), (1, 0.3), (1, 1), (0, 1))
+    pedestal = Block("pedestal", tuple(complex(*corner) for corner in corners))
+    corners = ((0, 1), (1.1, 1), (1.1, 0.6), (3, 0.6), (3, 1), (1.5, 1), (1.5, 2), (0, 2))
+    hook = Block("hook", tuple(complex(*corner) for corner in corners), 2.0, 1.0 + 1.3j)
+    on, under = sorted(contacts([hook], [pedestal]), key=lambda joint: joint.start.real)
+    for joint, ends, normal in ((on, {0, 1}, 1j), (under, {2, 3}, -1j)):
+        assert {round(end.real, 9) for end in joint.ends} == ends
+        assert {end.imag for end in joint.ends} == {1.0}
+        assert (joint.a, joint.b, joint.normal) == ("pedestal", "hook", approx(normal))

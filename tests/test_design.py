@@ -120,6 +120,14 @@ class TestScan:
         gap = of(lambda x: nan if 0.4 < x < 0.6 else x, (0.05, 0.95), 19, "m >= 0.2")
         assert not gap.monotone and len(gap.holds) == 2 and gap.not_built[0].reason == "m does not exist"
 
+    @pytest.mark.parametrize("missing", [0.45, 0.5])
+    def test_one_value_without_a_metric_is_a_gap_too(self, missing):
+        """Of 19 values one has no metric: nobody knows whether it turns there."""
+        found = of(lambda x: nan if isclose(x, missing) else x, (0.05, 0.95), 19, "m >= 0.2")
+        assert np.isnan(found.metric).sum() == 1 and not found.monotone and len(found.holds) == 2
+        ends = of(lambda x: nan if x < 0.06 or x > 0.94 else x, (0.05, 0.95), 19, "m >= 0.2")
+        assert np.isnan(ends.metric).sum() == 2 and ends.monotone  # nothing is between the ends and what is there
+
     def test_a_metric_without_a_bound(self):
         found = of(lambda x: np.inf if x < 0.62 else 1 / x, (0.1, 1.0), 10, "m < 5")
         assert isclose(found.value, 0.62, rel_tol=1e-9) and found.monotone

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from math import sqrt
 
 import numpy as np
 import pytest
@@ -262,3 +263,13 @@ def test_in_python(quake, tmp_path):
     )
     found.plot(tmp_path / "around.svg")
     assert (tmp_path / "around.svg").read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_the_ground_below_a_floor_is_turned_with_it(quake):
+    """Two components of a floor, at 30 degrees: below it is the ground at 30 degrees, by whose peak it is scaled."""
+    other = replace(quake, acceleration=0.6 * quake.acceleration[::-1])
+    floor = Floor.parse(FLOOR)
+    found = turned(floor.of(quake), floor.of(other), 30.0)
+    below = sqrt(3) / 2 * quake.acceleration + 0.3 * quake.acceleration[::-1]
+    assert found.ground.acceleration == pytest.approx(below, abs=1e-12)
+    assert found.of_ground.pga == pytest.approx(abs(below).max() / 9.80665, rel=1e-12)

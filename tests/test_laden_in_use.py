@@ -337,8 +337,9 @@ def test_a_size_that_cannot_stand_says_which_field():
 def test_an_enlarged_structure_has_its_ties_where_they_were_and_as_stiff():
     bar = {key: value for key, value in BAR.items() if key != "stiffness"} | {"area": 1e-4, "modulus": 2e11}
     bed = {"name": "bed", "bed": {"from": [-0.5, 0.0], "to": [0.5, 0.0]}, "modulus": 1e4}
-    tied = made("block", **BLOCK, ties=[bar, bed], loads=[{"name": "m", "mass": 10.0, "at": [0.2, 4.0]}])
+    tied = made("block", **BLOCK, ties=[bar, bed], loads=[{"name": "m", "mass": 10.0, "at": [0.2, 4.0], "seat": 0.1}])
     large = tied.enlarged(3.0)
+    assert large.loads[0].seat == pytest.approx(0.3)
     assert large.height == 15.0 and large.mass == tied.mass and large.loads[0].at == pytest.approx([0.6, 12.0])
     assert large.ties[0].k == tied.ties[0].k and large.ties[0].span == pytest.approx(3 * tied.ties[0].span)
     phi = np.array([0.2])

@@ -136,6 +136,43 @@ class TestRebuilt:
             assert found.critical_rotation(s) == pytest.approx(frame.critical_rotation(s), rel=1e-10)
             assert found.limit(s) == pytest.approx(pi / 2)
 
+    def test_an_image_has_the_same_mass_inertia_and_centroid(self):
+        """Two columns under a beam: only with columns alike are they images of each other."""
+        column = {"mass": 1000.0, "inertia": 3000.0}
+        joints = {
+            "A": {"pivot": "left", "at": [0.5, 0.0]}, "B": {"hinge": ["left", "beam"], "at": [-0.5, 6.0]},
+            "C": {"hinge": ["right", "beam"], "at": [7.5, 6.0]}, "D": {"pivot": "right", "at": [8.5, 0.0]},
+        }  # fmt: skip
+
+        def frame(**other):
+            bodies = {
+                "left": {**column, "centroid": [0.0, 3.0]},
+                "right": {**column, "centroid": [8.0, 3.0], **other},
+                "beam": {"mass": 5000.0, "centroid": [4.0, 6.5], "inertia": 9000.0},
+            }
+            return rk.Linkage(bodies=bodies, positive={"lead": "left", "joints": joints})
+
+        made = frame()
+        assert made.uplift(Direction.POSITIVE) == pytest.approx(made.uplift(Direction.NEGATIVE), rel=1e-12)
+        for other in ({"mass": 2000.0}, {"inertia": 4000.0}, {"centroid": [8.1, 3.0]}):
+            with pytest.raises((InputError, ValueError), match="has no mirror image among the bodies"):
+                frame(**other)
+
+    @pytest.mark.parametrize("order", [["lower", "upper"], ["upper", "lower"]])
+    def test_a_hinge_may_name_its_bodies_in_either_order(self, order):
+        """The upper half of a wall bears on the lower one, with its own weight as it stands."""
+        bodies = {"lower": rectangle(0, 0, 0.3, 1.5), "upper": rectangle(0, 1.5, 0.3, 3)}
+        joints = {
+            "A": {"pivot": "lower", "at": [0.3, 0]}, "B": {"hinge": order, "at": [0, 1.5]},
+            "C": {"slide": "upper", "at": [0.3, 3], "along": [0, 1]},
+        }  # fmt: skip
+        wall = rk.Linkage(bodies=bodies, density=1800.0, depth=1.0, positive={"lead": "lower", "joints": joints})
+        (joint,) = (each for each in wall.joints(Direction.POSITIVE) if each.letter == "B")
+        assert joint.bodies == ("lower", "upper") and joint.normal == pytest.approx(1j)
+        assert joint.face in ("lower", "upper")
+        (contact,) = (each for each in wall.contacts(Direction.POSITIVE) if set(each.pieces) == {"lower", "upper"})
+        assert contact.pieces == ("lower", "upper") and contact.normal == pytest.approx(1j)
+
 
 class TestCracks:
     WALL: ClassVar = rectangle(-0.15, 0, 0.15, 3.0)

@@ -35,6 +35,20 @@ def free(structure, release, tail=6.0, model="nonlinear", motion=None):
     return follow(model, motion, release=release / model.phi_cr[side], tail=tail)
 
 
+@pytest.mark.parametrize(("floor", "sideways"), [("borne", 1.0), ("sliding", 0.0), ("dragged", 1.0)])
+def test_a_floor_that_turns_about_its_far_end(floor, sideways):
+    """A rod of mass m whose near end goes at v up: m v^2/3 of inertia, m g v/2 of weight; sideways m or nothing."""
+    m, at, phi = 300.0, complex(0.2, 5.0), np.array([0.0, 0.1])
+    load = {"name": "floor", "mass": m, "at": [at.real, at.imag], "floor": floor}
+    bare, laden = made("block", **TALL), made("block", **TALL, loads=[load])
+    one, other = (each.coefficients(phi, PLUS) for each in (laden, bare))
+    velocity = -1j * np.exp(-1j * phi) * (at - 0.5)  # about the foot at x = .5
+    inertia, weight, push = (getattr(one, key) - getattr(other, key) for key in "IGB")
+    assert inertia == pytest.approx(m * (sideways * velocity.real**2 + velocity.imag**2 / 3), rel=1e-9)
+    assert weight == pytest.approx(m * velocity.imag / 2, rel=1e-9)
+    assert push == pytest.approx(m * sideways * velocity.real, rel=1e-9, abs=1e-9 * m)
+
+
 # Section 1: the printed values.
 
 TABLE = [

@@ -23,9 +23,11 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.structure import load_structure, parse_structure
 from rocking_cli.studies.neighbours import (
     Around,
+    Draws,
     Neighbours,
     Severity,
     can_lift,
+    follow,
     governing,
     least_uplift,
     neighbours,
@@ -384,3 +386,13 @@ class TestWords:
         share = re.search(r"\), ([\d.]+) % overturn", said)
         told = float(share[1]) / 100 if share else {"all": 1.0, "none": 0.0}[re.search(r"\), (all|none)", said)[1]]
         assert told == pytest.approx(fallen, abs=5e-3)
+
+
+def test_what_no_slenderness_leaves_standing_overturns_for_certain():
+    """Of two neighbours that slide one has no slenderness left: it has overturned, and its outcome is not unknown."""
+    block = parse_structure("mechanism: block\nwidth: 1\nheight: 5\nfriction: 0.1\n", "block", "block")
+    model = build_model(block, "nonlinear")
+    draws = Draws(np.ones(2), np.array([-0.1, 1.0]), np.full((2, 2), np.nan))
+    found = follow(model, ACCEL, draws)
+    assert found.overturned.tolist() == [True, False] and found.unknown.tolist() == [False, True]
+    assert np.isnan(found.peak_ratio[0])

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from math import isnan, nan
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,8 +14,13 @@ import pytest
 from rocking_cli import GroundMotion, Registry, load_structure, read_record, respond
 from rocking_cli.core import Direction
 from rocking_cli.core.released import Undetermined, impulses, released
+from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.holding import joints_in_words
+from rocking_cli.dynamics.joints import _calm
 from rocking_cli.dynamics.model import build_models
+from rocking_cli.dynamics.modes import modes
+from rocking_cli.dynamics.outcome import OUTCOME
 from tests.conftest import EXAMPLES, SHARED
 from tests.oracle.openings import openings
 
@@ -165,6 +171,20 @@ def test_compliance_of_a_block_let_go_at_its_foot():
     assert found == pytest.approx(1 / np.diag(np.linalg.inv(a)), rel=1e-12)
 
 
+def test_compliance_of_a_block_with_a_load_of_unequal_shares():
+    """The same with a load at [x, y] that adds its mass by its shares along x and y, of the velocity of its point."""
+    b, h, x, y, shares = 0.35, 1.4, 0.2, 1.1, (0.9, 0.4)  # about the centroid
+    load = {"name": "bust", "mass": 0.3, "at": [x, h + y], "horizontal": 0.9, "vertical": 0.4, "weight": 0.7}
+    made = Registry()["block"](width=2 * b, height=2 * h, mass=1.0, loads=[load])
+    mass = np.diag([1.0, 1.0, (b * b + h * h) / 3])
+    for share, row in zip(shares, ([1.0, 0.0, -y], [0.0, 1.0, x]), strict=True):
+        mass += 0.3 * share * np.outer(row, row)
+    foot = np.array([[0.0, 1.0, -b], [1.0, 0.0, h]])  # up and sideways
+    compliance = foot @ np.linalg.inv(mass) @ foot.T
+    found = released(made, Direction.NEGATIVE, np.zeros(1)).compliance[0]
+    assert found == pytest.approx(1 / np.diag(np.linalg.inv(compliance)), rel=1e-12)
+
+
 def test_a_lone_block_that_jumps_is_known_no_further():
     """Its foot's force by hand, N/m = g + R [sin(a - phi) phi.. - cos(a - phi) phi.^2], and its opening by sums."""
     r, g, dt = np.sqrt(2), 9.80665, 1e-4
@@ -231,6 +251,94 @@ def test_below_the_line_of_the_calm_every_joint_bears(name):
     assert 0 <= least < 0.3 * weight  # and much more would be too much
 
 
+def test_where_the_quick_bounds_hold_nothing_slides_either_way():
+    """At the corners of the bounds of every third cell, mu N - T and mu N + T are positive."""
+    (model,) = build_models(structure("masonry/portal.yaml", friction=0.6), ("nonlinear",))
+    joints, least, held = model.joints, [np.inf, np.inf], 0
+    for d, place in product(range(2), range(0, len(joints.within), 3)):
+        low, low_more, high, high_more, most = joints.within[place, d]
+        at = place / len(joints.within) * len(joints.rows)
+        k, t = int(at), at - int(at)
+        force = joints.rows[k, d].reshape(-1, 5, 4) @ np.array([1, t, t * t, t**3])
+        for y in (0.0, most):
+            for u in (low + low_more * y, high + high_more * y):
+                if low + low_more * y > high + high_more * y:
+                    continue
+                held += 1
+                now = force[:, :4] @ np.array([1.0, u, y, 0.0])
+                for one, other, shear, _ in joints.contacts[:, d]:
+                    if shear >= 0:
+                        grip = 0.6 * sum(now[row] for row in (one, other) if row >= 0)
+                        least = [min(a, grip - sense * now[shear]) for a, sense in zip(least, (1, -1), strict=True)]
+    assert held > 100 and min(least) >= 0
+
+
+@pytest.mark.parametrize("case", ["portal", "lifted", "sliding"])
+def test_the_quick_bounds_change_nothing(case):
+    """The same histories with every step looked at; a force that lifts does not fall with the weight."""
+    motion, g = read_record(ACCEL), 9.80665
+    if case == "portal":
+        made, factors = structure("masonry/portal.yaml"), [1.5, 1.75]
+    elif case == "sliding":
+        made, factors = Registry()["block"](width=1.0, height=5.0, friction=0.22), [0.6, 1.0]
+    else:
+        lift = {"name": "lift", "force": [0.0, 0.8 * 1000 * g], "at": [0.0, 2.5]}
+        made, factors = Registry()["block"](width=1.0, height=5.0, mass=1000.0, loads=[lift]), [1.0, 0.5]
+        up = GroundMotion("up", 0.01, 0.3 * g * np.sin(4 * np.pi * motion.time))
+        motion = replace(motion.scaled(0.1), vertical=up)
+    (model,) = build_models(made, ("nonlinear",))
+    within = model.joints.within.copy()
+    within[..., 4] = -1.0  # no q.^2 is as small
+    other = replace(model, joints=replace(model.joints, within=within, calm=(np.inf, -1.0)))
+    found = respond_many([model, other], [motion], Runs.of(np.repeat([0, 1], 2), 0, scale=factors * 2))
+    assert np.isfinite(found.warned).any() and found.opening.max() > 0
+    for field in OUTCOME:
+        one, all_looked_at = np.asarray(getattr(found, field)).reshape(2, -1)
+        np.testing.assert_allclose(one, all_looked_at, rtol=1e-9, err_msg=field)
+
+
+def test_the_reach_is_that_of_the_direction_in_which_it_moves_less():
+    """A body goes from rest to over its pivot along a chord, 2 R sin(alpha/2)."""
+    made = Registry()["rigid_body"](polygon=[[0, 0], [0.7, 0], [0.3, 2.8], [0, 2.8]])
+    (body,) = made.bodies()
+    chords = [2 * abs(arm) * np.sin(np.arctan2(abs(arm.real), arm.imag) / 2)
+              for arm in (body.centroid - 0.7, body.centroid)]  # fmt: skip
+    (model,) = build_models(made, ("nonlinear",))
+    assert max(chords) > 1.2 * min(chords)
+    assert model.joints.reach == pytest.approx(min(chords), rel=1e-9)
+
+
+def test_columns_alike_bear_together():
+    """Of three columns the joints bear three times 2 MPa x .3 m x 1 m; each joint is one of all columns."""
+    fields = {"column_width": 1.0, "column_height": 6.0, "mass_ratio": 1.0, "density": 2000.0, "depth": 1.0}
+    made = Registry()["symmetric_frame"](**fields, columns=3, strength={"stress": 2e6, "width": 0.3})
+    joints = build_models(made, ("nonlinear",))[0].joints
+    assert len(joints.labels) == 2 and joints.bearing[:, 1] == pytest.approx(3 * 2e6 * 0.3)
+
+
+def test_which_joints_bear_elsewhere_in_the_other_direction():
+    """Of a portal the hinges of each direction: those joints start anew at an impact, the others do not."""
+    made = structure("masonry/portal.yaml")
+    joints = build_models(made, ("nonlinear",))[0].joints
+    points = {label: [set(), set()] for label in joints.labels}
+    for k, direction in enumerate(Direction):
+        for contact in made.contacts(direction):
+            points[contact.label][k] |= set(contact.points)
+    expected = {label: one != other for label, (one, other) in points.items()}
+    assert set(expected.values()) == {True, False}
+    for label, changes in zip(joints.labels, joints.contacts[:, :, 3], strict=True):
+        assert changes.tolist() == [expected[label]] * 2, label
+
+
+@pytest.mark.parametrize(("most", "fast"), [(5.0, 5.0), (7.0, 6.0)])
+def test_the_calm_is_no_faster_than_any_cell_may_be(most, fast):
+    """Bounds -2 + y/10 and 3 - y/2 meet zero at y = 20 and 6; cells past phi_cr, half way, do not count."""
+    cells = np.tile([-2.0, 0.1, 3.0, -0.5, most], (8, 2, 1))
+    cells[4:] = -0.1, 0.1, 0.1, -0.1, 0.01
+    table, side = SimpleNamespace(q=lambda phi: phi, end=1.0), SimpleNamespace(reference=0.5)
+    assert _calm(cells, [table, table], [side, side]) == pytest.approx((2.0, fast))
+
+
 def test_a_batch_says_what_single_histories_say():
     made = structure("masonry/portal.yaml")
     (model,) = build_models(made, ("nonlinear",))
@@ -251,6 +359,69 @@ def test_what_is_beyond_is_no_result():
     assert (found.impacts[:, 0] <= found.known_to).all() and len(found.impacts) == found.impact_count
     assert found.lower_bound <= found.peak_ratio
     assert found.peak_ratio == pytest.approx(np.nanmax(np.abs(found.ratio)), rel=1e-3)
+
+
+def test_samples_end_with_the_record_where_nothing_later_is_a_result():
+    motion = read_record(ACCEL)
+    short = replace(motion, acceleration=2 * motion.acceleration[:361])
+    found = respond(structure("masonry/portal.yaml"), short, models=("nonlinear",))["nonlinear"]
+    whole = respond(structure("masonry/portal.yaml", opening=1e3), short, models=("nonlinear",))["nonlinear"]
+    assert found.unknown and found.known_to < short.duration < whole.impacts[-1, 0]  # it rocks on after the record
+    assert found.time[-1] == pytest.approx(short.duration) and whole.time[-1] > short.duration
+
+
+def test_what_to_do_next_depends_on_whether_the_body_is_alone():
+    portal = joints_in_words(history(structure("masonry/portal.yaml"), 2.0))
+    assert "describe the structure as a linkage that hinges at the joint that opens" in portal
+    body = joints_in_words(history(Registry()["block"](width=1.0, height=5.0, friction=0.1)))
+    assert "has slid by" in body and body.endswith("For stronger motions, assume that it overturns.")
+
+
+def test_the_lower_bound_is_the_largest_rotation_until_the_first_warning():
+    """Of a block that slides as it comes back: it has rocked further by then than it is tilted at that moment."""
+    found = history(Registry()["block"](width=1.0, height=5.0, friction=0.3, opening=1e3), 1.2)
+    ratio = abs(found.ratio)
+    assert np.interp(found.warned, found.time, ratio) < 0.1 * found.lower_bound
+    assert found.lower_bound == pytest.approx(ratio[found.time <= found.warned].max(), rel=1e-3)
+    assert found.lower_bound < 0.2 * found.peak_ratio
+
+
+def test_what_slides_in_one_motion_adds_to_what_slid_before():
+    """At rest the rate ends and the slip stays: of two pulses with quiet between the slip is that of either alone."""
+    made = Registry()["block"](width=1.0, height=5.0, friction=0.1, restitution=0.01, opening=1e3)
+    time = 0.005 * np.arange(1600)
+    one, other = (
+        np.where((time > at) & (time < at + 0.4), size * 9.80665 * np.sin(2 * np.pi * (time - at) / 0.4), 0.0)
+        for at, size in ((0.5, 0.5), (5.0, 0.3))
+    )
+    slips = [
+        respond(made, GroundMotion("pulses", 0.005, a), models=("nonlinear",))["nonlinear"].check.largest
+        for a in (one, other, one + other)
+    ]
+    assert min(slips) > 0.1 and slips[2] == pytest.approx(slips[0] + slips[1], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("end", "before", "accelerations", "time", "after"),
+    [
+        (0, (0.0, 0.0), (-1.0, 3.0), 2.0, (1.125, 2.25)),  # opens 1.5 s before the end
+        (0, (0.5, 1.0), (1.0, 2.0), 1.0, (0.5 + 1 + 4 / 6, 2.5)),
+        (0, (0.1, -1.0), (0.0, 0.0), 1.0, (0.0, 0.0)),  # closes, without rebound
+        (0, (0.0, 0.0), (-2.0, -1.0), 1.0, (0.0, 0.0)),
+        (2, (0.5, 1.0), (-4.0, -4.0), 1.0, (0.5 + 1 / 8, 0.0)),  # stops after v^2/2a, and stays there
+        (2, (0.5, 0.0), (-4.0, -4.0), 1.0, (0.5, 0.0)),
+        (3, (0.5, 2.0), (0.0, -1.0), 1.0, (0.5 + 2 - 1 / 6, 1.5)),
+    ],
+)
+def test_an_opening_and_a_slip_step_by_step(end, before, accelerations, time, after):
+    """Rows 0 and 1 of a joint are its ends, 2 and 3 its slip in either sense; the acceleration is straight."""
+    kept = np.zeros((1, kernels.KEPT))
+    at, rate = [(kernels.GAP, kernels.GAP_RATE), (kernels.SLIP, kernels.SLIP_RATE)][end // 2]
+    columns = [at + end % 2, rate + end % 2]
+    kept[0, columns] = before
+    moves = kernels.advance_opening.py_func(kept, 0, end, *accelerations, time)
+    assert kept[0, columns] == pytest.approx(after)
+    assert moves == (after[1] > 0 or (end < 2 and after[0] > 0))
 
 
 def test_a_wider_limit_keeps_the_result():
@@ -323,6 +494,34 @@ def test_joints_cut_in_two_say_the_same(name, factor):
     assert one.unknown[0] == two.unknown[0]
     assert one.warned[0] == pytest.approx(two.warned[0], abs=0.005, nan_ok=True)
     assert one.known_to[0] == pytest.approx(two.known_to[0], abs=0.02, nan_ok=True)
+
+
+def test_where_statics_determines_the_forces_the_modes_are_single_joints():
+    """An end that opens, or a contact that slides once mu N - T or mu N + T is used up: force, compliance, impulse."""
+    made, direction = structure("masonry/portal.yaml"), Direction.NEGATIVE
+    critical = made.critical_rotation(direction)
+    rotations = np.linspace(0.0, 0.8 * critical, 5)
+    rows, struck = released(made, direction, rotations), impulses(made, direction.opposite)
+    single = {}
+    for contact, (normals, shear) in zip(rows.contacts, rows.rows, strict=True):
+        ends = list(normals)
+        for k in ends:
+            single[contact.label, k] = rows.force[:, k], rows.compliance[:, k], struck[k]
+        for sense in (1, -1) if contact.friction is not None else ():
+            force, impulse = (
+                contact.friction * each[..., ends, :].sum(axis=-2) - sense * each[..., shear, :]
+                for each in (rows.force, struck)
+            )
+            single[contact.label, f"slides {sense}"] = force, rows.compliance[:, shear], impulse
+    found = modes(made, direction, rotations, critical)
+    assert len(found.released.contacts) >= 5
+    for j, contact in enumerate(found.released.contacts):
+        force, compliance = found.released.force[:, j], found.released.compliance[:, j]
+        size = np.abs(force).max()
+        alike = [each for each in single.values() if np.allclose(each[0], force, rtol=0, atol=1e-9 * size)]
+        assert len(alike) == 1, contact.label
+        assert compliance == pytest.approx(alike[0][1], rel=1e-9)
+        assert found.struck[j] == pytest.approx(alike[0][2], rel=1e-9, abs=1e-9 * np.abs(struck).max())
 
 
 def test_a_wall_in_running_bond_is_checked():

@@ -8,7 +8,7 @@ from scipy import signal
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.processing.oscillator import relative_response, response_spectrum
+from rocking_cli.processing.oscillator import _turning_point, relative_response, response_spectrum
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +80,19 @@ def test_peaks_between_samples_are_seen() -> None:
     for period in (0.06, 0.11, 0.4):
         x, _, _ = relative_response(fine, period, 0.05)
         assert response_spectrum(coarse, [period], 0.05).sd[0] == pytest.approx(np.abs(x).max(), rel=3e-5)
+
+
+@pytest.mark.parametrize(
+    ("b", "c", "s", "peak"),
+    [(-1.5, 0.0, 1 / 3, 1 / 6), (0.0, -1.0, 3**-0.5, 2 / 3 * 3**-0.5), (0.5, -1.0, (1 + 13**0.5) / 6, None)],
+)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_turning_point_between_samples_is_that_of_the_cubic(b, c, s, peak, sign) -> None:
+    """x = s + b s^2 + c s^3 turns where 1 + 2 b s + 3 c s^2 = 0; values and slopes at 0 and 1 say which cubic it is."""
+    ends = (np.array([sign * each]) for each in (0.0, 1 + b + c, 1.0, 1 + 2 * b + 3 * c))
+    wanted = s + b * s**2 + c * s**3
+    assert peak is None or wanted == pytest.approx(peak)
+    assert _turning_point(*ends) == pytest.approx([sign * wanted], rel=1e-12)
 
 
 def test_pseudo_acceleration_and_velocity_are_those_of_the_displacement(rough: GroundMotion) -> None:

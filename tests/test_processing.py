@@ -144,12 +144,35 @@ class TestShape:
         found = process(both, parse_steps(["trim 2:8", "lowpass 10"]))
         assert found.vertical.acceleration == pytest.approx(found.acceleration / 2)
 
+    def test_what_a_lowpass_takes_out_is_doubted_no_longer(self, motion):
+        from dataclasses import replace
+
+        from rocking_cli.excitation.base import Doubt
+        from rocking_cli.excitation.records.sensor import as_acceleration
+
+        coarse = replace(motion, acceleration=np.round(0.05 * np.sin(motion.time), 3))  # displacements of whole mm
+        (noisy,) = (each for each in as_acceleration(coarse, "displacement").remarks if each.kind == "resolution")
+        other = Doubt("columns", 3.0, "three columns")
+        remarked = replace(motion, remarks=(noisy, other))
+        for step, left in (("lowpass 10", [other]), ("highpass 0.2", [noisy, other]), ("taper 0.05", [noisy, other])):
+            kept = [each for each in process(remarked, parse_steps([step])).remarks if each in (noisy, other)]
+            assert kept == left, step
+
     def test_nothing_is_corrected_unless_asked(self, motion):
         assert process(motion, ()) is motion
         assert Reading().read(ACCEL).processing == ()
 
 
 class TestRefusals:
+    def test_a_filter_may_have_as_long_a_period_as_the_record(self, motion):
+        """Of 15 s: one period of 1/15 Hz, and 1.2 of .08 Hz."""
+        for frequency in (1 / 15, 0.08):
+            sections = signal.butter(4, frequency, "highpass", fs=100, output="sos")
+            wanted = signal.sosfiltfilt(sections, motion.acceleration)
+            assert done(motion, {"highpass": frequency}) == pytest.approx(wanted)
+        with pytest.raises(InputError, match="is shorter than one period"):
+            done(motion, {"highpass": 0.066})
+
     @pytest.mark.parametrize(
         ("step", "words"),
         [
@@ -375,3 +398,10 @@ def test_a_floor_of_equal_storeys_is_named_by_their_number():
     said = str(Floor.parse("T1=0.4,z=0.67,n=3"))
     assert said.endswith("z=0.67,n=3") and Floor.parse(said) == Floor.parse("T1=0.4,z=0.67,n=3")
     assert str(Floor.parse("T1=0.4,z=0.67,gamma=1.29")).endswith("gamma=1.29")
+
+
+@pytest.mark.parametrize(("dt", "every"), [(0.004, 2), (0.0005, 16), (0.02, 1)])
+def test_a_resampled_pulse_is_shown_as_often_as_before(dt, every):
+    """Every eighth sample of 1 ms is shown, one in 8 ms; where samples are farther apart than that, each."""
+    pulse = GroundMotion("pulse", 0.001, np.sin(np.linspace(0.0, 6.0, 1001)), every=8)
+    assert process(pulse, parse_steps([{"resample": dt}])).every == every

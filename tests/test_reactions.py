@@ -23,6 +23,8 @@ from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Body, Direction, Joint, Mechanism, rotation
 from rocking_cli.core.reactions import acceleration, at_uplift, impulses, parts, reactions
+from rocking_cli.core.released import impulses as released_impulses
+from rocking_cli.core.released import released
 from rocking_cli.structure import load_structure
 from tests.conftest import EXAMPLES
 from tests.reference_mechanics import deviation
@@ -264,6 +266,49 @@ def test_reactions_are_those_of_virtual_work_with_a_joint_freed(name, direction)
             if not joint.slide:
                 sign = 1 if behind(joint, j, links) else -1
                 assert abs(sign * force - want[joint.letter]) < 3e-6 * size, joint.letter
+
+
+ROUND = RigidBody(
+    polygon=[[-0.35, 0], [0.35, 0], [0.3, 2.8], [-0.35, 2.8]], corner_radius=0.04, mass=1000.0,
+    loads=[{"name": "bust", "mass": 300.0, "at": [0.1, 2.5], "horizontal": 0.9, "vertical": 0.4, "weight": 0.7}],
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("direction", BOTH)
+@pytest.mark.parametrize("name", [*STRUCTURES, "rounded"])
+def test_the_check_of_histories_sees_the_same_forces(name, direction):
+    """Of a joint that hinges; the forces of the check are affine in u_g'', phi.^2 and v_g''."""
+    structure = STRUCTURES.get(name, ROUND)
+    phi = np.array([0.0, 0.3, 0.9]) * 0.6 * min(structure.limit(direction), 0.3)
+    checked = released(structure, direction, phi)
+    states = ((0.0, -2.0), (0.2, -3 + 0.5j), (-0.25, 1 - 2j))
+    for k, (rate, ground) in enumerate(states):
+        force = checked.force[k] @ np.array([1.0, np.real(ground), rate**2, np.imag(ground)])
+        own = reactions(structure, direction, phi[k : k + 1], np.array([rate]), complex(ground))
+        size, seen = np.abs(own.force).max(), 0
+        for contact, (normals, shear) in zip(checked.contacts, checked.rows, strict=True):
+            if contact.held is None and len(contact.points) == 1:
+                away = [abs(joint.point - contact.points[0]) for joint in own.joints]
+                j, seen = int(np.argmin(away)), seen + 1
+                assert force[normals[0]] == pytest.approx(own.normal[j, 0], abs=1e-9 * size)
+                assert force[shear] == pytest.approx(own.shear[j, 0], abs=1e-9 * size)
+        assert seen == sum(not joint.is_guide for joint in own.joints)
+
+
+@pytest.mark.parametrize("name", ["frame", "wall", "arch", "block"])
+def test_the_check_of_histories_sees_the_same_impulses(name):
+    structure = STRUCTURES[name]
+    for ended in BOTH:
+        own = impulses(structure, ended)
+        contacts = released(structure, ended.opposite, np.zeros(1))
+        constant, factor = released_impulses(structure, ended).T
+        struck = constant + structure.eta(ended) * factor
+        size = np.abs(own.force).max()
+        for contact, (normals, shear) in zip(contacts.contacts, contacts.rows, strict=True):
+            if contact.held is None and len(contact.points) == 1:
+                j = int(np.argmin([abs(joint.point - contact.points[0]) for joint in own.joints]))
+                assert struck[normals[0]] == pytest.approx(own.normal[j, 0], abs=1e-9 * size)
+                assert struck[shear] == pytest.approx(own.shear[j, 0], abs=1e-9 * size)
 
 
 @pytest.mark.parametrize("name", ["frame", "arch", "symmetric frame", "block"])

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records import peer, read_record, text
+from rocking_cli.excitation.records.times import on_grid
 from rocking_cli.excitation.records.units import canonical, header_units
 from tests.conftest import NEEDS_RECORDS, record
 
@@ -1280,3 +1281,12 @@ def test_the_interval_of_a_time_column_is_the_number_that_was_written(tmp_path):
         rows = "".join(f"{3 + 0.01 * k:.2f},{(-1) ** k * 0.1}\n" for k in range(npts))
         file.write_text(f"t (s),a (g)\n{rows}", encoding="utf-8")
         assert read_record(file).dt == 0.01
+
+
+def test_how_uneven_times_are_is_told_by_the_step_that_is_farthest_off():
+    """Steps of 10, 10, 4, 10, 10 and 12 ms: the one of 4 ms is 6 ms off, longer ones only 2 ms."""
+    time = np.cumsum([0.0, 0.01, 0.01, 0.004, 0.01, 0.01, 0.012])
+    dt, values, doubt = on_grid(time, 3 * time)
+    assert dt == 0.01 and values == pytest.approx(0.03 * np.arange(6))
+    assert doubt.kind == "uneven" and doubt.value == pytest.approx(0.006)
+    assert "2 of 6 steps are not within 1 % of 0.01 s, they go from 0.004 to 0.012 s (at 0.044 s)" in doubt.text

@@ -28,7 +28,7 @@ def held(level, push=-1):
     return GroundMotion("held", 0.02, push * level * 9.80665 * np.ones(1501))
 
 
-@pytest.mark.parametrize(("level", "restitution"), [(0.9, None), (1.03, None), (1.1, None), (1.03, 0.5)])
+@pytest.mark.parametrize(("level", "restitution"), [(0.85, None), (0.9, None), (1.03, None), (1.1, None), (1.03, 0.5)])
 def test_a_held_acceleration_overturns_the_share_that_is_exact(level, restitution):
     made = model("block", width=0.7, height=2.8, restitution=restitution)
     found = neighbours(made, held(level * made.lambda_[0]))
@@ -71,6 +71,8 @@ def test_deviations_come_from_the_file_and_options_win():
     assert tuple(plain.scatter) == (0.05, 0.10)
     assert tuple(given.scatter) == (0.03, 0.10)
     assert tuple(measured.scatter) == (0.01, 0.03)
+    exact = model("block", width=0.7, height=2.8, uncertainty={"slenderness": 0.0, "restitution": 0.0})
+    assert tuple(exact.scatter) == (0.0, 0.0)  # none is not the same as not given
     assert Around().of(measured).words == (
         "standard deviations 4 % of amplitude, 3 % of slenderness, 0.01 of restitution"
     )

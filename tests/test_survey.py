@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import io
 import json
 import os
@@ -11,6 +12,7 @@ from html.parser import HTMLParser
 from math import atan, isclose, sqrt
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import rocking_cli as rk
@@ -307,6 +309,27 @@ class TestRanking:
         low, high = (survey([Made(rk.Block(width=b, height=2.0))], [motion]).rows[0].under for b in (0.499, 0.51))
         assert low.overturned or low.peak_ratio > 0
         assert high == Under(0.0, 0.0, motion.name)
+
+    @pytest.mark.parametrize(("aside", "direction"), [(0.0, "positive"), (-1e-10, "positive"), (-1e-6, "negative")])
+    def test_directions_that_differ_by_rounding_are_alike_and_the_first_is_shown(self, aside, direction):
+        load = {"name": "speck", "mass": 100.0, "at": [aside, 2.0]}
+        (row,) = survey([Made(rk.Block(width=0.5, height=2.0, mass=1000.0, loads=[load]))]).rows
+        assert row.direction == direction
+        assert isclose(row.lambda_, (1000 * 0.25 + 100 * (0.25 + aside)) / (1000 * 1.0 + 100 * 2.0), rel_tol=1e-9)
+
+    def test_a_vertical_motion_lifts_what_the_horizontal_one_alone_does_not(self):
+        """At .2 g a block of lambda = .25 stands; where the ground falls at half of g it lifts, as .5 x .25 < .2."""
+        n = 200
+        push = rk.GroundMotion("push", 0.01, np.where(np.arange(n) % 100 < 50, 0.2 * G, -0.2 * G))
+        falling = rk.GroundMotion("up", 0.01, np.full(n, -0.5 * G))
+        both = dataclasses.replace(push, vertical=falling)
+        block = rk.Block(width=0.5, height=2.0)
+        alone, shaken = (survey([Made(block)], [motion]).rows[0].under for motion in (push, both))
+        assert alone == Under(0.0, 0.0, "push")
+        wanted = rk.respond(block, both, models="nonlinear")["nonlinear"]
+        assert wanted.lifted and (shaken.overturned, shaken.over) == (float(wanted.overturned), "phi_cr")
+        if not wanted.overturned:
+            assert isclose(shaken.peak_ratio, wanted.peak_ratio, rel_tol=1e-9)
 
     def test_an_unknown_restitution_keeps_one_back_and_not_the_others(self):
         text = HEAD + "block,flat,3,1\nblock,a,0.4,2.8\n"

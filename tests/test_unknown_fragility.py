@@ -168,6 +168,15 @@ def test_what_is_known_of_a_run_is_known_of_the_side_on_which_it_was_seen():
         assert upper[:3].all() and upper[3] == (limit not in (0.8, "overturning"))
 
 
+def test_a_bound_that_is_the_peak_itself_is_known_of_its_side():
+    """Nothing larger came after the first warning: .5 of the critical rotation .2 is the peak of .1 that way."""
+    peaks, flags = np.array([[0.1, 0.04]]), np.ones(1, bool)
+    found = Endings(np.arange(1), np.array([UNKNOWN]), np.full(1, 0.5), peaks, flags, flags, np.array([0.5]), flags)
+    phi_cr = np.array([[0.2, 0.1]])
+    for reach, known in (([0.09, 0.01], True), ([0.09, 0.045], True), ([0.11, 0.01], False)):
+        assert tally.known_to_exceed(found, "40 mm", np.array([reach]), phi_cr).tolist() == [known], reach
+
+
 @pytest.mark.parametrize("limit", LIMITS)
 def test_ladders_first_exceed_twice(whole, limit):
     found = counted(whole, ladders=True)

@@ -22,6 +22,7 @@ from rocking_cli.plotting.azimuths import draw_azimuths
 from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.survey import draw_survey
 from rocking_cli.studies import assessment
+from rocking_cli.studies import survey as survey_studies
 from rocking_cli.studies.azimuths import Around as AllAround
 from rocking_cli.studies.margin import LEVELS, Margin
 from rocking_cli.studies.metrics import METRICS, Shaking
@@ -508,3 +509,33 @@ def test_many_histories_in_python_have_no_outcome_where_it_is_unknown(folder):
     data = found.to_dict()["nonlinear"]
     assert np.ravel(data["overturned"]).tolist()[0] is None and np.ravel(data["unknown"]).tolist() == [True, None]
     assert "and the outcome of 1 is unknown." in found.sentences[0]
+
+
+class TestOneOfASurvey:
+    """Runs of one structure under four motions, each with both polarities."""
+
+    MOTIONS = tuple(SimpleNamespace(name=name) for name in "abcd")
+    ENDS = ("overturned", "unknown", 0.4, "unknown", 0.2, 0.3, "overturned", "overturned")
+    MODEL = SimpleNamespace(structure="s", ends_at_limit=(False, False), joints=object())
+
+    def under(self, ends=ENDS, model=MODEL):
+        which = {end: np.array([each == end for each in ends]) for end in ("overturned", "unknown")}
+        peaks = np.array([nan if each == "overturned" else 0.9 if each == "unknown" else each for each in ends])
+        runs = SimpleNamespace(**which, failed=np.zeros(len(ends), bool), peak_ratio=peaks)
+        return survey_studies._of_one(model, np.ones(len(ends), bool), np.repeat(range(4), 2), runs, self.MOTIONS)
+
+    def test_each_motion_counts_once(self):
+        """Of a both overturning and unknown it overturns; b is unknown, c stays up, d overturns either way."""
+        found = self.under()
+        assert (found.overturned, found.unknown, found.at_most) == (0.5, 0.25, 0.75)
+        assert (found.peak_ratio, found.worst) == (0.3, "a")
+
+    def test_the_worst_is_one_that_overturns_else_one_that_may(self):
+        assert self.under((0.1, 0.2, 0.3, "unknown", 0.5, 0.4, 0.2, 0.2)).worst == "b"
+        known = self.under((0.1, 0.2, 0.3, 0.1, 0.5, 0.4, 0.2, 0.2))
+        assert (known.worst, known.peak_ratio, known.unknown) == ("c", 0.5, 0.0)
+
+    def test_of_joints_that_are_not_known_nothing_is_said_to_be_unknown(self):
+        model = SimpleNamespace(structure="s", ends_at_limit=(True, False), joints=None)
+        found = self.under((0.1, 0.2, 0.3, 0.1, 0.5, 0.4, 0.2, "overturned"), model)
+        assert (found.unknown, found.at_most, found.over) == (None, 0.25, "limit")

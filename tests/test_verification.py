@@ -682,3 +682,82 @@ def test_the_barycentre_is_where_d_is_that_of_the_point_over_e_star():
     follow = OPPENHEIM.followed(phi, Direction.POSITIVE)
     ways = [each.inertial * (follow(each.spot).z[0] - each.spot.at).real for each in weights]
     assert chain.moved(phi, Control(0j))[0] == pytest.approx(sum(ways) / sum(each.inertial for each in weights))
+
+
+@pytest.mark.parametrize(("T", "own"), [(0.5, False), (1.0, False), (3.0, False), (6.0, True)])
+def test_the_displacement_on_a_floor_above_its_period(T, own):
+    """By hand: above b T1 = .44 s no less than at b T1, where a stiff building of little damping amplifies most."""
+    floor = FloorSpectrum(GROUND, **{**FLOOR, "xi1": 0.02})
+    peak = 0.24 * G * sqrt(10 / 7) * 2.5 * (9 / 7) * (2 / 3) * sqrt(1.0016)  # S_Z
+    top = 1.1 * sqrt(10 / 13) / sqrt(0.02)  # A
+    level = top * peak * (0.44 / (2 * pi)) ** 2
+    falling = top * peak / (1 + (top - 1) * (T / 0.44 - 1) ** 1.2) * (T / (2 * pi)) ** 2
+    assert (falling > level) is own
+    assert floor.displacement(T, 0.08) == pytest.approx(max(falling, level), rel=1e-12)
+
+
+@pytest.mark.parametrize(("friction", "breaks"), [(0.15, False), (0.16, True)])
+def test_a_break_is_held_against_the_largest_acceleration(friction, breaks):
+    """By differences of the energy of weight, rod and courses: the rod lifts the curve before the courses part."""
+    weight, b, h, h_3 = 1e4 * G, 0.5, 5.0, 5.0 / 3
+    k = 60 * weight / h
+    rod = {"name": "t", "path": [{"ground": [0, 0]}, {"at": [0, 5]}], "stiffness": k}
+    courses = {"courses": 25, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 5.0, "friction": friction}
+    block = rk.Block(width=1.0, height=5.0, density=2000.0, depth=1.0, one_sided="positive", rebound=0.4,
+                     ties=[rod], interlock=courses)  # fmt: skip
+    chain = Chain(block, Direction.POSITIVE)
+    curve = ExactCurve(chain, chain.barycentre, 1.0)
+    held = 2 * 0.4 * 25 * 26 * (0.2 / 0.2) * friction * 0.2**2 * 0.5 * 2000 * G
+
+    def a_star(phi, held):
+        def energy(x):
+            turned = np.exp(-1j * x)
+            e = abs(b + complex(-b, h) * turned) - h
+            slid = (b + complex(-b, h_3) * turned).real
+            return weight * (complex(-b, h / 2) * turned).imag + k * e**2 / 2 + held * slid
+
+        moved = (complex(-b, h / 2) * np.exp(-1j * phi) * -1j).real
+        return (energy(phi + 1e-5) - energy(phi - 1e-5)) / 2e-5 / (weight * moved) * G
+
+    torn = _slid(b, h_3, 0.2)
+    before = [a_star(phi, held) for phi in np.linspace(0.0, torn, 200)]
+    lost = before[-1] - a_star(torn, 0.0)
+    assert lost > before[0] / 2 and bool(lost > max(before) / 2) is breaks
+    d = (complex(-b, h / 2) * (np.exp(-1j * torn) - 1)).real
+    assert curve.broken == (pytest.approx(d, rel=1e-9) if breaks else None)
+
+
+def test_a_table_that_falls_from_its_start_on_governs_there():
+    """The ordinate at T0 = .45 s is .35 g, and nothing after it displaces as much."""
+    table = TableSpectrum([(0.0, 0.3), (0.4, 0.6), (0.5, 0.1), (3.0, 0.05)], start=0.45)
+    for T in (0.45, 0.5, 0.6):
+        assert table.governing(T, 0.05) == 0.45
+        assert table.displacement(T, 0.08) == pytest.approx(
+            0.35 * G * sqrt(10 / 13) * (0.45 / (2 * pi)) ** 2, rel=1e-12
+        )
+
+
+def test_of_directions_that_differ_by_rounding_none_governs():
+    """A speck of a load beside the middle makes the negative direction the weaker one, by 1e-12 of its ratio."""
+    speck = {"name": "speck", "mass": 1.0, "at": [-1e-9, 8.0]}
+    code = codes()["NTC2018"]
+    for loads in (None, [speck], [{**speck, "mass": 400.0, "at": [-0.2, 8.0]}]):
+        block = rk.Block(width=0.6, height=8.0, mass=1000.0, loads=loads)
+        found = code.verify(block, code.site.model_validate(SITE), None)
+        much = bool(loads) and loads[0]["at"][0] < -0.1
+        assert (found.governs, found.alike) == ((Direction.NEGATIVE, False) if much else (Direction.POSITIVE, True))
+
+
+def test_of_two_seats_the_one_that_is_lost_first_counts():
+    """The top, half a width in from the pivot, goes h sin(phi) + b (1 - cos(phi)) sideways; halfway up less."""
+    floor, roof = (
+        {"name": name, "mass": 100.0, "at": [0.0, y], "seat": seat}
+        for name, y, seat in (("floor", 2.5, 0.2), ("roof", 5.0, 0.3))
+    )
+    for loads in ([floor, roof], [roof, floor]):
+        chain = Chain(rk.Block(width=1.0, height=5.0, mass=1e4, loads=loads), Direction.POSITIVE)
+        seat = ExactCurve(chain, chain.barycentre, 1.0).seat
+        phi = _slid(0.5, 5.0, 0.3)
+        assert phi < _slid(0.5, 2.5, 0.2)
+        assert (seat.load, seat.length) == ("roof", 0.3)
+        assert seat.d == pytest.approx(chain.displacement(np.array([phi]), chain.barycentre)[0], rel=1e-9)
