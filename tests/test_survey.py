@@ -448,6 +448,26 @@ class TestPython:
             rk.survey({"mechanism": ["block"], "width": []})
 
 
+def test_the_element_of_a_site_has_the_size_of_each_row(tmp_path):
+    """T0 = 6.2 (L/t) L sqrt(w/(E g)) of every row; that of the site file is of one structure alone."""
+    rows = {"thin": (0.3, 3.0), "thick": (0.6, 3.0), "low": (0.3, 1.5)}
+    (tmp_path / "t.csv").write_text(
+        "name,mechanism,width,height\n" + "".join(f"{name},block,{t},{L}\n" for name, (t, L) in rows.items())
+    )
+    site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    element = {"kind": "cantilever", "w": 18e3, "E": 1.2e9}
+    for given in (element, {**element, "L": 1.0, "t": 0.4}):
+        found = rk.survey(tmp_path / "t.csv", site={**site, "element": given}).rows
+        for row in found:
+            t, L = rows[row.name]
+            T0 = 6.2 * (L / t) * L * np.sqrt(18e3 / (1.2e9 * 9.80665))
+            by_hand = rk.verify(rk.Block(width=t, height=L), {**site, "T0": T0}).directions[rk.Direction.POSITIVE]
+            own = by_hand.counts.zeta if by_hand.governs == "damage" else by_hand.states["SLV"].ratio
+            assert row.ratio == pytest.approx(own, rel=1e-9), row.name
+    with pytest.raises(rk.InputError, match=r"element\.t is missing: a point_mass has no height and thickness"):
+        rk.verify(rk.PointMass(base_width=2.4, height=9.0), {**site, "element": element})
+
+
 def test_a_site_ranks_by_what_its_code_allows(tmp_path):
     import rocking_cli as rk
 

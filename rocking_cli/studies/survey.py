@@ -20,7 +20,7 @@ from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.processes import in_processes
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.studies.verification.check import verify
+from rocking_cli.studies.verification.check import of_each, verify
 from rocking_cli.studies.verification.site_file import SiteFile
 
 PART = 8  # structures that a thread has in memory at a time: the tables of each are one megabyte, at most ten
@@ -242,6 +242,7 @@ def survey(
         largest peak, then by uplift acceleration; with a site by the ratio of its code. Equal ones keep their order.
     """
     found: list[Surveyed | Bad | None] = [None] * len(entries)
+    site = of_each(site) if site is not None else None
 
     def work(first: int, stop: int) -> None:
         found[first:stop] = _part(entries, range(first, stop), motions, polarities, site, opening)

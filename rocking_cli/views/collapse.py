@@ -17,7 +17,7 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
         parts += [_hinges(direction, each), *_sentences(mechanism, direction, each)]
         if each.thrust:
             parts.append(_thrust(direction, each))
-    parts += [f"Caution: {text}" for text in mechanism.cautions()]
+    parts += [f"Caution: {own}"] if (own := mechanism.own_caution()) else []
     parts.append(
         "The forces shown are one equilibrium state with the least friction; where parts remain at rest, other "
         "states exist. lambda is both the greatest acceleration that can be carried without tension (static theorem) "

@@ -34,6 +34,11 @@ def _models() -> dict[str, type[Site]]:
     return {key: code.site for key, code in codes().items()}
 
 
+def of_each(site: SiteFile) -> SiteFile:
+    """Return the site of a survey, in which what is said of the structure itself is left to each row."""
+    return replace(site, site=codes()[site.site.code].of_each(site.site))
+
+
 def control_at(mechanism: Mechanism, x: float, y: float, body: str | None) -> Control:
     """A control point of a body, which may be left out where there is one. Raises `InputError` if it is not on it."""
     carrier = Carrier.of(mechanism.bodies(), mechanism.sketch(), mechanism.alike(), mechanism.piece)

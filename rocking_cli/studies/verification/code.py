@@ -33,6 +33,8 @@ class Code:
         Verifies a mechanism at a site, with a control point or None for its own choice.
     floor : callable, optional
         Gives the floor of a site on which the structure stands, at a limit state; None if it stands on the ground.
+    of_each : callable, optional
+        Gives the site of a survey: what it says of the structure itself is left to each row.
     """
 
     key: str
@@ -43,3 +45,4 @@ class Code:
     records: int
     verify: Callable[[Mechanism, Any, Control | None], Verification]
     floor: Callable[[Any, str], Floor | None] = lambda site, state: None
+    of_each: Callable[[Any], Any] = lambda site: site

@@ -95,7 +95,8 @@ def _of_state(say: Language, ground: Ground, state: str) -> Part:
 def _own_period(say: Language, one: Element) -> Working:
     """The period of an element that is free to vibrate."""
     put = "{k} · {L}/{t} · {L} · √({w}/({E} · {g}))"
-    put = say.put(put, k=one.kappa, L=one.L, t=one.t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
+    L, t = one.size
+    put = say.put(put, k=one.kappa, L=L, t=t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
     return Working("T_[0]", say.say("given_T0"), "κ (L/t) L √(w/(E g))", put, one.period, "s", clauses.OWN_PERIOD)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from rocking_cli.studies.verification.results import Method, Verification, Verified
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
-from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.sheet.language import Language, plain
 
 
 def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> Part:
@@ -23,6 +23,8 @@ def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> P
     said = [say.remark(each) for each in dict.fromkeys([*remarks, *found.remarks])]
     if caution:
         said.append(say.say("caution", text=say.caution(found.mechanism.mechanism, caution)))
+    if own := found.mechanism.own_caution():
+        said.append(say.say("caution", text=plain(own)))
     return Part("summary", say.say("summary"), items, [Part("remarks", say.say("remarks"), [*map(Sentence, said)])])
 
 

@@ -16,7 +16,7 @@ from rocking_cli.studies.verification.codes.italian import clauses, wordings, wo
 from rocking_cli.studies.verification.codes.italian.demand import DAMPING, Spectrum
 from rocking_cli.studies.verification.codes.italian.ground import Ground
 from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
-from rocking_cli.studies.verification.codes.italian.site import ItalianSite
+from rocking_cli.studies.verification.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.studies.verification.results import Method, State, Verification, Verified
 from rocking_cli.studies.verification.ties import elastic, lasting
 
@@ -116,7 +116,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     MechanismError
         If the structure does not stand.
     """
-    ground, taken = Ground(site), lasting(mechanism)
+    ground, taken = Ground(of_structure(site, mechanism)), lasting(mechanism)
     found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
     otherwise = [wordings.of_ties_at_rest(elastic(mechanism))] if taken is not mechanism else []
     remarks = [*otherwise, *wordings.of_site(ground, list(found.values()))]

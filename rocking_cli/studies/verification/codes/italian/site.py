@@ -9,7 +9,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from rocking_cli.core import Mechanism
 from rocking_cli.core.fields import quantity
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
 from rocking_cli.processing.floor import Floor as MovingFloor
@@ -123,8 +125,12 @@ class Element(Part):
     """An element that is free to vibrate before it rocks, of which the code estimates the period [C8.7.1.7]."""
 
     kind: Literal["cantilever", "spanning"] = Field(description="whether it is held at its foot or at both ends")
-    L: float = quantity("its length", unit="m", gt=0, le=1000)
-    t: float = quantity("its thickness", unit="m", gt=0, le=1000)
+    L: float | None = quantity(
+        "its length; if omitted, the height of the structure", unit="m", default=None, gt=0, le=1000
+    )
+    t: float | None = quantity(
+        "its thickness; if omitted, the thickness or width of the structure", unit="m", default=None, gt=0, le=1000
+    )
     w: float = quantity("its weight for a volume", unit="N/m3", gt=0, le=1e6)
     E: float = quantity("its modulus of elasticity", unit="Pa", gt=0, le=1e12)
 
@@ -134,9 +140,29 @@ class Element(Part):
         return KAPPA[self.kind]
 
     @property
+    def size(self) -> tuple[float, float]:
+        """L and t [m], once they are known."""
+        assert self.L is not None and self.t is not None
+        return self.L, self.t
+
+    @property
     def period(self) -> float:
-        """T0 [s]."""
-        return self.kappa * (self.L / self.t) * self.L * sqrt(self.w / (self.E * STANDARD_GRAVITY))
+        """T0 [s], once its size is known."""
+        L, t = self.size
+        return self.kappa * (L / t) * L * sqrt(self.w / (self.E * STANDARD_GRAVITY))
+
+    def sized(self, mechanism: Mechanism) -> Element:
+        """Return the same with what its size lacks taken from a structure. Raises `InputError` if that has none."""
+        sizes = {
+            "L": (self.L, getattr(mechanism, "height", None)),
+            "t": (self.t, getattr(mechanism, "thickness", getattr(mechanism, "width", None))),
+        }
+        found = {key: own if own is not None else taken for key, (own, taken) in sizes.items()}
+        for key, value in found.items():
+            if not isinstance(value, float):
+                what = f"is missing: a {mechanism.mechanism} has no height and thickness from which to take it"
+                raise InputError(Problem(what, field=f"element.{key}"))
+        return self.model_copy(update=found)
 
 
 class ItalianSite(Shaking, Site):
@@ -202,3 +228,15 @@ def floor_at(site: ItalianSite, state: str) -> MovingFloor | None:
         return None
     mode = floor.mode(state)
     return MovingFloor(mode.T1, mode.xi1, floor.z / floor.H, 3 * floor.n / (2 * floor.n + 1))
+
+
+def of_structure(site: ItalianSite, mechanism: Mechanism) -> ItalianSite:
+    """Return the site with the size of its element, where that is the structure's. Raises `InputError` if unknown."""
+    return site if site.element is None else site.model_copy(update={"element": site.element.sized(mechanism)})
+
+
+def of_each(site: ItalianSite) -> ItalianSite:
+    """Return the site of many structures, each of which has an element of its own size."""
+    if site.element is None:
+        return site
+    return site.model_copy(update={"element": site.element.model_copy(update={"L": None, "t": None})})

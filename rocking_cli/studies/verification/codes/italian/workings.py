@@ -45,7 +45,8 @@ def of_ground(ground: Ground) -> list[Working]:
     ]
     if site.element is not None:
         one = site.element
-        put = f"{one.kappa} x {_n(one.L)}/{_n(one.t)} x {_n(one.L)}"
+        L, t = one.size
+        put = f"{one.kappa} x {_n(L)}/{_n(t)} x {_n(L)}"
         put += f" x sqrt({_n(one.w)}/({_n(one.E)} x {STANDARD_GRAVITY}))"
         formula = "kappa (L/t) L sqrt(w/(E g))"
         found.append(Working("T0", "period of the element", formula, put, one.period, "s", clauses.OWN_PERIOD))
