@@ -761,3 +761,17 @@ def test_of_two_seats_the_one_that_is_lost_first_counts():
         assert phi < _slid(0.5, 2.5, 0.2)
         assert (seat.load, seat.length) == ("roof", 0.3)
         assert seat.d == pytest.approx(chain.displacement(np.array([phi]), chain.barycentre)[0], rel=1e-9)
+
+
+@pytest.mark.parametrize(("floor", "letter"), [("borne", True), ("dragged", True), ("sliding", False)])
+def test_more_inertia_than_weight_is_by_the_letter(floor, letter):
+    """The code adds a weight that has no inertia; it takes none away where half of a floor is carried, all moved."""
+    W, m, h = 1e4 * G, 3000.0, 4.0
+    load = {"name": "floor", "mass": m, "at": [0.1, h], "floor": floor}
+    chain = Chain(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[load]), Direction.POSITIVE)
+    lifted = 0.5 * W + 0.4 * m * G / 2  # arms to the foot at x = .5
+    moved = 2.5 * W + (0.0 if floor == "sliding" else h * m * G)
+    assert chain.alpha0 == pytest.approx(lifted / moved, rel=1e-12)
+    assert chain.is_by_the_letter is letter
+    by_letter = moved if letter else moved + h * m * G / 2
+    assert chain.by_the_letter == pytest.approx(lifted / by_letter, rel=1e-12)
