@@ -696,7 +696,7 @@ def test_the_displacement_on_a_floor_above_its_period(T, own):
     assert floor.displacement(T, 0.08) == pytest.approx(max(falling, level), rel=1e-12)
 
 
-@pytest.mark.parametrize(("friction", "breaks"), [(0.15, False), (0.16, True)])
+@pytest.mark.parametrize(("friction", "breaks"), [(0.15, False), (0.155, False), (0.16, True)])
 def test_a_break_is_held_against_the_largest_acceleration(friction, breaks):
     """By differences of the energy of weight, rod and courses: the rod lifts the curve before the courses part."""
     weight, b, h, h_3 = 1e4 * G, 0.5, 5.0, 5.0 / 3

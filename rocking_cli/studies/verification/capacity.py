@@ -162,7 +162,10 @@ class ExactCurve:
     @cached_property
     def largest(self) -> float:
         """The largest a* of the curve [m/s2]."""
-        return max(self.a0, *(self.acceleration_at(float(phi)) for phi in np.linspace(0.0, self.end, STEPS // 4 + 1)))
+        places = np.linspace(0.0, self.end, STEPS // 4 + 1).tolist()
+        if self.torn is not None and self.torn <= self.end:
+            places.append(self.torn)  # where a curve that rises up to its break is largest
+        return max(self.a0, *map(self.acceleration_at, places))
 
     @property
     def lost_on_the_way(self) -> bool:
