@@ -31,6 +31,8 @@ from rocking_cli.core import (
     quantity,
 )
 
+TOP = 1e-9  # of the height: a hinge so near the top is at it, and a load of so small a share of the weight is none
+
 
 class SpanningWall(Mechanism):
     """A one-way spanning wall that carries a floor, hinged at its foot and above it, its top held sideways."""
@@ -92,8 +94,8 @@ class SpanningWall(Mechanism):
 
     def _check_stands_alone(self, direction: Direction) -> None:
         load, lever = self._load_ratio, self._lever(direction)
-        if self.hinge == "weakest" and load * lever <= 0:
-            why = "without a load on top" if load == 0 else "with its load on the hinge's face or beyond"
+        if self.hinge == "weakest" and (load * lever <= 0 or 1 - self._hinges[direction] < TOP):
+            why = "without a load on top" if load < TOP else "with its load on the hinge's face or beyond"
             raise geometry_error(
                 "hinge",
                 f"{why} the weakest hinge of the {direction.label} direction runs to the top: the whole wall turns "

@@ -116,7 +116,7 @@ class TestScan:
         assert "width must be more than 0 m" in part.reason
         assert np.isnan(found.metric[:6]).all() and not np.isnan(found.metric[6:]).any()
         ((low, high),) = found.holds
-        assert isclose(high, 0.75) and 0 < low < 1e-6
+        assert isclose(high, 0.75) and isclose(low, 1e-6, rel_tol=1e-6)
         gap = of(lambda x: nan if 0.4 < x < 0.6 else x, (0.05, 0.95), 19, "m >= 0.2")
         assert not gap.monotone and len(gap.holds) == 2 and gap.not_built[0].reason == "m does not exist"
 

@@ -139,3 +139,29 @@ def test_a_point_that_a_joint_holds_does_not_move_by_rounding():
     (held,) = [spot for name, spot in moves.points.items() if name == "floor"]
     found = moves._displacement(held, np.linspace(0, 0.1, 11), POSITIVE)
     assert (found.real == 0).all() and (found.imag[1:] > 0).all()
+
+
+def test_a_load_on_what_rests_changes_nothing(tmp_path):
+    """Below the crack the facade stands still: a mass and a force there neither move nor load a joint."""
+    text = (EXAMPLES / "masonry" / "cracked_facade.yaml").read_text(encoding="utf-8")
+    more = (
+        "  - {name: altar, mass: 900, at: [0.2, 0.1], body: facade}\n"
+        "  - {name: strut, force: [3 kN, 2 kN], at: [1.0, 0.2], body: facade}\n"
+    )
+    answers = []
+    for k, content in enumerate((text, text + more)):
+        file = tmp_path / f"{k}.yaml"
+        file.write_text(content, encoding="utf-8")
+        answers.append(rk.respond(file, "sine:0.4g:0.8s", models="nonlinear")["nonlinear"])
+    one, other = answers
+    assert one.peak_ratio == pytest.approx(other.peak_ratio, rel=1e-9) and one.peak_ratio > 0.1
+    assert one.opening == pytest.approx(other.opening, abs=1e-12)
+
+
+def test_what_all_but_falls_by_itself_needs_no_velocity(tmp_path):
+    """A corner pulled in so far that the centroid is over the crack's edge at the height where lambda is least."""
+    text = (EXAMPLES / "masonry" / "cracked_facade.yaml").read_text(encoding="utf-8")
+    file = tmp_path / "f.yaml"
+    file.write_text(text.replace("[1.1, 1.5]", "[0.0001, 1.5]"), encoding="utf-8")
+    found = rk.equiv(file)
+    assert 0 < found.positive.lambda_ < 1e-6 and 0 <= found.positive.v_imp < 1e-6

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from rocking_cli.core.mechanism import DirectionalRestitution
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, MechanismError, StructureError, of_structure
 from rocking_cli.structure import load_structure, parse_structure
 
 
@@ -357,3 +357,10 @@ def test_a_file_that_ends_too_early_has_a_line(text, line):
 
 def test_a_name_that_is_left_empty_is_that_of_the_file():
     assert parse_structure("mechanism: block\nname:\nwidth: 1\nheight: 4\n", "f.yaml", "f").name == "f"
+
+
+def test_a_structure_without_an_answer_is_named_once_and_is_wrong_input():
+    error = of_structure(of_structure(StructureError("it cannot stand"), "tower"), "tower")
+    assert str(error) == "tower: it cannot stand" and error.exit_code == 2
+    broken = of_structure(MechanismError("it jumps"), "tower")
+    assert type(broken) is MechanismError and broken.exit_code == 3

@@ -178,7 +178,8 @@ class Pieces:
             each.body.name: self._motions[each.body.name].carry(each.body.centroid) for each in self._parts
         }
         self.dq, self.ddq = (self._coordinates(k) for k in (1, 2))
-        self._masses = [thing for thing in mechanism.attached if isinstance(thing, PointMass)]
+        masses = (thing for thing in mechanism.attached if isinstance(thing, PointMass))
+        self._masses = [thing for thing in masses if self._moves(thing.spot)]
         self.mass = self._mass()
 
     @property
@@ -203,6 +204,10 @@ class Pieces:
 
     def _piece(self, spot: Spot) -> str:
         return self._mechanism.piece_at(spot.body or "", spot.at, self._direction)
+
+    def _moves(self, spot: Spot) -> bool:
+        """Whether a point is of a piece: not of the ground, nor of a body that rests on it in this direction."""
+        return spot.body is not None and self._piece(spot) in self._column
 
     def _spread(self, spot: Spot, way: Points) -> Reals:
         """Velocity of a point along a unit vector over the coordinates, shape (n, 3 pieces)."""
@@ -269,7 +274,7 @@ class Pieces:
 
         for other in mechanism.attached:
             for push in other.forces(direction, follow):  # type: ignore[arg-type]
-                if push.spot.body is not None:
+                if self._moves(push.spot):
                     size = np.abs(push.force)
                     way = np.where(size > 0, push.force, 1.0) / np.where(size > 0, size, 1.0)
                     found[..., ONE] -= size[:, None] * self._spread(push.spot, way.astype(np.complex128))
@@ -278,7 +283,7 @@ class Pieces:
     def _path(self, spot: Spot) -> object:
         from rocking_cli.core.attached import Path
 
-        return Path(*(self._motions[self._piece(spot)] if spot.body is not None else self._still).carry(spot.at))
+        return Path(*(self._motions[self._piece(spot)] if self._moves(spot) else self._still).carry(spot.at))
 
     def rates(self, contacts: Sequence[Contact]) -> tuple[Reals, list[tuple[tuple[int, ...], int | None]]]:
         """The velocities at contacts over those of the pieces, shape (n, rows, 3 pieces), and the rows of each."""

@@ -163,7 +163,7 @@ def velocity_ratios(block: EquivalentBlock, gravity: float) -> tuple[float, floa
 
     A step v gives q.. = p^2 (q - phi_cr) the rate p^2 kappa v/g, and p phi_cr just overturns: v = g lambda/p.
     """
-    own = gravity / (block.p * block.v_imp)
+    own = gravity / (block.p * block.v_imp) if block.v_imp else np.nan  # of what overturns by itself, all but
     return own * block.lambda_lin, own * block.lambda_
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isnan
 from typing import Any
 
 from rocking_cli.core import Equivalence, Mechanism
 from rocking_cli.studies.linearisation import Linearisation, velocity_ratios
 from rocking_cli.studies.trust import errors, preferred, trust
-from rocking_cli.views.view import Table, View, heading
+from rocking_cli.views.view import ABSENT, Table, View, heading
 
 PREFERRED = {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}
 
@@ -58,6 +59,8 @@ def _rows(each: Linearisation, gravity: float) -> list[list[str]]:
 
 
 def _percent(ratio: float) -> str:
+    if isnan(ratio):
+        return ABSENT
     if ratio == float("inf"):
         return "no uplift"
     error = 100 * (ratio - 1)
@@ -73,7 +76,7 @@ def _data(each: Linearisation, gravity: float) -> dict[str, Any]:
     return {
         "uplift_ratio": {"kappa1": each.uplift_ratio1, "kappa2": each.uplift_ratio2},
         "v_imp": each.block.v_imp,
-        "v_imp_ratio": {"kappa1": one, "kappa2": other},
+        "v_imp_ratio": {"kappa1": finite(one), "kappa2": finite(other)},
         "free_period": [
             {"amplitude": r, "period": T, "ratio": ratio}
             for r, T, ratio in zip(
