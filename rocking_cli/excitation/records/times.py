@@ -58,7 +58,7 @@ def even_interval(time: NDArray[np.float64]) -> float:
         hint = "the first column must be the time, increasing; printed times need enough decimals to tell rows apart"
         raise UnevenTimeError(f"time does not increase: {time[row]:g} s {what}", hint, row)
 
-    dt = float(f"{(time[-1] - time[0]) / (len(time) - 1):.15g}")  # the last bit is that of the division
+    dt = _as_written(float((time[-1] - time[0]) / (len(time) - 1)))
     if dt < _LEAST:
         hint = "the first column must be the time, in seconds"
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
@@ -89,6 +89,12 @@ def even_interval(time: NDArray[np.float64]) -> float:
         "accelerations and give `dt`"
     )
     raise UnevenTimeError(message, hint, row)
+
+
+def _as_written(value: float) -> float:
+    """The number of twelve digits that a quotient misses by its last bits alone, if there is one."""
+    written = float(f"{value:.12g}")
+    return written if abs(written - value) <= 2 * np.spacing(value) else value
 
 
 def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], Doubt] | None:
