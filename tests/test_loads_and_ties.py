@@ -63,10 +63,10 @@ TABLE = [
 @pytest.mark.parametrize(("n0", "ea", "uplift", "phi_cr", "p", "kappa1", "time", "rate"), TABLE)
 def test_a_block_with_a_tendon(n0, ea, uplift, phi_cr, p, kappa1, time, rate, tmp_path):
     file = tmp_path / "tall.yaml"
-    spring = f"area: {ea * MG / 2e11!r}\n    modulus: 2e11" if ea else "stiffness: 0"
+    spring = f"length: 5\n    area: {ea * MG / 2e11!r}\n    modulus: 2e11" if ea else "stiffness: 0"
     file.write_text(
         "mechanism: block\nwidth: 1\nheight: 5\ndensity: 200\ndepth: 1\nties:\n"
-        "  - name: tendon\n    from: {ground: [0, 0]}\n    to: {at: [0, 0]}\n    length: 5\n"
+        "  - name: tendon\n    from: {ground: [0, 0]}\n    to: {at: [0, 0]}\n"
         f"    {spring}\n    prestress: {n0 * MG!r}\n",
         encoding="utf-8",
     )
