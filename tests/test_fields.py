@@ -178,6 +178,7 @@ def test_every_field_may_be_dropped(name, tmp_path):
     [
         ("examples/masonry/cracked_facade.yaml", ("bodies", "facade", "polygon", 3, 0), 1e5, 0),
         ("rocking new curve", ("points", 1, 1), 5e-324, 2),
+        ("rocking new curve", ("points", 1, 1), 1e300, 2),
         ("rocking new rigid_body", ("depth",), 1e-300, 2),
     ],
 )
