@@ -41,6 +41,7 @@ def read_curve(path: Path) -> tuple[list[Point], list[int]]:
     return points, lines
 
 
+MOST = 1e6  # of displacements [m] and ratios
 LEAST = 1e-12  # of displacements and ratios that are not zero: slopes of smaller ones overflow
 
 
@@ -51,6 +52,8 @@ def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:
     for k, values in enumerate(points):
         if any(0 < abs(value) < LEAST for value in values):
             return k, f"has a value closer to zero than {LEAST:g}: write 0"
+        if any(abs(value) > MOST for value in values):
+            return k, f"has a value beyond {MOST:g}: displacements are in m, ratios over g"
     if points[0][0] != 0:
         return 0, f"begins at {points[0][0]:g} m: the first point is at rest, with the ratio at uplift"
     for k, ((d, _), (after, _)) in enumerate(pairwise(points), 1):
