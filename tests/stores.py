@@ -160,10 +160,9 @@ RUNS = (
     "DELETE FROM run WHERE id > K",
     "DELETE FROM run",
     "DELETE FROM run WHERE id = K + 1; UPDATE run SET id = K + 1 WHERE id = K",
-    "INSERT OR REPLACE INTO run SELECT K, scale, eta, outcome, peak_ratio, peak_positive, peak_negative, uplift_time,"
-    " overturning_time, checksum FROM run WHERE id = 3",
-    "INSERT INTO run SELECT id + 5000, scale, eta, outcome, peak_ratio, peak_positive, peak_negative, uplift_time,"
-    " overturning_time, checksum FROM run",
+    "CREATE TEMP TABLE x AS SELECT * FROM run WHERE id = 3; UPDATE x SET id = K; INSERT OR REPLACE INTO run"
+    " SELECT * FROM x",
+    "CREATE TEMP TABLE x AS SELECT * FROM run; UPDATE x SET id = id + 5000; INSERT INTO run SELECT * FROM x",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO run SELECT * FROM other.run; DETACH other",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO sample SELECT * FROM other.sample; DETACH other",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO study SELECT * FROM other.study; DETACH other",

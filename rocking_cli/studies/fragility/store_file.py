@@ -201,9 +201,10 @@ def exchange(
 
 
 def _has_runs(connection: sqlite3.Connection) -> bool:
-    """Whether a store has runs, or may have some that cannot be read."""
+    """Whether a store has runs, counted some that cannot be found any more, or may have some that cannot be read."""
+    found = "SELECT 1 FROM run UNION ALL SELECT 1 FROM finished WHERE runs > 0 LIMIT 1"
     try:
-        return not tables(connection) or connection.execute("SELECT 1 FROM run LIMIT 1").fetchone() is not None
+        return not tables(connection) or connection.execute(found).fetchone() is not None
     except sqlite3.Error:
         return True
 
