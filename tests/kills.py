@@ -17,6 +17,7 @@ from tests.stores import WAITS, is_sound, shown, write
 
 LEVELS = 500
 RESTARTED = 3  # one in so many is started with `--restart`, on a store with all runs
+EXCHANGING = 6  # one in so many of all is killed as it puts its new store in the place of that one
 PATIENCE = 120.0  # s
 
 
@@ -49,13 +50,13 @@ def _ready(folder: Path, *arguments: object) -> subprocess.Popen[str]:
 
 
 def kill(whole: Whole, folder: Path, number: int) -> str:
-    """Kill a study at a random moment, and run it again to its end.
+    """Kill a study, most at a random moment, and run it again to its end.
 
     Returns
     -------
     str
-        How much of the study its store held when it was run again: "none", "some" or "all" of the runs, and whether
-        the process that was killed had to restart it.
+        How much of the study its store held when it was run again: "none", "some" or "all" of the runs; whether the
+        process that was killed had to restart it, and whether it left a new store that was not in place yet.
 
     Raises
     ------
@@ -71,11 +72,15 @@ def kill(whole: Whole, folder: Path, number: int) -> str:
     arguments = ["fragility", whole.study, "--store", place, "--json"]
     process = _ready(folder, *arguments, *(["--restart"] if restart else []))
     (folder / "go").touch()
-    time.sleep(random.Random(number).uniform(0, whole.seconds))
+    if number % EXCHANGING == EXCHANGING - 1:
+        while process.poll() is None and not any(folder.glob("store.new*")):
+            time.sleep(0.0002)
+    else:
+        time.sleep(random.Random(number).uniform(0, whole.seconds))
     process.kill()  # on Windows `terminate` is the same
     said = process.communicate()[1]
     assert "Traceback" not in said, said
-    kept = [*folder.glob("store.before*.db")]
+    kept, new = [*folder.glob("store.before*.db")], [*folder.glob("store.new*")]
     assert len(kept) <= 1, kept
     assert kept or not restart or place.stat().st_ino == before, "the runs from before the restart are lost"
 
@@ -91,4 +96,4 @@ def kill(whole: Whole, folder: Path, number: int) -> str:
     assert not left, left
     had = re.search(r"(\d+) of (\d+) runs are in the store already", again.stderr)
     how_many = "none" if had is None else "all" if had[1] == had[2] else "some"
-    return f"{how_many}{' (restarted)' if restart else ''}"
+    return how_many + ", restarted" * restart + ", new store left" * bool(new)
