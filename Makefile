@@ -76,7 +76,7 @@ fields: setup  ## Every field of every example and starter, spoilt in every way;
 properties: setup  ## New examples for every property test, random ones; EXAMPLES=1000 is how many for each
 	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_PROPERTIES'] = '$(or $(EXAMPLES),500)'; sys.exit(pytest.main(['-q', '-n', 'auto', '-m', 'hypothesis', '--ignore=tests/test_fuzz.py', 'tests']))"
 
-soak: setup  ## What takes too long for the tests, some ten minutes: 500 damaged stores, 50 races of three processes
+soak: setup  ## What takes too long for the tests, an hour: damaged stores, races, kills, spoilt records; READERS=20 is how often
 	$(BIN)/python -m tests.soak
 
 validation: setup  ## Write docs/validation.md anew

@@ -20,8 +20,8 @@ project_copyright = author
 version = release = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
-# The last three are parts of other pages.
-exclude_patterns = ["_generated", "corrections.md", "validation_head.md", "validation_shares.md"]
+# All but the first are parts of other pages.
+exclude_patterns = ["_generated", "corrections.md", "validation_*.md"]
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]  # ```math is what code forges draw
 myst_heading_anchors = 3

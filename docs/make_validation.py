@@ -334,8 +334,8 @@ def page() -> str:
             f"## {title}\n\n| quantity | reference | its value | ours | difference | held by |\n"
             f"|---|---|---|---|---|---|\n{rows}"
         )
-    parts.append((DOCS / "validation_shares.md").read_text(encoding="utf-8").rstrip())
-    parts.append((DOCS / "corrections.md").read_text(encoding="utf-8").rstrip())
+    more = ("validation_shares.md", "validation_faults.md", "corrections.md")
+    parts += [(DOCS / name).read_text(encoding="utf-8").rstrip() for name in more]
     return "\n\n".join(parts) + "\n"
 
 

@@ -1,4 +1,7 @@
-"""What takes too long for the tests: hundreds of damaged stores, and many races. `make soak` runs it."""
+"""What takes too long for the tests: damaged stores, races, kills, and record readers. `make soak` runs all.
+
+STORES, RACES, KILLS and READERS in the environment are how often: `READERS=20 make soak`.
+"""
 
 from __future__ import annotations
 
@@ -7,40 +10,73 @@ import sys
 import tempfile
 import warnings
 from collections import Counter
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
+from tests import readers
+from tests.kills import Whole, kill
 from tests.stores import RUNS, Sound, attack, race
 
-ROUNDS, DAMAGED = 50, 500
+TIMES = {"STORES": 500, "RACES": 50, "KILLS": 80, "READERS": 3000}
+AT_ONCE = 2  # processes that read records
 
 
 def soak() -> int:
     """Run all; how many went wrong."""
     warnings.simplefilter("error")
-    failures = 0
+    times = {name: int(os.environ.get(name, most)) for name, most in TIMES.items()}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         os.chdir(folder)
-        sound = Sound(folder)
-        ends: Counter[str] = Counter()
-        tried = [*((k, None) for k in range(DAMAGED)), *((k, each) for k, each in enumerate(RUNS))]
-        for k, (number, statement) in enumerate(tried):
-            try:
-                ends[attack(sound, folder / f"attacked{k}", number, statement)] += 1
-            except Exception as error:
-                failures += 1
-                print(f"FAILED {error!r}", flush=True)
-            if k % 50 == 49:
-                print(f"{k + 1} damaged stores: {dict(ends)}, {failures} failed", flush=True)
-        print(f"{len(tried)} damaged stores: {dict(ends)}, {failures} failed", flush=True)
-        codes: Counter[tuple[int, ...]] = Counter()
-        for k in range(ROUNDS):
-            try:
-                codes[tuple(race(sound, folder / f"raced{k}", *(["--restart"] if k % 5 == 4 else [])))] += 1
-            except Exception as error:
-                failures += 1
-                print(f"FAILED race {k}: {error!r}", flush=True)
-        print(f"{ROUNDS} rounds of three processes: exit codes {dict(codes)}, {failures} failed in all", flush=True)
+        failures = _stores(folder, times["STORES"]) + _races(folder, times["RACES"])
+        return failures + _kills(folder, times["KILLS"]) + _readers(folder, times["READERS"])
+
+
+def _stores(folder: Path, times: int) -> int:
+    sound = Sound(folder) if times else None
+    tried = [*((k, None) for k in range(times)), *((k, each) for k, each in enumerate(RUNS[:times]))]
+    return _count(
+        "damaged stores",
+        (partial(attack, sound, folder / f"attacked{k}", *each) for k, each in enumerate(tried)),
+    )
+
+
+def _races(folder: Path, times: int) -> int:
+    sound = Sound(folder) if times else None
+    more = [["--restart"] if k % 5 == 4 else [] for k in range(times)]
+    return _count(
+        "races of three processes, by exit codes",
+        (partial(race, sound, folder / f"raced{k}", *each) for k, each in enumerate(more)),
+    )
+
+
+def _kills(folder: Path, times: int) -> int:
+    whole = Whole(folder) if times else None
+    return _count("kills", (partial(kill, whole, folder / f"killed{k}", k) for k in range(times)))
+
+
+def _readers(folder: Path, times: int) -> int:
+    """Read spoilt records, some at once."""
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        begun = [pool.submit(readers.attack, folder, k) for k in range(times)]
+        return _count("spoilt records", (each.result for each in begun))
+
+
+def _count(what: str, attempts: Iterable[Callable[[], object]]) -> int:
+    """Make attempts, print what became of them now and then, and return how many went wrong."""
+    ends: Counter[str] = Counter()
+    failures = 0
+    for k, attempt in enumerate(attempts, start=1):
+        try:
+            ends[str(attempt())] += 1
+        except Exception as error:
+            failures += 1
+            print(f"FAILED {what}: {error!r}", flush=True)
+        if k % 50 == 0:
+            print(f"{k} {what}: {dict(ends)}, {failures} failed", flush=True)
+    print(f"{sum(ends.values()) + failures} {what}: {dict(ends)}, {failures} failed", flush=True)
     return failures
 
 

@@ -34,7 +34,7 @@ structures:
 records:
   - pulse: sine:0.6g:0.8s
   - pulse: ricker:0.6g:1.2s
-levels: {{measure: PGA, least: 0.1, most: 1.2, count: 12}}
+levels: {{measure: PGA, least: 0.1, most: 1.2, count: LEVELS}}
 polarities: [1, -1]
 samples: 4
 method: stripes
@@ -46,10 +46,10 @@ PAGE = 4096
 ANEW = ("not the store of a study", "later version")  # files that are not taken for a damaged store, whatever is asked
 
 
-def write(folder: Path, seed: int = 0, name: str = "study") -> Path:
+def write(folder: Path, seed: int = 0, name: str = "study", levels: int = 12) -> Path:
     """A study in a file."""
     path = folder / f"{name}.yaml"
-    path.write_text(STUDY.replace("SEED", str(seed)), encoding="utf-8")
+    path.write_text(STUDY.replace("SEED", str(seed)).replace("LEVELS", str(levels)), encoding="utf-8")
     return path
 
 
@@ -160,10 +160,9 @@ RUNS = (
     "DELETE FROM run WHERE id > K",
     "DELETE FROM run",
     "DELETE FROM run WHERE id = K + 1; UPDATE run SET id = K + 1 WHERE id = K",
-    "INSERT OR REPLACE INTO run SELECT K, scale, eta, outcome, peak_ratio, peak_positive, peak_negative, uplift_time,"
-    " overturning_time, checksum FROM run WHERE id = 3",
-    "INSERT INTO run SELECT id + 5000, scale, eta, outcome, peak_ratio, peak_positive, peak_negative, uplift_time,"
-    " overturning_time, checksum FROM run",
+    "CREATE TEMP TABLE x AS SELECT * FROM run WHERE id = 3; UPDATE x SET id = K; INSERT OR REPLACE INTO run"
+    " SELECT * FROM x",
+    "CREATE TEMP TABLE x AS SELECT * FROM run; UPDATE x SET id = id + 5000; INSERT INTO run SELECT * FROM x",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO run SELECT * FROM other.run; DETACH other",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO sample SELECT * FROM other.sample; DETACH other",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO study SELECT * FROM other.study; DETACH other",
@@ -299,7 +298,7 @@ def attack(sound: Sound, folder: Path, number: int, statement: str | None = None
         assert shown(run.stdout) == sound.shown, f"{told}: other results after it was run again"
         assert ("is damaged" not in run.stderr and "are damaged" not in run.stderr) or len(kept) == 1, told
         assert restored or not kept or kept == [content], f"{told}: the damaged file was not kept"
-        _is_sound(place, sound, told)
+        is_sound(place, sound.store, told)
         return "mended" if kept else ("sound" if looked.exit_code == 0 else "word")
     assert run.exit_code in (1, 2) and run.stderr and not kept, told
     assert restored or place.read_bytes() == content, f"{told}: a file that was refused has changed"
@@ -312,7 +311,7 @@ def attack(sound: Sound, folder: Path, number: int, statement: str | None = None
     assert shown(again.stdout) == sound.shown, told
     kept = [each.read_bytes() for each in folder.glob("store.before*.db")]
     assert len(kept) == 1 and (restored or kept == [content]), f"{told}: the damaged file was not kept"
-    _is_sound(place, sound, told)
+    is_sound(place, sound.store, told)
     return "refused"
 
 
@@ -321,8 +320,9 @@ def _no_traceback(result: Any, told: str) -> None:
         raise AssertionError(f"{told}: {result.exception!r}") from result.exception
 
 
-def _is_sound(place: Path, sound: Sound, told: str) -> None:
-    with Store.reading(place) as one, Store.reading(sound.store) as other:
+def is_sound(place: Path, sound: Path, told: str) -> None:
+    """Check that a store is not damaged and has the runs of another, all once."""
+    with Store.reading(place) as one, Store.reading(sound) as other:
         assert not one.doubts(), told
         size = one.plan().size
         mine, theirs = one.runs(0, size), other.runs(0, size)
@@ -375,7 +375,7 @@ def race(sound: Sound, folder: Path, *more: str) -> list[int]:
             assert "another process" in said and ("wait for it" in said or "the same command goes on" in said), said
     codes = sorted(code for *_, code in ended)
     assert codes[0] == 0, ended
-    _is_sound(place, sound, "race")
+    is_sound(place, sound.store, "race")
     known = {"go", "ready0", "ready1", "ready2", "store.db"}
     left = {each.name for each in folder.iterdir()} - known
     assert len(left) == (codes.count(0) if more else 0), left

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import random
+import shutil
+
 import pytest
 
-from tests.stores import RUNS, Sound, attack, race
+from tests.stores import RUNS, Sound, attack, race, sql
 
 
 @pytest.fixture(scope="module")
@@ -17,9 +20,16 @@ def test_damage_is_told_and_mended(sound, tmp_path, number):
     attack(sound, tmp_path / "attacked", number)
 
 
-@pytest.mark.parametrize("statement", RUNS[:42:6])
+@pytest.mark.parametrize("statement", [*RUNS[:42:6], "DELETE FROM run"])
 def test_changes_by_another_program_are_told(sound, tmp_path, statement):
     attack(sound, tmp_path / "attacked", 0, statement)
+
+
+@pytest.mark.parametrize("statement", RUNS)
+def test_each_of_these_changes_can_be_made(sound, tmp_path, statement):
+    place = tmp_path / "store.db"
+    shutil.copyfile(sound.store, place)
+    assert sql(place, random.Random(0), sound, statement)
 
 
 @pytest.mark.parametrize("options", [[], ["--restart"]])

@@ -240,14 +240,16 @@ def test_a_damaged_name_of_a_column_is_a_damaged_store(sound, place, column):
     assert result.exit_code == 2 and f"{place}: the store is damaged" in result.stderr
 
 
-def test_what_a_killed_restart_left_is_removed_unless_it_has_runs(sound, place):
+@pytest.mark.parametrize("options", [[], ["--restart"]])
+def test_what_a_killed_restart_left_is_removed_unless_it_has_runs(sound, place, options):
     fresh, filled = place.with_name("study.new.db"), place.with_name("study.new-2.db")
     fresh.touch()
     filled.write_bytes(sound.store.read_bytes())
     other = place.with_name("study.news.db")
     other.touch()
-    command("fragility", sound.study, "--store", place, "--restart")
-    assert names(place.parent) == ["study.before.db", "study.db", "study.new-2.db", "study.news.db"]
+    command("fragility", sound.study, "--store", place, *options)
+    kept = ["study.before.db"] if options else []
+    assert names(place.parent) == [*kept, "study.db", "study.new-2.db", "study.news.db"]
 
 
 def test_a_restart_keeps_no_store_without_runs_and_counts_those_that_it_keeps(sound, place, monkeypatch):

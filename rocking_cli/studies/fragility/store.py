@@ -43,6 +43,7 @@ from rocking_cli.studies.fragility.store_file import (
     is_beyond_reading,
     open_locked,
     open_store,
+    sweep,
     tables,
     this_process,
 )
@@ -325,6 +326,7 @@ class Store:
                 raise
             self._replaced = _nothing()
             return
+        sweep(self.path)
         if anew and header(self._connection)[0] == MARK:
             self._connection, self._replaced = _nothing(), self._connection
         elif not self.empty:

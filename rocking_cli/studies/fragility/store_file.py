@@ -174,8 +174,6 @@ def exchange(
         To the new store, locked.
     """
     locked = old.in_transaction
-    if locked:  # nobody else is exchanging this store
-        _sweep(path)
     fresh = _create(path)
     try:
         connection = sqlite3.connect(fresh, isolation_level=None)
@@ -203,15 +201,19 @@ def exchange(
 
 
 def _has_runs(connection: sqlite3.Connection) -> bool:
-    """Whether a store has runs, or may have some that cannot be read."""
+    """Whether a store has runs, counted some that cannot be found any more, or may have some that cannot be read."""
+    found = "SELECT 1 FROM run UNION ALL SELECT 1 FROM finished WHERE runs > 0 LIMIT 1"
     try:
-        return not tables(connection) or connection.execute("SELECT 1 FROM run LIMIT 1").fetchone() is not None
+        return not tables(connection) or connection.execute(found).fetchone() is not None
     except sqlite3.Error:
         return True
 
 
-def _sweep(path: Path) -> None:
-    """Remove what a process that was killed began to put in the place of a store: files without a single run."""
+def sweep(path: Path) -> None:
+    """Remove what a process that was killed began to put in the place of a store: files without a single run.
+
+    Only the process that has locked the store may do this: nobody else is exchanging it.
+    """
     for left in path.parent.glob(f"{glob.escape(path.stem)}.new*{glob.escape(path.suffix)}"):
         if not re.fullmatch(r"\.new(-\d+)?", left.stem.removeprefix(path.stem)) or left.is_symlink():
             continue
