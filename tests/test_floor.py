@@ -272,4 +272,4 @@ def test_the_ground_below_a_floor_is_turned_with_it(quake):
     found = turned(floor.of(quake), floor.of(other), 30.0)
     below = sqrt(3) / 2 * quake.acceleration + 0.3 * quake.acceleration[::-1]
     assert found.ground.acceleration == pytest.approx(below, abs=1e-12)
-    assert found.of_ground.pga == pytest.approx(abs(below).max() / 9.80665, rel=1e-12)
+    assert found.of_ground.pga_g == pytest.approx(abs(below).max() / 9.80665, rel=1e-12)

@@ -165,7 +165,7 @@ class TestWhereAndWhen:
     @pytest.fixture
     def accel(self):
         motion = rk.read_record(EXAMPLES / "accel.csv")
-        return motion.scaled(0.24 / motion.pga)
+        return motion.scaled(0.24 / motion.pga_g)
 
     def test_ground_records_go_through_the_floor_of_the_site(self, accel):
         """Against motions carried by `rk.on_floor`: what hardly moves on the ground overturns on the floor."""
