@@ -122,9 +122,10 @@ def _check(name: str, changes: list[tuple[Place, str]], words: tuple[str, ...], 
     told = f"{name}: {changes}: rocking {' '.join(arguments)}\n{result.output}"
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise AssertionError(told) from result.exception
-    assert result.exit_code in (0, 2, 5), told
+    # A stocky body of which no solver knows the period is told so, by the code of solvers.
+    assert result.exit_code in (0, 2, 5) or (result.exit_code == 4 and words[0] == "error"), told
     assert "Traceback" not in result.output and "Warning:" not in result.output, told
-    assert result.exit_code != 2 or _is_placed(name, result.stderr, changes), told
+    assert result.exit_code not in (2, 4) or _is_placed(name, result.stderr, changes), told
 
 
 def _is_placed(name: str, said: str, changes: list[tuple[Place, str]]) -> bool:

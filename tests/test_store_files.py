@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sqlite3
 import sys
 from contextlib import closing
@@ -238,6 +239,20 @@ def test_a_damaged_name_of_a_column_is_a_damaged_store(sound, place, column):
     place.write_bytes(content)
     result = command("results", place)
     assert result.exit_code == 2 and f"{place}: the store is damaged" in result.stderr
+
+
+def test_a_run_whose_number_is_damaged_hides_no_others_without_a_warning(sound, place):
+    content, told = sound.store.read_bytes(), []
+    for number in range(130, 240, 3):
+        cell = bytes([0x81, number - 128, 14])  # the number of a run, then the length of the header of its row
+        for each in re.finditer(re.escape(cell), content):
+            place.write_bytes(content[: each.start()] + b"\x83" + content[each.start() + 1 :])  # 256 more
+            with Store.reading(place) as store:
+                rows, doubts = store.runs(0, 240), store.doubts()
+                assert store.count()[0] == len(rows)
+            assert doubts or len(rows) == 240
+            told += [doubt for doubt in doubts if f"{240 - len(rows)} finished runs are missing" in doubt]
+    assert told
 
 
 @pytest.mark.parametrize("options", [[], ["--restart"]])

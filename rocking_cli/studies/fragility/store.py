@@ -590,7 +590,7 @@ class Store:
             self._unless_corrupt(error)
 
     def _check_runs(self) -> None:
-        """Find the runs that do not agree with their checksums."""
+        """Find the runs that do not agree with their checksums, and miss those that are counted but not found."""
         self._check_count()
         size = self.plan().size
         strangers = self._connection.execute("SELECT id FROM run WHERE id < 0 OR id >= ?", (size,))
@@ -598,9 +598,13 @@ class Store:
             self.damaged = [row[0] for row in strangers]
         except sqlite3.DatabaseError as error:
             self._unless_corrupt(error)
+        found = len(self.damaged)
         for first in range(0, size, READ):
-            _, bad = self._read(first, min(first + READ, size))
+            rows, bad = self._read(first, min(first + READ, size))
             self.damaged += bad
+            found += len(rows) + len(bad)
+        if found < self._finished:  # a damaged number ends the search for those behind it
+            self.unreadable, self.missing = True, self.missing + self._finished - found
 
     def _unless_corrupt(self, error: sqlite3.DatabaseError) -> None:
         """Note damaged pages; raise any other error."""
