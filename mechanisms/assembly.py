@@ -35,6 +35,7 @@ from rocking_cli.core import (
     point,
     quantity,
 )
+from rocking_cli.core.contacts import MASONRY
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.errors import MechanismError, StructureError
@@ -358,15 +359,14 @@ class Assembly(Membered):
             linkage = LinkageMotion(centres, [*pins, *guides], lead, direction, fixed, rest)
         except NoMotion as error:
             why = error.reason
-            needed = self._needed(direction)
             if found.lifted:
                 joints = [self._joint(k) for k in found.lifted]
                 why = (
                     f"{' and '.join(joints)} open at both ends but still carry shear, because joints without "
                     f"friction never slide: give `friction`, or `friction_of: {{{joints[0]}: 0}}`"
                 )
-            elif joints := [self._joint(k) for k in analysis.sheared(needed, self._contacts)]:
-                mu = f"{analysis.USUAL:g}"
+            elif joints := [self._joint(k) for k in analysis.sheared(self._needed(direction), self._contacts)]:
+                mu = f"{MASONRY:g}"
                 why = (
                     f"the mechanism at {self._collapse(direction).multiplier:.4g} g cannot move on. More shear than a "
                     f"friction of {mu} allows is carried between {', and between '.join(joints)}, because joints "
@@ -465,7 +465,7 @@ class Assembly(Membered):
             return ""
         return (
             "Joints without `friction` never slide and may carry shear without a normal force, which raises lambda. "
-            f"With a friction of {analysis.USUAL:g} it would be {' and '.join(raised)}: give `friction`."
+            f"With a friction of {MASONRY:g} it would be {' and '.join(raised)}: give `friction`."
         )
 
     @per_direction
@@ -568,7 +568,7 @@ class Assembly(Membered):
             why = f"{most}: {which} would carry shear without pressing, and lambda be less"
             friction = Extra("friction_needed", nan, "", why)
         usual = self._with_usual(direction)
-        meaning = f"lambda with a friction of {analysis.USUAL:g} in joints without any given"
+        meaning = f"lambda with a friction of {MASONRY:g} in joints without any given"
         known = (friction,) if usual is None else (friction, Extra("lambda_with_usual", usual, "g", meaning))
         found = self._valid_to(direction)
         if found is None:

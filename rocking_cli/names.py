@@ -53,7 +53,6 @@ def percent(share: float) -> str:
     return f"{sign}{size:.0f} %" if size >= 9.95 else f"{sign}{size:.2g} %"
 
 
-def peaks_over(no_critical_rotation: list[bool] | tuple[bool, ...]) -> str:
-    """What a peak is over, in words; `no_critical_rotation` says of each direction whether it ends at its limit."""
-    free = list(no_critical_rotation)
+def peaks_over(free: list[bool] | tuple[bool, ...]) -> str:
+    """What a peak is over, in words; `free` says of each direction whether it has no critical rotation."""
     return "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"

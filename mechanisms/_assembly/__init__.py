@@ -18,7 +18,6 @@ from mechanisms._assembly.faults import DoesNotStand as DoesNotStand
 from mechanisms._assembly.faults import NoAnswer as NoAnswer
 from mechanisms._assembly.faults import NothingMoves as NothingMoves
 from mechanisms._assembly.friction import MOST as MOST
-from mechanisms._assembly.friction import USUAL as USUAL
 from mechanisms._assembly.friction import Friction as Friction
 from mechanisms._assembly.friction import friction as friction
 from mechanisms._assembly.friction import sheared as sheared

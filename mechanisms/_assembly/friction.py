@@ -17,8 +17,8 @@ from mechanisms._assembly.problem import Problem
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Rays
 from rocking_cli.core import Reals
+from rocking_cli.core.contacts import MASONRY
 
-USUAL = 0.6  # the friction of joints of masonry
 MOST = 10.0  # a coefficient of friction that no joint has
 SAME = 1e-9  # of the multiplier: what is left as it is
 FINE = 1e-6  # of the coefficient of friction
@@ -77,14 +77,14 @@ def with_usual(found: Collapse) -> float | None:
     problem = found.problem
     if all(each.friction is not None for each in problem.bearings.bearings):
         return None
-    reached, _, _ = problem.greatest(problem.bearings.rays(usual=USUAL))
+    reached, _, _ = problem.greatest(problem.bearings.rays(usual=MASONRY))
     return max(reached, 0.0) / problem.strength
 
 
 def sheared(found: Friction, contacts: Sequence[Contact]) -> tuple[int, ...]:
     """Joints without friction that carry more shear in the state shown than the usual friction would let them."""
     least = SAME * float(np.abs(found.normal).max(initial=0.0))
-    beyond = np.abs(found.shear) > USUAL * np.maximum(found.normal.sum(axis=1), 0.0) + least
+    beyond = np.abs(found.shear) > MASONRY * np.maximum(found.normal.sum(axis=1), 0.0) + least
     return tuple(k for k, each in enumerate(contacts) if each.friction is None and beyond[k])
 
 

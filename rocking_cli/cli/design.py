@@ -150,7 +150,8 @@ def _warn_of_sizes(varied: Any, span: tuple[float, float]) -> None:
         except RockingError:  # the scan says which values cannot be built
             continue
         if doubt is not None and doubt != doubtful_size(varied.mechanism):
-            terminal.warning(f"at {varied.field} = {value:g} {varied.unit}: {doubt}".replace(" :", ":"))
+            at = f"{varied.field} = {value:g} {varied.unit}".strip()
+            terminal.warning(f"at {at}: {doubt}")
 
 
 def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Shaking:

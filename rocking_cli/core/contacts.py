@@ -26,6 +26,8 @@ class Piece:
     of: str | None
 
 
+MASONRY = 0.6
+"""The coefficient of friction that joints of masonry usually have."""
 Held = Literal["slide", "level", "fixed"]
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from rocking_cli.core.attached import PointMass, Spot
 from rocking_cli.core.attachments import followed
+from rocking_cli.core.contacts import Contact
 from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Points, Reals
 from rocking_cli.core.mechanism import Mechanism
@@ -116,10 +117,10 @@ def reactions(
         for push in thing.forces(direction, moving.follow):
             moving.demand(push.spot.body, moving.follow(push.spot).z, -push.force)
     found = moving.at_joints()
-    if found is None and mechanism.contacts(direction) and not mechanism.joints(direction):
+    if found is None and (contacts := _instead_of_joints(mechanism, direction)):
         pieces = Pieces(mechanism, direction, phi)
         terms = np.stack([np.ones_like(phi), ground.real, rate**2, ground.imag], axis=-1)
-        found = _at_contacts(pieces, np.einsum("nqk,nk->nq", pieces.demands(), terms))
+        found = _at_contacts(pieces, contacts, np.einsum("nqk,nk->nq", pieces.demands(), terms))
     return found or moving.over_the_whole()
 
 
@@ -177,10 +178,10 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
             jump = eta * moving.follow(thing.spot).dz + came(thing.spot).dz
             impulse = _point(thing.mass * thing.horizontal * jump.real, thing.mass * thing.vertical * jump.imag)
             moving.demand(thing.spot.body, moving.follow(thing.spot).z, impulse)
-    if mechanism.contacts(ended.opposite) and not mechanism.joints(ended.opposite):
+    if contacts := _instead_of_joints(mechanism, ended.opposite):
         pieces = Pieces(mechanism, ended.opposite, rest)
         before_it = Pieces(mechanism, ended, rest)
-        found = _at_contacts(pieces, eta * pieces.momentum(pieces.dq) + before_it.momentum(before_it.dq))
+        found = _at_contacts(pieces, contacts, eta * pieces.momentum(pieces.dq) + before_it.momentum(before_it.dq))
         if found is not None:
             return found
     joints = mechanism.joints(ended.opposite)
@@ -192,9 +193,13 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
     return moving.over_the_whole() if level and not any(joint.is_guide for joint in joints) else None
 
 
-def _at_contacts(pieces: Pieces, demand: Reals) -> Reactions | None:
+def _instead_of_joints(mechanism: Mechanism, direction: Direction) -> Sequence[Contact]:
+    """The contacts of a mechanism that names no joints, as bodies slide on others or a joint is too many."""
+    return () if mechanism.joints(direction) else mechanism.contacts(direction) or ()
+
+
+def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> Reactions | None:
     """The forces at the contacts from three equations for each piece; None where they do not balance what is needed."""
-    contacts = pieces.contacts
     jacobian, rows = pieces.rates(contacts)
     balance, needed = (jacobian / pieces.scale).swapaxes(1, 2), demand / pieces.scale
     values = np.einsum("nrq,nq->nr", np.linalg.pinv(balance), needed)

@@ -164,7 +164,6 @@ class Pieces:
 
     def __init__(self, mechanism: Mechanism, direction: Direction, phi: Reals) -> None:
         self._mechanism, self._direction, self.phi = mechanism, direction, phi
-        self.contacts: Sequence[Contact] = mechanism.contacts(direction) or ()
         motions = {
             body.name: motion for body, motion in zip(mechanism.bodies(), mechanism.motion(phi, direction), strict=True)
         }

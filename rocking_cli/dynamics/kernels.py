@@ -1177,7 +1177,7 @@ def watch_of(joints, m, size, slender, motion):
     gravity, limit, quick, scales, push, fast = joints.numbers[m]
     slow = -1.0
     if motion.v.size == 0 and (scales != 0 or size == 1):
-        strongest = abs(motion.factor) * size * max(1.0, slender) * (motion.ahead[0] if motion.ahead.size > 0 else 0.0)
+        strongest = abs(motion.factor) * size * slender * (motion.ahead[0] if motion.ahead.size > 0 else 0.0)
         slow = fast / size * (1 - strongest / push)
     return Watch(
         count,

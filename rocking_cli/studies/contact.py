@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.contacts import MASONRY
 from rocking_cli.core.reactions import Reactions, at_uplift, impulses, parts, reactions
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.history import History
@@ -24,7 +25,6 @@ Reals = NDArray[np.float64]
 Places = NDArray[np.intp]
 BEARS = 0.01  # of N as rocking starts: with less a joint bears nothing that friction could be asked of
 IDLE = 1e-9  # of the largest force as rocking starts: a joint with less, such as of a beam without mass, bears nothing
-MASONRY = 0.6  # friction that joints of masonry usually have
 NEAR_PEAK = 0.9  # of the largest demand: how long it lasts is how long there is more than that
 BLOCK = 25_000  # states at a time: their matrices never stand in memory all at once
 NONE = float("nan")

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
-from rocking_cli.studies.contact import MASONRY
+from rocking_cli.core.contacts import MASONRY
 from rocking_cli.views.view import Table, View, heading, number
 
 

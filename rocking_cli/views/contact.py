@@ -6,7 +6,8 @@ from math import isnan
 from typing import Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.studies.contact import MASONRY, NEAR_PEAK, NONE, Contact
+from rocking_cli.core.contacts import MASONRY
+from rocking_cli.studies.contact import NEAR_PEAK, NONE, Contact
 from rocking_cli.views.view import number
 
 BEYOND = ": the result is not valid beyond that time"
