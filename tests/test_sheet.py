@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from rocking_cli.studies.verification.codes.italian import remarks
+from rocking_cli.codes.italian import remarks
+from rocking_cli.codes.italian.sheet.build import SHEET
 from rocking_cli.views.sheet import texts_en, texts_it
 from tests.browser import launch
 from tests.conftest import EXAMPLES
@@ -727,7 +728,11 @@ def test_both_languages_have_the_same_texts_and_slots():
     def slots(text):
         return sorted(name for _, name, _, _ in Formatter().parse(text) if name)
 
-    for english, italian in ((texts_en.TEXTS, texts_it.TEXTS), (remarks.ENGLISH, remarks.ITALIAN)):
+    for english, italian in (
+        (texts_en.TEXTS, texts_it.TEXTS),
+        SHEET.texts.values(),
+        (remarks.ENGLISH, remarks.ITALIAN),
+    ):
         assert list(english) == list(italian)
         for key, text in english.items():
             assert slots(text) == slots(italian[key]), key

@@ -14,6 +14,11 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.cli import terminal
 from rocking_cli.cli.main import COMMANDS
+from rocking_cli.codes.italian import dynamic
+from rocking_cli.codes.italian.results import Dynamic, RecordPeak
+from rocking_cli.codes.italian.sheet import dynamic as sheets
+from rocking_cli.codes.italian.sheet.build import SHEET
+from rocking_cli.codes.italian.words import of_histories
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.outcome import Outcome
@@ -29,15 +34,10 @@ from rocking_cli.studies.metrics import METRICS, Shaking
 from rocking_cli.studies.movements import Watched, largest
 from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing
 from rocking_cli.studies.survey import ORDERS, Survey, Surveyed, Under
-from rocking_cli.studies.verification import dynamic
-from rocking_cli.studies.verification.results import Dynamic, RecordPeak
 from rocking_cli.views import assessment_words
 from rocking_cli.views import azimuths as azimuth_views
 from rocking_cli.views import margin as margin_views
 from rocking_cli.views import survey as survey_views
-from rocking_cli.views.sheet.italian import dynamic as sheets
-from rocking_cli.views.sheet.language import Language
-from rocking_cli.views.verification_words import of_histories
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -438,7 +438,7 @@ class TestVerification:
     def test_the_sheet_says_so_for_each_state(self, language, cell, verdict, caution, state):
         each = SimpleNamespace(exact=SimpleNamespace(confidence=1.2))
         found = self.made(with_FC=3.5, checked=False, state=state)
-        _, _, grid, *said = sheets.part(Language(language), each, found, "x").items
+        _, _, grid, *said = sheets.part(SHEET.language(language), each, found, "x").items
         assert grid.rows[1][1:] == [cell, "0,01" if language == "it" else "0.01"]
         failed = [item.text for item in said if verdict in item.text]
         assert len(failed) == 1 and state in failed[0]

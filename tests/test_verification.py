@@ -12,17 +12,17 @@ from hypothesis import strategies as st
 
 import rocking_cli as rk
 from mechanisms.block import Block
+from rocking_cli.codes.italian import demand, hazard
+from rocking_cli.codes.italian.capacity import ExactCurve, root
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
+from rocking_cli.codes.italian.hazard import Hazard
+from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.core import Direction, box
 from rocking_cli.core.coefficients import coefficients
 from rocking_cli.errors import InputError
-from rocking_cli.studies.verification.capacity import ExactCurve, root
-from rocking_cli.studies.verification.chain import Chain, Control
-from rocking_cli.studies.verification.check import control_at
-from rocking_cli.studies.verification.codes import codes
-from rocking_cli.studies.verification.codes.italian import demand, hazard
-from rocking_cli.studies.verification.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
-from rocking_cli.studies.verification.codes.italian.hazard import Hazard
-from rocking_cli.studies.verification.ties import pulls
+from rocking_cli.studies.verification.control import Control, control_at
+from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.told import said_in
 
 G = 9.80665

@@ -10,14 +10,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rocking_cli as rk
+from rocking_cli.codes.italian import dynamic
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.results import Dynamic, RecordPeak
+from rocking_cli.codes.italian.words import of_histories
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import build_model
-from rocking_cli.studies.verification import dynamic
-from rocking_cli.studies.verification.capacity import ExactCurve
-from rocking_cli.studies.verification.chain import Chain
-from rocking_cli.studies.verification.results import Dynamic, RecordPeak
-from rocking_cli.views.verification_words import of_histories
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 

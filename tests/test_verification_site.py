@@ -1,4 +1,4 @@
-"""Site files: what they may say, what is wrong with place and field, and a code that is added as one file."""
+"""Site files: what they may say, and what is wrong with place and field."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ import pytest
 
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
-from rocking_cli.studies.verification import codes as package
 from rocking_cli.studies.verification.check import read_site
-from rocking_cli.studies.verification.codes import codes
+from rocking_cli.studies.verification.installed import codes
 from tests.test_cli import run, run_json
 
 GOOD = "FC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\n"
@@ -109,42 +108,6 @@ class TestTheStarter:
 
     def test_it_is_one_json_object_too(self):
         assert run_json("new", "site")["site"] == "NTC2018"
-
-
-ADDED = '''
-"""A code that a test adds: half of what the Italian one says."""
-from dataclasses import replace
-
-from rocking_cli.studies.verification.code import Code
-from rocking_cli.studies.verification.codes import italian
-from rocking_cli.studies.verification.site_file import Site
-
-
-class Plain(Site):
-    strength: float
-
-
-def verify(mechanism, site, control):
-    asked = {"FC": 1.0, "ag": site.strength, "F0": 2.5, "TC": 0.4, "S": 1.0}
-    found = italian.CODE.verify(mechanism, italian.CODE.site.model_validate(asked), control)
-    return replace(found, code="TEST1", name="A test", edition="2026")
-
-
-CODE = Code("TEST1", "A test", "2026", Plain, "strength: 0.2\\n", 3, verify)
-'''
-
-
-def test_a_code_is_added_by_a_file(tmp_path, monkeypatch, site):
-    (tmp_path / "added_by_a_test.py").write_text(ADDED, encoding="utf-8")
-    monkeypatch.setattr(package, "__path__", [*package.__path__, str(tmp_path)])
-    codes.cache_clear()
-    try:
-        data = run_json("verify", "--site", site("code: TEST1\nstrength: 0.3\n"))
-        assert data["code"] == "TEST1" and data["directions"]["positive"]["zeta"]["nonlinear"] > 0
-        wrong = run("verify", "--site", site("code: TEST1\nag: 0.3\n"), code=2)
-        assert "site.yaml:2:1: ag is not a field of the site" in wrong.stderr
-    finally:
-        codes.cache_clear()
 
 
 def test_both_directions_are_there_unless_it_leans_on_walls(tmp_path, site):

@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.codes.italian import words
 from rocking_cli.core import Direction
-from rocking_cli.studies.verification.codes import codes
-from rocking_cli.views import verification_words as words
-from rocking_cli.views.verification import view
+from rocking_cli.studies.verification.installed import codes
+from rocking_cli.views.verification import standing, view
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -108,7 +108,7 @@ class TestWords:
 
     def test_two_that_agree_say_so(self):
         found = positive(FACADE)
-        same = replace(found.methods["linear"], a_g=found.counts.a_g * 1.001)
+        same = replace(found.methods["linear"], capacity=found.counts.a_g * 1.001)
         (said, *_) = words.differences(replace(found, methods={**found.methods, "linear": same}), "SLV")
         assert said.startswith("The linear method gives the same capacity")
 
@@ -298,9 +298,9 @@ class TestClauses:
     def test_what_agrees_with_a_transcription_says_so_and_what_needs_the_print_too(self):
         lines = self.lines()
         for symbol in CLAUSES:
-            standing = "code" if symbol in UNCHECKED else "ours" if symbol.startswith("A") else "transcription"
-            assert lines[symbol].standing == standing, symbol
-        said = words.standing(list(lines.values()))
+            expected = "code" if symbol in UNCHECKED else "ours" if symbol.startswith("A") else "transcription"
+            assert lines[symbol].standing == expected, symbol
+        said = standing(list(lines.values()))
         assert "They agree with a transcription of its text, except for F0, TC*, S, psi, a_g, zeta_E." in said
         assert "None of the formulas has been checked against the printed code yet" in said
 

@@ -70,7 +70,8 @@ def verify(
     >>> round(answer.directions[rk.Direction.POSITIVE].counts.a_g, 6)
     0.193382
     """
-    from rocking_cli.studies.verification.check import control_at, verify, with_histories
+    from rocking_cli.studies.verification.check import verify, with_histories
+    from rocking_cli.studies.verification.control import control_at
     from rocking_cli.views import verification as views
 
     wrong = [sign for sign in polarities if sign not in (1, -1)]
@@ -87,9 +88,7 @@ def verify(
                                on_floor=on_floor)  # fmt: skip
 
     def draw() -> Figure:
-        from rocking_cli.plotting.verification import draw_verification
-
-        return draw_verification(found)
+        return views.showing(found).draw(found)
 
     view = views.view(found, known.site.name)
     return Answer("verification", found, view, lambda: views.table(found), draw)

@@ -60,7 +60,7 @@ def command(name: str, plugin: bool, out: str | None, as_json: bool) -> None:
         _print({"study": STUDY, "yaml": TEMPLATE}, as_json=as_json)
         return
     if name == SITE:
-        from rocking_cli.studies.verification.codes import codes
+        from rocking_cli.studies.verification.installed import codes
         from rocking_cli.studies.verification.site_file import USUAL
 
         _print({"site": USUAL, "yaml": codes()[USUAL].starter}, as_json=as_json)

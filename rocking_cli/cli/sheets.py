@@ -13,7 +13,7 @@ from rocking_cli.io.files import write_whole
 from rocking_cli.report.verified import VerifiedReport
 from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
 from rocking_cli.studies.verification.check import read_site, verify, with_histories
-from rocking_cli.views.sheet.build import Made, check_has_sheet, sheet
+from rocking_cli.views.sheet.build import Made, sheet, sheet_of
 from rocking_cli.views.sheet.language import Language
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 def check(asked: SheetAsked, site: SiteFile) -> None:
     """Raise `InputError`, before any work, if a sheet cannot be written."""
-    check_has_sheet(site)
+    sheet_of(site)
     if _is_docx(asked.sheet):
         from rocking_cli.report.sheet_docx import check_package
 

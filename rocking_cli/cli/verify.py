@@ -106,8 +106,9 @@ def command(
         raise click.UsageError("--state and --on-floor describe records: give --record FILE or --pulse PULSE.")
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.studies.verification.check import control_at, read_site, verify
-    from rocking_cli.views.verification import view
+    from rocking_cli.studies.verification.check import read_site, verify
+    from rocking_cli.studies.verification.control import control_at
+    from rocking_cli.views.verification import showing, view
 
     paths, missing = motion_files.find(asked.records)
     given = [file, site_file, *sheet.inputs, *(str(each.path) for each in paths)]
@@ -122,9 +123,8 @@ def command(
         found, chosen, refused = _histories(found, structure, site, asked, paths, state, on_floor=on_floor)
     if plot is not None:
         from rocking_cli.cli.pictures import write_picture
-        from rocking_cli.plotting.verification import draw_verification
 
-        write_picture(plot, draw_verification(found))
+        write_picture(plot, showing(found).draw(found))
     if title is not None:
         from rocking_cli.cli import sheets
 

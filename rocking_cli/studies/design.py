@@ -250,9 +250,8 @@ def design(
     An unknown outcome meets no requirement: it counts as overturning where less is required, and the metric does not
     exist where more is.
     """
-    if aim.metric.sited and (shaking is None or shaking.site is None):
-        hint = "give the file of a site: `rocking new site` prints one"
-        raise InputError(Problem(f"{aim.metric.name} requires a site", field="`site`", hint=hint))
+    if aim.metric.sited:
+        _check_site(aim.metric, shaking)
     if aim.metric.shaken and (shaking is None or not shaking.motions or not shaking.around.count):
         message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
         raise InputError(Problem(message, hint="give `records` or `pulses`"))
@@ -292,6 +291,17 @@ def design(
         _not_built(values, reasons), behind, varied.mechanism.own_caution(),
         _taken_otherwise(varied, span, aim, shaking),
     )  # fmt: skip
+
+
+def _check_site(metric: Metric, shaking: Shaking | None) -> None:
+    """Raise `InputError` if a metric of a site cannot be had: there is no site, or it is for another code."""
+    if shaking is None or shaking.site is None:
+        hint = "give the file of a site: `rocking new site` prints one"
+        raise InputError(Problem(f"{metric.name} requires a site", field="`site`", hint=hint))
+    code = shaking.site.site.code
+    if metric.codes and code not in metric.codes:
+        message = f"{metric.name} is a number of {' and '.join(metric.codes)}, but the site is for {code}"
+        raise InputError(Problem(message, hint="every code has a `ratio`"))
 
 
 def _taken_otherwise(varied: Varied, span: tuple[float, float], aim: Aim, shaking: Shaking | None) -> Sequence[str]:

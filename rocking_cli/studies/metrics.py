@@ -7,11 +7,13 @@ from dataclasses import dataclass, field
 from math import nan
 
 from rocking_cli.dynamics.prepared import Prepared
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.plugins.installed import leave_out
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
-from rocking_cli.studies.verification.chain import Chain
 from rocking_cli.studies.verification.check import verify
+from rocking_cli.studies.verification.code import Number
+from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.site_file import SiteFile
 from rocking_cli.text import cut, did_you_mean
 
@@ -64,6 +66,8 @@ class Metric:
         unknown outcome counts as overturning in it.
     sited : bool
         Whether it needs a site.
+    codes : sequence of str
+        The codes of practice that have it; empty where it needs none.
     """
 
     name: str
@@ -72,6 +76,7 @@ class Metric:
     of_structure: Callable[[Prepared, Shaking | None], float] | None = None
     of_neighbours: Callable[[Neighbours], float] | None = None
     sited: bool = False
+    codes: Sequence[str] = ()
 
     @property
     def shaken(self) -> bool:
@@ -106,19 +111,9 @@ def _p(structure: Prepared, shaking: Shaking | None) -> float:
     return structure.p if structure.why_no_block is None else nan
 
 
-def _alpha0(structure: Prepared, shaking: Shaking | None) -> float:
-    mechanism = structure.mechanism
-    structure.statics  # noqa: B018 - what does not stand is refused with its name
-    return min(Chain(mechanism, direction).alpha0 for direction in mechanism.directions)
-
-
-def _zeta(method: str) -> Callable[[Prepared, Shaking | None], float]:
-    def value(structure: Prepared, shaking: Shaking | None) -> float:
-        assert shaking is not None and shaking.site is not None
-        found = [each.methods[method].zeta for each in verify(structure, shaking.site).directions.values()]
-        return min((each for each in found if each is not None), default=nan)
-
-    return value
+def _ratio(structure: Prepared, shaking: Shaking | None) -> float:
+    assert shaking is not None and shaking.site is not None
+    return verify(structure, shaking.site).ratio
 
 
 def taken_otherwise(structure: Prepared, site: SiteFile) -> Sequence[str]:
@@ -136,20 +131,54 @@ METRICS: Mapping[str, Metric] = {
                of_neighbours=lambda near: near.peak_ratio[1]),
         Metric("overturned", "", "share of the neighbours that overturn, or are of unknown outcome",
                of_neighbours=lambda near: near.at_most),
-        Metric("alpha0", "", "multiplier that starts the mechanism, by the code of `verify`, the smaller one", _alpha0),
-        *(
-            Metric(f"zeta_{method}", "", f"capacity over demand, by the {method} method of `verify`",
-                   _zeta(method), sited=True)
-            for method in ("damage", "linear", "nonlinear")
-        ),
+        Metric("ratio", "", "capacity over demand by the code of the site, by what governs in `verify`", _ratio,
+               sited=True),
     )
 }  # fmt: skip
-"""Every metric; one more is one more line here."""
+"""Every metric but those of codes; one more is one more line here."""
+
+
+def _of_codes(name: str) -> Metric | None:
+    """A metric that codes of practice have among their `numbers`; None if none has it."""
+    own: dict[str, Number] = {}
+    for key in codes():
+        try:
+            if (found := codes()[key].numbers.get(name)) is not None:
+                own[key] = found
+        except MechanismError as error:
+            leave_out(error)
+    if not own:
+        return None
+
+    def value(structure: Prepared, shaking: Shaking | None) -> float:
+        if one.of_structure is not None:
+            structure.statics  # noqa: B018 - what does not stand is refused with its name
+            return min(one.of_structure(structure.mechanism, each) for each in structure.mechanism.directions)
+        assert shaking is not None and shaking.site is not None
+        of = own[shaking.site.site.code].of
+        assert of is not None  # else it is of the structure
+        values = [of(each) for each in verify(structure, shaking.site).directions.values()]
+        return min((each for each in values if each is not None), default=nan)
+
+    one = next(iter(own.values()))
+    return Metric(name, one.unit, one.meaning, value, sited=one.of_structure is None, codes=tuple(own))
+
+
+def known_metrics() -> list[str]:
+    """The names of all metrics, those of the installed codes after the others."""
+    found = dict.fromkeys(METRICS)
+    for key in codes():
+        try:
+            found |= dict.fromkeys(codes()[key].numbers)
+        except MechanismError as error:
+            leave_out(error)
+    return list(found)
 
 
 def metric(name: str) -> Metric:
     """A metric by its name. Raises `InputError` if there is none."""
-    if name not in METRICS:
-        hint = did_you_mean(name, list(METRICS))
+    found = METRICS.get(name) or _of_codes(name)
+    if found is None:
+        hint = did_you_mean(name, known_metrics())
         raise InputError(Problem(f"{cut(repr(name))} is not a metric", hint=hint))
-    return METRICS[name]
+    return found

@@ -340,16 +340,8 @@ def _alone(place: int, entry: Entry, structure: Prepared, site: SiteFile | None)
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
         "; ".join(doubts(mechanism)) or None,
         mechanism.own_caution() or None,
-        ratio=_ratio(structure, site) if site is not None else nan,
+        ratio=verify(structure, site).ratio if site is not None else nan,
     )
-
-
-def _ratio(structure: Prepared, site: SiteFile) -> float:
-    """What the code of a site allows over what it asks for: in the direction that governs, by what governs there."""
-    found = verify(structure, site)
-    worst = found.directions[found.governs]
-    ratios = [worst.states[found.first].ratio, worst.counts.zeta if worst.governs == "damage" else None]
-    return next((each for each in reversed(ratios) if each is not None), nan)
 
 
 def _may_lift(structure: Prepared, motions: Sequence[GroundMotion]) -> bool:

@@ -1,71 +1,125 @@
-"""A verification by a code, as people and programs read it."""
+"""A verification by any code, as people and programs read it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from math import isclose
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rocking_cli import names
-from rocking_cli.studies.verification.results import Dynamic, Method, RecordPeak, State, Verification, Verified
-from rocking_cli.studies.verification.ties import pulls
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.studies.verification.installed import codes
+from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views import verification_words as words
 from rocking_cli.views.view import ABSENT, Table, View, heading, number
 
-AGREE = 1e-9  # relative: directions that differ by less are shown once
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+F = TypeVar("F", bound=Verification)
+V = TypeVar("V", bound=Verified)
+
+
+class Showing(Generic[F, V]):
+    """How the results of a code are shown; a code that shows more, or otherwise, overrides what it needs."""
+
+    def of_direction(self, found: F, each: V, where: str) -> Iterable[Table | str]:
+        """Return the tables and sentences of a direction, which `where` names."""
+        return [methods(each, where), verdict(each, where), *each.remarks]
+
+    def of_directions(self, found: F) -> str:
+        """State which direction governs; empty if none does."""
+        ratios = [each.ratio for each in found.directions.values()]
+        if found.alike or None in ratios:
+            return ""
+        least = found.governs
+        one, other = (found.directions[each].ratio for each in (least, least.opposite))
+        return (
+            f"The {least.label} direction governs: its ratio of capacity to demand is {one:.3g}, against {other:.3g} "
+            "in the other direction."
+        )
+
+    def data(self, found: F, each: V) -> dict[str, Any]:
+        """Return a direction as plain data."""
+        return {
+            "methods": {
+                key: {"capacity": one.capacity, "demand": one.demand, "unit": one.unit, "ratio": one.ratio,
+                      "passes": one.passed, "clause": one.clause}
+                for key, one in each.methods.items()
+            },
+            "governs": each.governs,
+            "ratio": each.ratio,
+            "passes": each.passed,
+        }  # fmt: skip
+
+    def table(self, found: F) -> dict[str, Sequence[Any]]:
+        """Return a row for each direction and method, by columns."""
+        return columns(
+            ["direction", "method", "capacity", "demand", "unit", "ratio", "governs"],
+            [
+                [direction.label, key, one.capacity, one.demand, one.unit, one.ratio, key == each.governs]
+                for direction, each in found.directions.items()
+                for key, one in each.methods.items()
+            ],
+        )
+
+    def draw(self, found: F) -> Figure:
+        """Return a picture. Raises `InputError` if the code has none."""
+        raise InputError(Problem(f"{found.code} has no picture of a verification", hint="leave out the plot"))
+
+
+def showing(found: Verification) -> Showing[Any, Any]:
+    """How the results of the code of a verification are shown."""
+    own: Showing[Any, Any] | None = codes()[found.code].showing()
+    return own or Showing[Any, Any]()
 
 
 def view(found: Verification, site: str | None = None) -> View:
-    """The methods side by side for each direction, which governs, and why they differ."""
-    sides = shown(found)
+    """The methods side by side for each direction, which governs, and what to know of them."""
+    sides, own = shown(found), showing(found)
     parts: list[Table | str] = [
         f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
     ]
-    parts.append(_site(found))
+    if found.workings:
+        parts.append(_site(found))
     for where, each in sides.items():
-        parts += _of_direction(found, each, where)
-    if len(found.directions) > 1 and len(sides) > 1:
-        parts.append(words.which_direction(found))
+        parts += own.of_direction(found, each, where)
+    if len(sides) > 1:
+        parts.append(own.of_directions(found))
     parts += found.remarks
-    all_workings = [*found.workings, *(line for each in sides.values() for line in each.workings)]
-    parts.append(words.standing(all_workings))
+    parts.append(standing([*found.workings, *(line for each in sides.values() for line in each.workings)]))
     parts += [f"Caution: {text}" for text in found.mechanism.cautions()]
     return View(lambda: data(found), [part for part in parts if part])
 
 
-def shown(found: Verification) -> dict[str, Verified]:
+def shown(found: Verification) -> dict[str, Any]:
     """The directions that differ, by what they are called."""
     each = list(found.directions.values())
-    if len(each) == 1:
-        return {f"{each[0].direction.label.capitalize()} direction": each[0]}
-    if alike(*each):
+    if len(each) == 2 and each[0].is_like(each[1]):
         return {"Both directions": each[0]}
     return {f"{one.direction.label.capitalize()} direction": one for one in each}
 
 
-def alike(one: Verified, other: Verified) -> bool:
-    """Whether two directions need be shown once only."""
-    pairs = [(one.a0, other.a0), (one.d0, other.d0), (one.chain.e_star, other.chain.e_star)]
-    pairs += [(one.states[key].a, other.states[key].a) for key in one.states]
-    same = all(isclose(a, b, rel_tol=AGREE) for a, b in pairs)
-    return same and _same_peaks(one.dynamic, other.dynamic)
+def methods(each: Verified, where: str) -> Table:
+    """Table of what each method found in a direction."""
+    rows = [
+        [one.title, number(one.capacity, 4), number(one.demand, 4), one.unit, number(one.ratio, 4), one.clause,
+         "governs" if key == each.governs else ""]
+        for key, one in each.methods.items()
+    ]  # fmt: skip
+    heads = ["", "capacity", "demand", "unit", "ratio", "clause", ""]
+    return Table(f"{where}: capacity by method", heads, rows, numbers=(1, 2, 4))
 
 
-def _same_peaks(one: Dynamic | None, other: Dynamic | None) -> bool:
-    """Histories are of one direction: the ground is not symmetric."""
-    return one is None and other is None
-
-
-def _of_direction(found: Verification, each: Verified, where: str) -> list[Table | str]:
-    parts: list[Table | str] = [_capacity(each, where), *_pulls(each), _methods(each)]
-    parts.append(words.verdict(each, found.first, where))
-    parts += words.differences(each, found.first)
-    parts += words.beyond_first(each, found.first)
-    parts += each.remarks
-    if each.dynamic is not None:
-        parts += [_records(each.dynamic), *words.of_histories(each.dynamic, each.exact.confidence)]
-    return parts
+def verdict(each: Verified, where: str) -> str:
+    """State whether a direction passes, and by what margin."""
+    counts = each.counts
+    if each.passed is None or each.ratio is None:
+        return f"{where}: the site does not give what the code asks for."
+    return (
+        f"{where}: {'passes' if each.passed else 'fails'}. {counts.title[0].upper()}{counts.title[1:]} governs: "
+        f"capacity {number(counts.capacity, 4)}, demand {number(counts.demand, 4)} {counts.unit}".rstrip()
+        + f", ratio {each.ratio:.3g}."
+    )
 
 
 def _site(found: Verification) -> Table:
@@ -74,203 +128,59 @@ def _site(found: Verification) -> Table:
     for line in found.workings:
         symbol, _, state = line.symbol.partition(",")
         rows.setdefault(symbol, {})[state] = line
-    states = list(dict.fromkeys(state for each in rows.values() for state in each if state))
+    states = list(dict.fromkeys(state for each in rows.values() for state in each if state)) or [""]
     cells = []
     for symbol, each in rows.items():
         known = [each.get(state, each.get("")) for state in states]
         one = next(iter(each.values()))
         known = known or [each[""]]
         values = [number(line.value) if line is not None else ABSENT for line in known]
-        cells.append([symbol, *values, one.unit, one.formula, _clause(one)])
+        cells.append([symbol, *values, one.unit, one.formula, cited(one)])
     return Table("Site", ["", *states, "unit", "formula", "clause"], cells, numbers=range(1, len(states) + 1))
 
 
-def _clause(line: Working) -> str:
+def cited(line: Working) -> str:
     """Where a formula is in the code, and that it is our reading where it is."""
     return f"{line.clause}, ours" if line.standing == "ours" else line.clause
 
 
-def _capacity(each: Verified, where: str) -> Table:
-    """The capacity curve, exactly and on the straight line."""
-    clause = {line.symbol: _clause(line) for line in each.workings}
-    rows = [
-        ["alpha0", number(each.chain.alpha0), "", "", clause["alpha0"]],
-        ["lambda", number(each.lambda_), "", "", ""],
-        ["e*", number(each.chain.e_star), "", "", clause["e*"]],
-        ["M*", number(each.M), "", "kg" if each.M is not None else "no masses", clause.get("M*", "")],
-        ["a0*", number(each.a0), number(each.a0), "m/s2", clause["a0*"]],
-        ["d0*", number(each.d0), number(each.d0), "m", clause["d0*"]],
-    ]
-    for name, at in each.states.items():
-        line = each.straight_states[name]
-        rows += [
-            [f"d_{name}", number(at.d), number(line.d), "m", clause[f"d_{name}"]],
-            [f"a*(d_{name})", number(at.a), number(line.a), "m/s2", clause[f"a*(d_{name})"]],
-            [f"T_{name}", number(at.T), number(line.T), "s", clause[f"T_{name}"]],
-        ]
-        if at.demand is not None:
-            rows += [
-                [f"demand at {name}", number(at.demand), number(line.demand), "m", clause[f"S_De(T_{name})"]],
-                [f"capacity/demand, {name}", number(at.ratio, 4), number(line.ratio, 4), "passes if >= 1", ""],
-            ]
-    title = f"{where}: capacity, on the exact curve and on the straight line from a0* to d0*"
-    return Table(title, ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
-
-
-def _methods(each: Verified) -> Table:
-    """Table of the capacity by each method."""
-    known = any(method.return_period is not None for method in each.methods.values())
-    rows = []
-    for key, method in each.methods.items():
-        if method.a_g is None:
-            continue
-        line = each.straight_methods[key]
-        years = [_years(method)] if known else []
-        governs = "governs" if key in each.governing.values() else ""
-        rows.append(
-            [
-                method.title,
-                *(number(each, 4) for each in (method.a_g, line.a_g, method.asked, method.zeta)),
-                *years,
-                method.clause,
-                governs,
-            ]
-        )
-    heads = [
-        "",
-        "a_g [g]\nexact\ncurve",
-        "a_g [g]\nstraight\nline",
-        "a_g [g]\ndemand",
-        "zeta_E",
-        *(["TR\n[years]"] if known else []),
-    ]
-    return Table("Capacity by method", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
-
-
-def _years(method: Method) -> str:
-    """A return period, and whether it is beyond the table."""
-    if method.return_period is None:
-        return ABSENT
-    mark = ""
-    if method.beyond and method.zeta is not None:
-        mark = ">" if method.zeta >= 1 else "<"
-    return f"{mark}{method.return_period:.0f}"
-
-
-def _records(found: Dynamic) -> Table:
-    rows = [[each.name, *(_peak(each, found, confident) for confident in (True, False))] for each in found.records]
-    return Table("Time histories: largest d [m]", ["record", "with FC", "without"], rows, numbers=(1, 2))
-
-
-def _peak(record: RecordPeak, found: Dynamic, confident: bool) -> str:
-    d, known_to = record.peak(confident=confident), record.known_to(confident=confident)
-    if known_to is not None:
-        return f"{names.UNKNOWN} after {known_to:.4g} s"
-    if d is None:
-        return "overturns"
-    return f"{d:.4g}{' past d0*' if d >= found.d0 else ''}"
-
-
 def data(found: Verification) -> dict[str, Any]:
     """As plain data."""
+    own = showing(found)
     return {
         "code": found.code,
         "edition": found.edition,
-        "directions": {direction.label: _data(each) for direction, each in found.directions.items()},
+        "directions": {direction.label: own.data(found, each) for direction, each in found.directions.items()},
         "governs": found.governs.label,
     }
 
 
-def _data(each: Verified) -> dict[str, Any]:
-    control = each.exact.control
-    periods = _return_periods(each.methods)
-    return {
-        "control": {"x": control.at.real, "y": control.at.imag, "body": control.body},
-        "alpha0": each.chain.alpha0,
-        "lambda": each.lambda_,
-        "e_star": each.chain.e_star,
-        "M_star": each.M,
-        "a0_star": each.a0,
-        "d0_star": each.d0,
-        "states": {name: _state(each, name, at) for name, at in each.states.items()},
-        **({"ties": ties} if (ties := _ties(each)) else {}),
-        "a_g": {key: method.a_g for key, method in each.methods.items() if key != "SLD"},
-        "zeta": {key: method.zeta for key, method in each.methods.items()},
-        "governs": each.governs,
-        "dynamic": _histories(each.dynamic) if each.dynamic is not None else None,
-        **({"return_period": periods} if periods else {}),
-    }
-
-
-def _state(each: Verified, name: str, at: State) -> dict[str, Any]:
-    passes = each.passes(name)
-    by = {"governs": each.governing[name] if passes is not None else None, "passes": passes}
-    return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio, **by}
-
-
-def _ties(each: Verified) -> dict[str, dict[str, float | None]]:
-    """Force [N], elongation [m] and strain of each tie, and of each force against the motion, at the limit states."""
-    found: dict[str, dict[str, float | None]] = {}
-    for key in ("force", "elongation", "strain"):
-        for name, at in each.states.items():
-            for pull in pulls(each.exact, at.d):
-                found.setdefault(pull.name, {})[f"{key}_{name}"] = getattr(pull, key)
-    return found
-
-
-def _pulls(each: Verified) -> list[Table]:
-    """Table of the ties, and of the forces against the motion, at each limit state; none if there are none."""
-    rows = [
-        [pull.name, f"d_{state}", number(pull.force / 1e3), number(pull.elongation, 4),
-         ABSENT if pull.strain is None else number(100 * pull.strain, 3)]
-        for state, at in each.states.items() for pull in pulls(each.exact, at.d)
-    ]  # fmt: skip
-    heads = ["", "at", "force\n[kN]", "elongation\n[m]", "elongation\n[%]"]
-    title = "Ties, and forces against the motion with the way of their points"
-    return [Table(title, heads, rows, numbers=(2, 3, 4))] if rows else []
-
-
-def _return_periods(methods: Mapping[str, Method]) -> dict[str, dict[str, Any]]:
-    """Of each method, where the hazard is known."""
-    known = {key: each for key, each in methods.items() if each.return_period is not None}
-    return {key: {"years": each.return_period, "beyond": each.beyond} for key, each in known.items()}
-
-
-def _histories(found: Dynamic) -> dict[str, Any]:
-    def of(confident: bool) -> dict[str, Any]:
-        return {
-            "mean": found.mean(confident=confident),
-            "past_d0": found.passed(confident=confident),
-            "unknown": found.unknown(confident=confident) if found.checked else None,
-            "holds": {state: found.holds(state, confident=confident) for state in found.allowed},
-        }
-
-    return {
-        "state": next(iter(found.allowed)),
-        "motions": found.motions.kind,
-        "floor": found.motions.floor,
-        "records": [
-            {
-                "name": each.name,
-                "d_with_FC": each.with_confidence,
-                "d_without_FC": each.without,
-                "known_to_with_FC": each.known_to_with_confidence,
-                "known_to_without_FC": each.known_to_without,
-            }
-            for each in found.records
-        ],
-        "wanted": found.enough,
-        "with_FC": of(True),
-        "without_FC": of(False),
-    }
+def columns(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> dict[str, Sequence[Any]]:
+    """Rows as columns by their headings."""
+    return {name: [row[k] for row in rows] for k, name in enumerate(heads)}
 
 
 def table(found: Verification) -> dict[str, Sequence[Any]]:
     """A row for each direction and method."""
-    rows = [
-        [direction.label, key, method.a_g, method.asked, method.zeta, method.return_period, key == each.governs]
-        for direction, each in found.directions.items()
-        for key, method in each.methods.items()
-    ]
-    heads = ["direction", "method", "a_g [g]", "asked [g]", "zeta_E", "TR [years]", "governs"]
-    return {name: [row[k] for row in rows] for k, name in enumerate(heads)}
+    return showing(found).table(found)
+
+
+def standing(workings: Sequence[Working]) -> str:
+    """State how far the formulas were checked against the code; empty if there are none."""
+    if not workings:
+        return ""
+    ours, unchecked, transcribed = (
+        {each.symbol.partition(",")[0]: each.meaning for each in workings if each.standing == standing}
+        for standing in ("ours", "code", "transcription")
+    )
+    said = (
+        "The clauses name the place of each formula in the code: [formula] or §section. None of the formulas has been "
+        "checked against the printed code yet: have them checked before you rely on a verdict."
+    )
+    if transcribed:
+        others = f", except for {', '.join(unchecked)}" if unchecked else ""
+        said = f"{said} They agree with a transcription of its text{others}."
+    if not ours:
+        return said
+    named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())
+    return f"{said} Our own choices ('ours'), where the code is silent or we depart from its wording: {named}."

@@ -1,48 +1,133 @@
-"""What a code of practice is to this package: a module of `codes` that has one of these, called `CODE`."""
+"""What a code of practice is to this package: a class derived from `Code`, found through an entry point."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
-from rocking_cli.core import Mechanism
-from rocking_cli.processing.floor import Floor
-from rocking_cli.studies.verification.chain import Control
-from rocking_cli.studies.verification.results import Verification
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.plugins.errors import guard
+from rocking_cli.studies.verification.control import Control
+from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.site_file import Site
+
+ANSWERS = ("verify", "with_histories", "of_each", "showing", "sheet")
+"""The methods in which a code answers: whatever fails there is an error of the plugin."""
 
 
 @dataclass(frozen=True)
-class Code:
-    """A code of practice.
+class Number:
+    """A number of a code that a structure can be designed for; of two directions the smaller counts.
 
     Parameters
     ----------
+    meaning : str
+        What it is, in a few words.
+    of : callable, optional
+        Gives it of what was found in a direction, `of(verified)`; None where the site does not give it.
+    of_structure : callable, optional
+        Gives it of a structure without a site instead, `of_structure(mechanism, direction)`.
+    unit : str
+        Empty for a pure number.
+    """
+
+    meaning: str
+    of: Callable[[Any], float | None] | None = None
+    of_structure: Callable[[Mechanism, Direction], float] | None = None
+    unit: str = ""
+
+
+def _failed(own: Any, method: str) -> str:
+    return f"the code {own.key} failed in {method}"
+
+
+class Code(ABC):
+    """A code of practice.
+
+    Attributes
+    ----------
     key : str
-        What site files call it.
+        What site files call it; its entry point of `rocking.codes` has the same name.
     name, edition : str
         What it is, and the edition that is followed.
     site : type of Site
         The fields of a site file for it.
     starter : str
-        A commented site file that works as it is.
-    records : int
-        How many records it wants for histories.
-    verify : callable
-        Verifies a mechanism at a site, with a control point or None for its own choice.
-    floor : callable, optional
-        Gives the floor of a site on which the structure stands, at a limit state; None if it stands on the ground.
-    of_each : callable, optional
-        Gives the site of a survey: what it says of the structure itself is left to each row.
+        A commented site file that works as it is; if it is empty, it is made from the fields and their examples.
+    numbers : mapping of str to Number
+        What a structure can be designed for by this code, beside the `ratio` of every code.
+    takes_control : bool
+        Whether `verify` takes a control point.
     """
 
-    key: str
-    name: str
-    edition: str
-    site: type[Site]
-    starter: str
-    records: int
-    verify: Callable[[Mechanism, Any, Control | None], Verification]
-    floor: Callable[[Any, str], Floor | None] = lambda site, state: None
-    of_each: Callable[[Any], Any] = lambda site: site
+    key: ClassVar[str]
+    name: ClassVar[str]
+    edition: ClassVar[str]
+    site: ClassVar[type[Site]]
+    starter: ClassVar[str] = ""
+    numbers: ClassVar[Mapping[str, Number]] = {}
+    takes_control: ClassVar[bool] = False
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """Guard what a subclass answers."""
+        super().__init_subclass__(**named)
+        guard(cls, ANSWERS, _failed)
+
+    @abstractmethod
+    def verify(self, mechanism: Mechanism, site: Any, control: Control | None = None) -> Verification:
+        """Verify a structure at a site.
+
+        Parameters
+        ----------
+        mechanism : Mechanism
+            The structure.
+        site : Site
+            The site, an object of the class attribute `site`.
+        control : Control, optional
+            The control point, only for a code that takes one; None for its own choice.
+
+        Raises
+        ------
+        InputError
+            If the site does not give what the structure asks for; a `Problem` with a `field` of the site is reported
+            with its line.
+        """
+
+    def found(self, mechanism: Mechanism, directions: Mapping[Direction, Verified], **more: Any) -> Verification:
+        """Return the answer of `verify` from what was found in each direction; `more` are fields of `Verification`."""
+        return Verification(mechanism, self.key, self.name, self.edition, directions, **more)
+
+    def with_histories(
+        self,
+        found: Any,
+        structure: Prepared,
+        site: Any,
+        motions: Sequence[GroundMotion],
+        signs: Sequence[int],
+        progress: Callable[[int], object],
+        *,
+        state: str | None,
+        on_floor: bool,
+    ) -> Verification:
+        """Return a verification with time histories; a code that has no such method refuses them.
+
+        Parameters are those of `rocking_cli.studies.verification.check.with_histories`.
+        """
+        raise InputError(Problem(f"{self.key} has no method with time histories", hint="leave out the ground motions"))
+
+    def of_each(self, site: Any) -> Any:
+        """Return the site of a survey, in which what is said of the structure itself is left to each row."""
+        return site
+
+    def showing(self) -> Any:
+        """Return how its results are shown, a `rocking_cli.views.verification.Showing`; None for the usual way."""
+        return None
+
+    def sheet(self) -> Any:
+        """Return its calculation sheet, a `rocking_cli.views.sheet.build.SheetOfCode`; None if it has none."""
+        return None

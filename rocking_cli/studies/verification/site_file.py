@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -54,31 +54,33 @@ class SiteFile:
         return self.document.at(place, problem.message, problem.hint)
 
 
-def read_site(path: Path, codes: Mapping[str, type[Site]]) -> SiteFile:
+def read_site(path: Path, codes: Collection[str], fields_of: Callable[[str], type[Site]]) -> SiteFile:
     """Read a site from its YAML file.
 
     Parameters
     ----------
     path : Path
         The file.
-    codes : mapping of str to type
-        The codes there are, and what a site is for each.
+    codes : collection of str
+        The codes there are.
+    fields_of : callable
+        Gives the fields of a site for one of them.
 
     Raises
     ------
     InputError
         With every problem of the file: place, field, and what would be right.
     """
-    return site_of(parse(read_text(path, "site"), str(path), "site", HINT), codes)
+    return site_of(parse(read_text(path, "site"), str(path), "site", HINT), codes, fields_of)
 
 
-def site_of(document: Document, codes: Mapping[str, type[Site]]) -> SiteFile:
+def site_of(document: Document, codes: Collection[str], fields_of: Callable[[str], type[Site]]) -> SiteFile:
     """The site in a parsed file. Raises as `read_site`."""
     code = document.data.get("code", USUAL)
     if isinstance(code, str) and code not in codes:
         problem = document.at(("code",), f"there is no code {code!r}", did_you_mean(code, list(codes)))
         raise InputError(*document.problems, problem)
-    model = codes[code if isinstance(code, str) else USUAL]
+    model = fields_of(code if isinstance(code, str) else USUAL)
     site = None
     try:
         site = model.model_validate(document.data)

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.studies.assessment import File, TitleBlock
+from rocking_cli.studies.verification.check import code_of
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.site_file import SiteFile
 from rocking_cli.views.sheet.document import Grid, Item, Listing, Part, Sentence, Sheet
-from rocking_cli.views.sheet.italian import build as italian
 from rocking_cli.views.sheet.language import DIGITS, Language
 
-PARTS: Mapping[str, Any] = {"NTC2018": italian.parts}
-"""What the sheets of a code say, by the name that site files have for it."""
 MOST = 200  # lines of a file that are printed
 
 
@@ -38,14 +36,39 @@ class Made:
     versions: Mapping[str, str]
 
 
-def check_has_sheet(site: SiteFile) -> None:
-    """Refuse a code that has no sheet. Raises `InputError`."""
-    if site.site.code not in PARTS:
+@dataclass(frozen=True)
+class SheetOfCode:
+    """What a code says on its sheet.
+
+    Parameters
+    ----------
+    texts : mapping of str to mapping
+        Of each language its texts by their keys, among them `subtitle`, `reading_digits` and `reading_marks`.
+    spelled : mapping of str to str
+        How the symbols of plain sentences are printed.
+    parts : callable
+        Gives the parts of the sheet, the summary first: `parts(language, verification, site)`.
+    """
+
+    texts: Mapping[str, Mapping[str, str]]
+    spelled: Mapping[str, str]
+    parts: Callable[[Language, Any, Any], Iterable[Part]]
+
+    def language(self, key: str) -> Language:
+        """A language with the texts of the code."""
+        return Language(key, self.texts[key], self.spelled)
+
+
+def sheet_of(site: SiteFile) -> SheetOfCode:
+    """The sheet of the code of a site. Raises `InputError` if it has none."""
+    found: SheetOfCode | None = code_of(site).sheet()
+    if found is None:
         problem = Problem(
             f"{site.site.code} has no calculation sheet", site.document.file, field="code",
             hint="leave out the sheet: `rocking verify` then prints the result",
         )  # fmt: skip
         raise InputError(problem)
+    return found
 
 
 def sheet(found: Verification, site: SiteFile, language: Language, title: TitleBlock, made: Made) -> Sheet:
@@ -69,14 +92,14 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     InputError
         If the code of the site has no sheet.
     """
-    check_has_sheet(site)
-    say = language
+    own = sheet_of(site)
+    say = own.language(language.key)
     about = {say.say(name): text for name, text in title.known.items()}
     if site.site.name:
         about[say.say("site_name")] = site.site.name
     about[say.say("date")] = title.date
     about[say.say("program")] = f"rocking-cli {made.versions['rocking-cli']}"
-    first, *others = PARTS[site.site.code](say, found, site.site)
+    first, *others = own.parts(say, found, site.site)
     parts = [first, _reading(say, found), *others, _inputs(say, found, title, made)]
     return Sheet(say, say.say("title", name=found.mechanism.name), _subtitle(say, found), about, parts, title.logo)
 

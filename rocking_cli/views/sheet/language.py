@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date
+from functools import cached_property
 from math import isnan
 from typing import Any, NamedTuple
 
@@ -15,22 +16,6 @@ from rocking_cli.views.sheet import texts_en, texts_it
 DIGITS = 6  # significant: recomputed from printed numbers, a result agrees to five
 ABSENT = "–"
 MINUS = "−"
-SPELLED = {
-    "alpha0": "α_[0]",
-    "lambda": "λ",
-    "a0*": "a_[0]^[*]",
-    "d0*": "d_[0]^[*]",
-    "a*": "a^[*]",
-    "d_SLV": "d_[SLV]",
-    "d_SLC": "d_[SLC]",
-    "xi1^-1/2 eta(xi)": "ξ_[1]^[−1/2] η(ξ)",
-    "xi1": "ξ_[1]",
-    "S_Z": "S_[Z]",
-    "a_g": "a_[g]",
-    "T0": "T_[0]",
-    "m/s2": "m/s²",
-}
-"""The symbols of plain sentences, as they are printed."""
 
 
 class Table(NamedTuple):
@@ -57,14 +42,20 @@ class Language:
     ----------
     key : str
         "en" or "it".
+    own : mapping of str to str
+        The texts of a code, beside those of every sheet.
+    spelled : mapping of str to str
+        How the symbols of plain sentences are printed.
     """
 
     key: str
+    own: Mapping[str, str] = field(default_factory=dict, compare=False)
+    spelled: Mapping[str, str] = field(default_factory=dict, compare=False)
 
-    @property
+    @cached_property
     def texts(self) -> Mapping[str, str]:
         """Its texts."""
-        return TABLES[self.key].texts
+        return {**TABLES[self.key].texts, **self.own}
 
     def say(self, key: str, **values: Any) -> str:
         """A text with its slots filled: numbers are written, and texts of others kept from being formulas."""
@@ -73,7 +64,8 @@ class Language:
 
     def remark(self, text: str) -> str:
         """A sentence of the study, in this language where it knows it, with its symbols as they are printed."""
-        return re.sub("|".join(map(re.escape, SPELLED)), lambda found: SPELLED[found[0]], said_in(self.key, text))
+        said, marks = said_in(self.key, text), "|".join(map(re.escape, self.spelled))
+        return re.sub(marks, lambda found: self.spelled[found[0]], said) if marks else said
 
     def number(self, value: float | None, digits: int = DIGITS) -> str:
         """A number as it is printed."""

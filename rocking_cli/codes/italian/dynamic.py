@@ -7,16 +7,23 @@ without FC it is the structure's own history. Its inertia is that of the mechani
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
 
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.results import Dynamic, RecordPeak, Verification
+from rocking_cli.codes.italian.site import ItalianSite, floor_at
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.studies.verification.capacity import ExactCurve
-from rocking_cli.studies.verification.results import RecordPeak
+from rocking_cli.studies.verification.motions import where_it_stands
+from rocking_cli.text import did_you_mean
+
+RECORDS = 7  # that the code wants before the mean may be used
 
 
 def with_confidence(motion: GroundMotion, FC: float) -> GroundMotion:
@@ -60,6 +67,58 @@ def peaks(
         slow = None if known_to_FC is None else sqrt(curve.confidence) * known_to_FC
         found[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to)
     return found
+
+
+def with_histories(
+    found: Verification,
+    structure: Prepared,
+    site: ItalianSite,
+    motions: Sequence[GroundMotion],
+    signs: Sequence[int],
+    progress: Callable[[int], object],
+    *,
+    state: str | None,
+    on_floor: bool,
+) -> Verification:
+    """Return a verification with time histories under a set of records; see `check.with_histories`."""
+    taken = structure if found.mechanism is structure.mechanism else Prepared(found.mechanism, structure.file)
+    model = taken.model("nonlinear")
+    curves = {direction: each.exact for direction, each in found.directions.items()}
+    state = _state_of_records(found, state)
+    what, moved = where_it_stands(motions, floor_at(site, state), on_floor=on_floor)
+    every = []
+    for motion in moved:
+        every.append(peaks(model, curves, motion, signs))
+        progress(1)
+    directions = {
+        direction: replace(
+            each,
+            dynamic=Dynamic(
+                [peak[direction] for peak in every],
+                each.d0,
+                {state: each.states[state].d},
+                RECORDS,
+                checked=model.joints is not None,
+                motions=what,
+            ),
+        )
+        for direction, each in found.directions.items()
+    }
+    return replace(found, directions=directions)
+
+
+def _state_of_records(found: Verification, state: str | None) -> str:
+    """Return the limit state of a set of records. Raises `InputError` if the site does not give it."""
+    if state is None:
+        return found.first
+    states = next(iter(found.directions.values())).states
+    if state not in states:
+        hint = did_you_mean(state, list(states)) or f"give one of {', '.join(states)}"
+        raise InputError(Problem(f"{state!r} is not a limit state of displacement", field="`state`", hint=hint))
+    if states[state].demand is None:
+        hint = f"give {state} in the site file: the records must match its spectrum"
+        raise InputError(Problem(f"{state} is not given by the site", field="`state`", hint=hint))
+    return state
 
 
 def _largest(

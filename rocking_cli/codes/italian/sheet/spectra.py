@@ -8,9 +8,8 @@ from math import pi
 
 import numpy as np
 
-from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.verification.codes.italian import clauses
-from rocking_cli.studies.verification.codes.italian.demand import (
+from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian.demand import (
     ABOVE,
     BELOW,
     GROUND,
@@ -21,6 +20,7 @@ from rocking_cli.studies.verification.codes.italian.demand import (
     TableSpectrum,
     correction,
 )
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.language import Language
 

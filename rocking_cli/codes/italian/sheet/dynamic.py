@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rocking_cli.studies.verification.results import Dynamic, RecordPeak, Verified
+from rocking_cli.codes.italian.results import Dynamic, RecordPeak, Verified
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
 from rocking_cli.views.sheet.language import Language
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rocking_cli.studies.verification.results import Method, Verification, Verified
+from rocking_cli.codes.italian.results import Method, Verification, Verified
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
 from rocking_cli.views.sheet.language import Language, plain
 
@@ -74,7 +74,7 @@ def _states(say: Language, where: str, each: Verified) -> Grid:
     if damage is not None and damage.zeta is not None:
         numbers = [say.number(v, 4) for v in (damage.a_g, damage.asked, None, damage.zeta)]
         numbers[:2] = [f"{text} g" for text in numbers[:2]]
-        rows.append([say.say("begins", state="SLD"), *numbers, say.say("yes" if damage.passes else "no")])
+        rows.append([say.say("begins", state="SLD"), *numbers, say.say("yes" if damage.passed else "no")])
     heads = [say.say("limit_state"), f"{say.say('allowed')} [m]", f"{say.say('asked')} [m]", "T [s]", say.say("ratio")]
     return Grid(say.say("states", where=where), [*heads, say.say("outcome")], rows, (1, 2, 3, 4))
 

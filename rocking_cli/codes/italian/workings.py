@@ -5,26 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import sqrt
 
-from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.verification.capacity import ExactCurve
-from rocking_cli.studies.verification.chain import Chain
-from rocking_cli.studies.verification.codes.italian import clauses
-from rocking_cli.studies.verification.codes.italian.demand import (
+from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.demand import (
     FloorSpectrum,
     GroundSpectrum,
     Spectrum,
     correction,
 )
-from rocking_cli.studies.verification.codes.italian.ground import Ground
-from rocking_cli.studies.verification.codes.italian.hazard import (
+from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.hazard import (
     PROBABILITY,
     TOPOGRAPHY,
     corner_factor,
     return_period,
     soil_factor,
 )
-from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
-from rocking_cli.studies.verification.results import Method, State
+from rocking_cli.codes.italian.results import Method, State
+from rocking_cli.codes.italian.rules import RULES, Rule
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.working import Standing, Working
 
 STATES = ("SLD", "SLV", "SLC")

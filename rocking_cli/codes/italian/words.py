@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
+from rocking_cli.codes.italian.results import Dynamic, Verification, Verified
 from rocking_cli.dynamics.holding import NOT_CHECKED
-from rocking_cli.studies.verification.results import Dynamic, Verification, Verified
-from rocking_cli.studies.verification.working import Working
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
 ORDINAL = {True: "With FC", False: "Without FC, as in `rocking respond`"}
@@ -83,7 +82,7 @@ def beyond_first(found: Verified, first: str) -> Iterator[str]:
     damage = found.methods.get("SLD")
     if damage is not None and damage.zeta is not None and damage.asked is not None and damage.a_g is not None:
         yield (
-            f"SLD: {'passes' if damage.passes else 'fails'}. Rocking starts at a_g = {damage.a_g:.4g} g; the demand "
+            f"SLD: {'passes' if damage.passed else 'fails'}. Rocking starts at a_g = {damage.a_g:.4g} g; the demand "
             f"is {damage.asked:.4g} g."
         )
 
@@ -169,22 +168,3 @@ def which_direction(found: Verification) -> str:
         f"The {least.label} direction governs: its ratio of displacement capacity to demand is {ratio:.3g}, against "
         f"{rest:.3g} in the other direction."
     )
-
-
-def standing(workings: Sequence[Working]) -> str:
-    """State how far the formulas were checked against the code."""
-    ours, unchecked, transcribed = (
-        {each.symbol.partition(",")[0]: each.meaning for each in workings if each.standing == standing}
-        for standing in ("ours", "code", "transcription")
-    )
-    said = (
-        "The clauses name the place of each formula in the code: [formula] or §section. None of the formulas has been "
-        "checked against the printed code yet: have them checked before you rely on a verdict."
-    )
-    if transcribed:
-        others = f", except for {', '.join(unchecked)}" if unchecked else ""
-        said = f"{said} They agree with a transcription of its text{others}."
-    if not ours:
-        return said
-    named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())
-    return f"{said} Our own choices ('ours'), where the code is silent or we depart from its wording: {named}."

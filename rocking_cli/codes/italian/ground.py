@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from rocking_cli.studies.verification.capacity import root
-from rocking_cli.studies.verification.codes.italian.demand import (
+from rocking_cli.codes.italian.capacity import root
+from rocking_cli.codes.italian.demand import (
     FloorSpectrum,
     GroundSpectrum,
     Spectrum,
     TableSpectrum,
 )
-from rocking_cli.studies.verification.codes.italian.hazard import Hazard
-from rocking_cli.studies.verification.codes.italian.site import ItalianSite, Shaking
+from rocking_cli.codes.italian.hazard import Hazard
+from rocking_cli.codes.italian.site import ItalianSite, Shaking
 
 LARGEST = 1e6  # g: no ground shakes so; a capacity beyond is none
 AS_LARGE = 1e-13  # relative: a demand that scales with a_g

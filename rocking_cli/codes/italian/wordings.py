@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
+from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.hazard import LONGEST, SHORTEST, return_period
+from rocking_cli.codes.italian.remarks import TEXTS
+from rocking_cli.codes.italian.results import Method, State, Verified
+from rocking_cli.codes.italian.rules import RULES
+from rocking_cli.codes.italian.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.core.ties import Tie
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.verification.capacity import ExactCurve
-from rocking_cli.studies.verification.chain import Chain
-from rocking_cli.studies.verification.codes.italian.demand import FloorSpectrum, GroundSpectrum
-from rocking_cli.studies.verification.codes.italian.ground import Ground
-from rocking_cli.studies.verification.codes.italian.hazard import LONGEST, SHORTEST, return_period
-from rocking_cli.studies.verification.codes.italian.remarks import TEXTS
-from rocking_cli.studies.verification.codes.italian.rules import RULES
-from rocking_cli.studies.verification.results import Method, State, Verified
-from rocking_cli.studies.verification.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.studies.verification.told import Told
 
 LONG = 4.0  # s: above it the code requires a study of the site, or records

@@ -8,10 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.chain import Block, Chain
 from rocking_cli.core.attached import ConstantForce, Follow, Spot, Spring, springs_of
 from rocking_cli.core.coefficients import Coefficients
-from rocking_cli.studies.verification.capacity import ExactCurve
-from rocking_cli.studies.verification.chain import Block, Chain
 
 TURNS = 1e-9  # rad per rad: what turns less goes straight on
 ROUNDING = 1e-9  # of the work of the weights, or of the masses: what is left over is none

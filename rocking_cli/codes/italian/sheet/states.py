@@ -7,19 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.displaced import Displaced
+from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.results import State, Verified
+from rocking_cli.codes.italian.rules import RULES, Rule
+from rocking_cli.codes.italian.sheet import chain as chains
+from rocking_cli.codes.italian.sheet import spectra
+from rocking_cli.codes.italian.sheet.chain import Scale
+from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.core.attached import Spot
-from rocking_cli.studies.verification.capacity import ExactCurve
-from rocking_cli.studies.verification.codes.italian import clauses
-from rocking_cli.studies.verification.codes.italian.ground import Ground
-from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
-from rocking_cli.studies.verification.displaced import Displaced
-from rocking_cli.studies.verification.results import State, Verified
-from rocking_cli.studies.verification.ties import pulls
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
-from rocking_cli.views.sheet.italian import chain as chains
-from rocking_cli.views.sheet.italian import spectra
-from rocking_cli.views.sheet.italian.chain import Scale
 from rocking_cli.views.sheet.language import Language
 
 LINE = "lin"  # in subscripts: on the straight line

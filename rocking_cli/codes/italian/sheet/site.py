@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import log
 
-from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.verification.codes.italian import clauses
-from rocking_cli.studies.verification.codes.italian.demand import DAMPING, GroundSpectrum
-from rocking_cli.studies.verification.codes.italian.ground import Ground
-from rocking_cli.studies.verification.codes.italian.hazard import (
+from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian.demand import DAMPING, GroundSpectrum
+from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.hazard import (
     LONGEST,
     PROBABILITY,
     SHORTEST,
@@ -20,10 +19,11 @@ from rocking_cli.studies.verification.codes.italian.hazard import (
     return_period,
     soil_factor,
 )
-from rocking_cli.studies.verification.codes.italian.site import SIZES, Element, Shaking
+from rocking_cli.codes.italian.sheet import spectra
+from rocking_cli.codes.italian.site import SIZES, Element, Shaking
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
-from rocking_cli.views.sheet.italian import spectra
 from rocking_cli.views.sheet.language import Language
 
 STATES = ("SLD", "SLV", "SLC")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rocking_cli.studies.verification.codes.italian import clauses
+from rocking_cli.codes.italian import clauses
 
 
 @dataclass(frozen=True)

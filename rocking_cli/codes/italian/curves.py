@@ -5,8 +5,8 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rocking_cli.codes.italian.results import Verification, Verified
 from rocking_cli.plotting import style
-from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.views.verification import shown
 from rocking_cli.views.view import heading
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.displaced import Displaced
 from rocking_cli.core import Mechanism
 from rocking_cli.core.attached import ConstantForce, Follow, Spot, Spring
 from rocking_cli.core.ties import Tie
-from rocking_cli.studies.verification.capacity import ExactCurve
-from rocking_cli.studies.verification.chain import Chain
-from rocking_cli.studies.verification.displaced import Displaced
 
 STRETCHED = 0.02
 """Elongation of a tie over its length from which the output warns: steel yields at a tenth of it."""

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rocking_cli.studies.verification.codes.italian.ground import Ground
-from rocking_cli.studies.verification.codes.italian.site import ItalianSite
-from rocking_cli.studies.verification.results import Verification, Verified
+from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.sheet import dynamic, site, summary, texts_en, texts_it
+from rocking_cli.codes.italian.sheet.methods import Methods
+from rocking_cli.codes.italian.sheet.states import Writer
+from rocking_cli.codes.italian.site import ItalianSite
+from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.document import Drawing, Part
-from rocking_cli.views.sheet.italian import dynamic, site, summary
-from rocking_cli.views.sheet.italian.methods import Methods
-from rocking_cli.views.sheet.italian.states import Writer
 from rocking_cli.views.sheet.language import Language
-from rocking_cli.views.verification import alike
 
 
 def parts(say: Language, found: Verification, given: ItalianSite) -> Iterator[Part]:
@@ -32,6 +32,25 @@ def parts(say: Language, found: Verification, given: ItalianSite) -> Iterator[Pa
 def _shown(say: Language, found: Verification) -> Mapping[str, Verified]:
     """The directions that differ, by what they are called."""
     each = list(found.directions.values())
-    if len(each) == 2 and alike(*each):
+    if len(each) == 2 and each[0].is_like(each[1]):
         return {say.say("both"): each[0]}
     return {say.say(one.direction.label): one for one in each}
+
+
+SPELLED = {
+    "alpha0": "α_[0]",
+    "lambda": "λ",
+    "a0*": "a_[0]^[*]",
+    "d0*": "d_[0]^[*]",
+    "a*": "a^[*]",
+    "d_SLV": "d_[SLV]",
+    "d_SLC": "d_[SLC]",
+    "xi1^-1/2 eta(xi)": "ξ_[1]^[−1/2] η(ξ)",
+    "xi1": "ξ_[1]",
+    "S_Z": "S_[Z]",
+    "a_g": "a_[g]",
+    "T0": "T_[0]",
+    "m/s2": "m/s²",
+}
+"""The symbols of plain sentences, as they are printed."""
+SHEET = SheetOfCode({"en": texts_en.TEXTS, "it": texts_it.TEXTS}, SPELLED, parts)

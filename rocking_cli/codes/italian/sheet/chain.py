@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.displaced import Displaced, Moved
 from rocking_cli.core.attached import PointMass
-from rocking_cli.studies.verification.capacity import ExactCurve
-from rocking_cli.studies.verification.chain import Chain
-from rocking_cli.studies.verification.codes.italian import clauses
-from rocking_cli.studies.verification.displaced import Displaced, Moved
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Steps
 from rocking_cli.views.sheet.language import Language

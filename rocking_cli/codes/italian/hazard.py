@@ -8,8 +8,8 @@ from math import exp, log
 
 import numpy as np
 
+from rocking_cli.codes.italian.demand import GroundSpectrum
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.studies.verification.codes.italian.demand import GroundSpectrum
 
 PROBABILITY = {"SLO": 0.81, "SLD": 0.63, "SLV": 0.10, "SLC": 0.05}
 """Of being exceeded in the reference life, by limit state."""

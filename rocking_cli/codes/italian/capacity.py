@@ -9,13 +9,14 @@ from math import pi
 
 import numpy as np
 
+from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.core import Mechanism
 from rocking_cli.core.attached import PointMass, Spot
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.interlock import NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
-from rocking_cli.studies.verification.chain import Chain, Control
+from rocking_cli.studies.verification.control import Control
 
 STEPS = 256  # to the end of a curve, between which it is held to be a function
 HALVINGS = 200

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rocking_cli.studies.verification.codes.italian import clauses
-from rocking_cli.studies.verification.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum, Spectrum
-from rocking_cli.studies.verification.codes.italian.ground import Ground
-from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
-from rocking_cli.studies.verification.results import Method, Verified
+from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum, Spectrum
+from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.results import Method, Verified
+from rocking_cli.codes.italian.rules import RULES, Rule
+from rocking_cli.codes.italian.sheet import spectra
+from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
+from rocking_cli.codes.italian.sheet.states import LINE
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Item, Part, Sentence, Steps
-from rocking_cli.views.sheet.italian import spectra
-from rocking_cli.views.sheet.italian.site import hazard_at, is_close
-from rocking_cli.views.sheet.italian.states import LINE
 from rocking_cli.views.sheet.language import Language
 
 STATE = {

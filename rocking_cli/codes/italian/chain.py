@@ -14,6 +14,7 @@ from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.core.reactions import parts
 from rocking_cli.errors import InputError
+from rocking_cli.studies.verification.control import Control
 
 LEAST = 1e-9  # of the largest virtual displacement: a control point that moves less does not move sideways
 
@@ -61,14 +62,6 @@ class Block:
     at: complex
     dx: float
     dy: float
-
-
-@dataclass(frozen=True)
-class Control:
-    """The control point: a point of a body, or without a body the barycentre of P + Q."""
-
-    at: complex
-    body: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

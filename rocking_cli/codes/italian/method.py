@@ -9,16 +9,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
 
+from rocking_cli.codes.italian import clauses, wordings, workings
+from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.demand import DAMPING, Spectrum
+from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.results import Method, State, Verification, Verified
+from rocking_cli.codes.italian.rules import RULES, Rule
+from rocking_cli.codes.italian.site import ItalianSite, of_structure
+from rocking_cli.codes.italian.ties import elastic, lasting
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.studies.verification.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
-from rocking_cli.studies.verification.chain import Chain, Control
-from rocking_cli.studies.verification.codes.italian import clauses, wordings, workings
-from rocking_cli.studies.verification.codes.italian.demand import DAMPING, Spectrum
-from rocking_cli.studies.verification.codes.italian.ground import Ground
-from rocking_cli.studies.verification.codes.italian.rules import RULES, Rule
-from rocking_cli.studies.verification.codes.italian.site import ItalianSite, of_structure
-from rocking_cli.studies.verification.results import Method, State, Verification, Verified
-from rocking_cli.studies.verification.ties import elastic, lasting
+from rocking_cli.studies.verification.control import Control
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"
@@ -120,7 +121,10 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
     otherwise = [wordings.of_ties_at_rest(elastic(mechanism))] if taken is not mechanism else []
     remarks = [*otherwise, *wordings.of_site(ground, list(found.values()))]
-    return Verification(taken, KEY, NAME, EDITION, "SLV", found, workings.of_ground(ground), remarks, otherwise)
+    return Verification(
+        taken, KEY, NAME, EDITION, found,
+        workings=workings.of_ground(ground), remarks=remarks, taken_otherwise=otherwise,
+    )  # fmt: skip
 
 
 def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, control: Control | None) -> Verified:
@@ -139,6 +143,7 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         remarks.append(wordings.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
     return Verified(
         direction=direction,
+        first=RULES[0].state,
         exact=exact,
         lambda_=mechanism.uplift(direction),
         a0=exact.a0,

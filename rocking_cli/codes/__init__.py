@@ -1,0 +1,1 @@
+"""Codes of practice: each a folder with a `Code`, found through the entry points `rocking.codes`."""

@@ -1,0 +1,78 @@
+"""Verification of rocking mechanisms of masonry by the Italian code: NTC 2018 and Circolare 7/2019."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from importlib.resources import files
+from typing import Any, ClassVar
+
+from rocking_cli.codes.italian import dynamic, method
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.method import DAMAGE, EDITION, KEY, LINEAR, NAME, NONLINEAR
+from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.site import ItalianSite, of_each
+from rocking_cli.core import Mechanism
+from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.studies.verification.code import Code, Number
+from rocking_cli.studies.verification.control import Control
+
+
+def _zeta(key: str) -> Number:
+    return Number(f"capacity over demand, by the {key} method of `verify`", of=partial(_zeta_of, key))
+
+
+def _zeta_of(key: str, found: Verified) -> float | None:
+    return found.methods[key].zeta
+
+
+class Italian(Code):
+    """The Italian code."""
+
+    key, name, edition = KEY, NAME, EDITION
+    site = ItalianSite
+    starter = (files(__name__) / "site.yaml").read_text(encoding="utf-8")
+    numbers: ClassVar[Mapping[str, Number]] = {
+        "alpha0": Number(
+            "multiplier that starts the mechanism, by the code of `verify`, the smaller one",
+            of_structure=lambda mechanism, direction: Chain(mechanism, direction).alpha0,
+        ),
+        **{f"zeta_{method}": _zeta(method) for method in (DAMAGE, LINEAR, NONLINEAR)},
+    }
+    takes_control = True
+
+    def verify(self, mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> Verification:
+        """Verify a structure by the damage, linear and nonlinear methods."""
+        return method.verify(mechanism, site, control)
+
+    def with_histories(
+        self,
+        found: Verification,
+        structure: Prepared,
+        site: ItalianSite,
+        motions: Sequence[GroundMotion],
+        signs: Sequence[int],
+        progress: Callable[[int], object],
+        *,
+        state: str | None,
+        on_floor: bool,
+    ) -> Verification:
+        """Return a verification with time histories on the capacity curve."""
+        return dynamic.with_histories(found, structure, site, motions, signs, progress, state=state, on_floor=on_floor)
+
+    def of_each(self, site: ItalianSite) -> ItalianSite:
+        """Return the site of many structures, each of which has an element of its own size."""
+        return of_each(site)
+
+    def showing(self) -> Any:
+        """Return how its results are shown."""
+        from rocking_cli.codes.italian.view import ItalianShowing
+
+        return ItalianShowing()
+
+    def sheet(self) -> Any:
+        """Return its calculation sheet."""
+        from rocking_cli.codes.italian.sheet.build import SHEET
+
+        return SHEET

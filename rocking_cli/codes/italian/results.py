@@ -1,0 +1,243 @@
+"""What a verification by the Italian code found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import isclose
+
+from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.core import Direction
+from rocking_cli.studies.verification import results as frame
+from rocking_cli.studies.verification.motions import Motions
+from rocking_cli.studies.verification.results import CLOSE
+
+AGREE = 1e-9  # relative: directions that differ by less are shown once
+
+
+@dataclass(frozen=True)
+class State:
+    """A limit state on a capacity curve.
+
+    Parameters
+    ----------
+    d, a, T : float
+        Displacement that it allows [m], acceleration there [m/s2], and the period of both [s].
+    demand : float or None
+        Displacement that the site asks for [m]; None where the site file does not give this limit state.
+    """
+
+    d: float
+    a: float
+    T: float
+    demand: float | None
+
+    @property
+    def ratio(self) -> float | None:
+        """Capacity over demand: it passes from 1."""
+        return None if self.demand is None else self.d / self.demand
+
+    @property
+    def passes(self) -> bool | None:
+        """Whether it does."""
+        return None if self.ratio is None else self.ratio >= 1 - CLOSE
+
+
+@dataclass(frozen=True)
+class Method(frame.Method):
+    """Capacity of the structure by one method of verification, as ground acceleration on rock [g].
+
+    Parameters
+    ----------
+    return_period : float or None
+        The same capacity as a return period, where the hazard is known [years].
+    beyond : bool
+        Whether the capacity is beyond the table, whose end the return period then is.
+    """
+
+    return_period: float | None = None
+    beyond: bool = False
+    unit: str = field(default="g", kw_only=True)
+
+    @property
+    def a_g(self) -> float | None:
+        """Capacity, as ground acceleration on rock [g]; None if the site does not give what that depends on."""
+        return self.capacity
+
+    @property
+    def asked(self) -> float | None:
+        """Demand: that of its limit state at the site [g]."""
+        return self.demand
+
+    @property
+    def zeta(self) -> float | None:
+        """zeta_E, capacity over demand."""
+        return self.ratio
+
+
+@dataclass(frozen=True)
+class RecordPeak:
+    """The largest displacement under one record, with FC and without.
+
+    Parameters
+    ----------
+    name : str
+        Of the record.
+    with_confidence, without : float or None
+        The displacement [m]; None where the structure overturned, or the outcome is unknown.
+    known_to_with_confidence, known_to_without : float or None
+        Until when the outcome is known [s], where it is unknown.
+    """
+
+    name: str
+    with_confidence: float | None
+    without: float | None
+    known_to_with_confidence: float | None = None
+    known_to_without: float | None = None
+
+    def peak(self, *, confident: bool) -> float | None:
+        """The displacement with FC, or without [m]."""
+        return self.with_confidence if confident else self.without
+
+    def known_to(self, *, confident: bool) -> float | None:
+        """Until when the outcome is known with FC, or without [s]; None if all of it is known."""
+        return self.known_to_with_confidence if confident else self.known_to_without
+
+
+@dataclass(frozen=True)
+class Dynamic:
+    """What histories say of a direction.
+
+    Parameters
+    ----------
+    records : sequence of RecordPeak
+        What each record did.
+    d0 : float
+        Displacement that no record may pass [m].
+    allowed : mapping of str to float
+        The displacement that the mean may reach at the limit state to which the records belong [m].
+    enough : int
+        How many records the code wants.
+    checked : bool
+        Whether the joints of the structure are known; if not, no outcome is said to be unknown.
+    motions : Motions
+        What the records are motions of.
+    """
+
+    records: Sequence[RecordPeak]
+    d0: float
+    allowed: Mapping[str, float]
+    enough: int
+    checked: bool = True
+    motions: Motions = field(default_factory=Motions)
+
+    def mean(self, *, confident: bool) -> float | None:
+        """The mean of the largest displacements [m]; None where one overturned, passed d0* or is unknown."""
+        found = self.peaks(confident=confident)
+        known = [each for each in found if each is not None and each < self.d0]
+        return sum(known) / len(found) if len(known) == len(found) else None
+
+    def peaks(self, *, confident: bool) -> list[float | None]:
+        """The largest displacement under each record [m]."""
+        return [each.peak(confident=confident) for each in self.records]
+
+    def passed(self, *, confident: bool) -> list[str]:
+        """The records that pass d0*."""
+        known = [each for each in self.records if each.known_to(confident=confident) is None]
+        pairs = [(each.name, each.peak(confident=confident)) for each in known]
+        return [name for name, d in pairs if d is None or d >= self.d0]
+
+    def unknown(self, *, confident: bool) -> list[str]:
+        """The records of unknown outcome."""
+        return [each.name for each in self.records if each.known_to(confident=confident) is not None]
+
+    def holds(self, state: str, *, confident: bool) -> bool:
+        """Whether it holds at a limit state; with an unknown outcome it does not."""
+        mean = self.mean(confident=confident)
+        return mean is not None and mean <= self.allowed[state]
+
+
+@dataclass(frozen=True, eq=False)
+class Verified(frame.Verified):
+    """What was found in one direction of rocking, with what all codes have.
+
+    Parameters
+    ----------
+    first : str
+        The limit state whose verification counts.
+    lambda_, a0, d0, M : float
+        Uplift acceleration over g; a0* [m/s2]; d0* [m]; M* [kg], None without masses.
+    exact : ExactCurve
+        The capacity curve as the mechanism moves, with the control point and FC.
+    states, straight_states : mapping of str to State
+        The limit states on the exact curve, and on the straight line.
+    methods, straight_methods : mapping of str to Method
+        What each method says on either.
+    governing : mapping of str to str
+        The method that governs at each limit state; `governs` is that at the first one.
+    dynamic : Dynamic, optional
+        What histories say.
+    """
+
+    methods: Mapping[str, Method]
+    first: str
+    lambda_: float
+    a0: float
+    d0: float
+    M: float | None
+    exact: ExactCurve
+    states: Mapping[str, State]
+    straight_states: Mapping[str, State]
+    straight_methods: Mapping[str, Method]
+    governing: Mapping[str, str]
+    dynamic: Dynamic | None = None
+
+    @property
+    def chain(self) -> Chain:
+        """What moves, with its sums."""
+        return self.exact.chain
+
+    @property
+    def counts(self) -> Method:
+        """The method that governs at the first limit state."""
+        return self.methods[self.governs]
+
+    def passes(self, state: str) -> bool | None:
+        """Whether it passes at a limit state by what governs; None where the site does not give it."""
+        held = self.methods[self.governing[state]].passed
+        return None if held is None else held or bool(self.states[state].passes)
+
+    @property
+    def passed(self) -> bool | None:
+        """Whether it passes at the first limit state."""
+        return self.passes(self.first)
+
+    @property
+    def ratio(self) -> float | None:
+        """That of displacements at the first limit state; zeta_E where the damage method governs."""
+        displaced, zeta = self.states[self.first].ratio, self.counts.zeta
+        return zeta if self.governs == "damage" and zeta is not None else displaced
+
+    def is_like(self, other: frame.Verified) -> bool:
+        """Whether another direction has the same curve; with histories none is, as the ground is not symmetric."""
+        assert isinstance(other, Verified)  # of one code
+        pairs = [(self.a0, other.a0), (self.d0, other.d0), (self.chain.e_star, other.chain.e_star)]
+        pairs += [(self.states[key].a, other.states[key].a) for key in self.states]
+        return self.dynamic is None and other.dynamic is None and all(isclose(a, b, rel_tol=AGREE) for a, b in pairs)
+
+
+@dataclass(frozen=True, eq=False)
+class Verification(frame.Verification):
+    """Verification of a structure by the Italian code."""
+
+    directions: Mapping[Direction, Verified]
+
+    @property
+    def first(self) -> str:
+        """The limit state by which directions are compared."""
+        return next(iter(self.directions.values())).first
+
+    def compared(self, direction: Direction) -> float | None:
+        """Return the ratio of displacements at the first limit state."""
+        return self.directions[direction].states[self.first].ratio

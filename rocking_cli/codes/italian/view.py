@@ -1,0 +1,223 @@
+"""A verification by the Italian code, as people and programs read it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rocking_cli import names
+from rocking_cli.codes.italian import words
+from rocking_cli.codes.italian.results import Dynamic, Method, RecordPeak, State, Verification, Verified
+from rocking_cli.codes.italian.ties import pulls
+from rocking_cli.views.verification import Showing, cited, columns
+from rocking_cli.views.view import ABSENT, Table, number
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class ItalianShowing(Showing[Verification, Verified]):
+    """How it is shown."""
+
+    def of_direction(self, found: Verification, each: Verified, where: str) -> Iterable[Table | str]:
+        """Return the capacity curve, the methods, the verdict and why the methods differ."""
+        yield _capacity(each, where)
+        yield from _pulls(each)
+        yield _methods(each)
+        yield words.verdict(each, found.first, where)
+        yield from words.differences(each, found.first)
+        yield from words.beyond_first(each, found.first)
+        yield from each.remarks
+        if each.dynamic is not None:
+            yield _records(each.dynamic)
+            yield from words.of_histories(each.dynamic, each.exact.confidence)
+
+    def of_directions(self, found: Verification) -> str:
+        """State which direction governs, by the ratios of displacements."""
+        return words.which_direction(found)
+
+    def data(self, found: Verification, each: Verified) -> dict[str, Any]:
+        """Return a direction as plain data."""
+        return _data(each)
+
+    def table(self, found: Verification) -> dict[str, Sequence[Any]]:
+        """Return a row for each direction and method."""
+        return columns(
+            ["direction", "method", "a_g [g]", "asked [g]", "zeta_E", "TR [years]", "governs"],
+            [
+                [direction.label, key, method.a_g, method.asked, method.zeta, method.return_period, key == each.governs]
+                for direction, each in found.directions.items()
+                for key, method in each.methods.items()
+            ],
+        )
+
+    def draw(self, found: Verification) -> Figure:
+        """Draw the capacity curves."""
+        from rocking_cli.codes.italian.curves import draw_verification
+
+        return draw_verification(found)
+
+
+def _capacity(each: Verified, where: str) -> Table:
+    """The capacity curve, exactly and on the straight line."""
+    clause = {line.symbol: cited(line) for line in each.workings}
+    rows = [
+        ["alpha0", number(each.chain.alpha0), "", "", clause["alpha0"]],
+        ["lambda", number(each.lambda_), "", "", ""],
+        ["e*", number(each.chain.e_star), "", "", clause["e*"]],
+        ["M*", number(each.M), "", "kg" if each.M is not None else "no masses", clause.get("M*", "")],
+        ["a0*", number(each.a0), number(each.a0), "m/s2", clause["a0*"]],
+        ["d0*", number(each.d0), number(each.d0), "m", clause["d0*"]],
+    ]
+    for name, at in each.states.items():
+        line = each.straight_states[name]
+        rows += [
+            [f"d_{name}", number(at.d), number(line.d), "m", clause[f"d_{name}"]],
+            [f"a*(d_{name})", number(at.a), number(line.a), "m/s2", clause[f"a*(d_{name})"]],
+            [f"T_{name}", number(at.T), number(line.T), "s", clause[f"T_{name}"]],
+        ]
+        if at.demand is not None:
+            rows += [
+                [f"demand at {name}", number(at.demand), number(line.demand), "m", clause[f"S_De(T_{name})"]],
+                [f"capacity/demand, {name}", number(at.ratio, 4), number(line.ratio, 4), "passes if >= 1", ""],
+            ]
+    title = f"{where}: capacity, on the exact curve and on the straight line from a0* to d0*"
+    return Table(title, ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
+
+
+def _methods(each: Verified) -> Table:
+    """Table of the capacity by each method."""
+    known = any(method.return_period is not None for method in each.methods.values())
+    rows = []
+    for key, method in each.methods.items():
+        if method.a_g is None:
+            continue
+        line = each.straight_methods[key]
+        years = [_years(method)] if known else []
+        governs = "governs" if key in each.governing.values() else ""
+        rows.append(
+            [
+                method.title,
+                *(number(each, 4) for each in (method.a_g, line.a_g, method.asked, method.zeta)),
+                *years,
+                method.clause,
+                governs,
+            ]
+        )
+    heads = [
+        "",
+        "a_g [g]\nexact\ncurve",
+        "a_g [g]\nstraight\nline",
+        "a_g [g]\ndemand",
+        "zeta_E",
+        *(["TR\n[years]"] if known else []),
+    ]
+    return Table("Capacity by method", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
+
+
+def _years(method: Method) -> str:
+    """A return period, and whether it is beyond the table."""
+    if method.return_period is None:
+        return ABSENT
+    mark = ""
+    if method.beyond and method.zeta is not None:
+        mark = ">" if method.zeta >= 1 else "<"
+    return f"{mark}{method.return_period:.0f}"
+
+
+def _records(found: Dynamic) -> Table:
+    rows = [[each.name, *(_peak(each, found, confident) for confident in (True, False))] for each in found.records]
+    return Table("Time histories: largest d [m]", ["record", "with FC", "without"], rows, numbers=(1, 2))
+
+
+def _peak(record: RecordPeak, found: Dynamic, confident: bool) -> str:
+    d, known_to = record.peak(confident=confident), record.known_to(confident=confident)
+    if known_to is not None:
+        return f"{names.UNKNOWN} after {known_to:.4g} s"
+    if d is None:
+        return "overturns"
+    return f"{d:.4g}{' past d0*' if d >= found.d0 else ''}"
+
+
+def _data(each: Verified) -> dict[str, Any]:
+    control = each.exact.control
+    periods = _return_periods(each.methods)
+    return {
+        "control": {"x": control.at.real, "y": control.at.imag, "body": control.body},
+        "alpha0": each.chain.alpha0,
+        "lambda": each.lambda_,
+        "e_star": each.chain.e_star,
+        "M_star": each.M,
+        "a0_star": each.a0,
+        "d0_star": each.d0,
+        "states": {name: _state(each, name, at) for name, at in each.states.items()},
+        **({"ties": ties} if (ties := _ties(each)) else {}),
+        "a_g": {key: method.a_g for key, method in each.methods.items() if key != "SLD"},
+        "zeta": {key: method.zeta for key, method in each.methods.items()},
+        "governs": each.governs,
+        "dynamic": _histories(each.dynamic) if each.dynamic is not None else None,
+        **({"return_period": periods} if periods else {}),
+    }
+
+
+def _state(each: Verified, name: str, at: State) -> dict[str, Any]:
+    passes = each.passes(name)
+    by = {"governs": each.governing[name] if passes is not None else None, "passes": passes}
+    return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio, **by}
+
+
+def _ties(each: Verified) -> dict[str, dict[str, float | None]]:
+    """Force [N], elongation [m] and strain of each tie, and of each force against the motion, at the limit states."""
+    found: dict[str, dict[str, float | None]] = {}
+    for key in ("force", "elongation", "strain"):
+        for name, at in each.states.items():
+            for pull in pulls(each.exact, at.d):
+                found.setdefault(pull.name, {})[f"{key}_{name}"] = getattr(pull, key)
+    return found
+
+
+def _pulls(each: Verified) -> list[Table]:
+    """Table of the ties, and of the forces against the motion, at each limit state; none if there are none."""
+    rows = [
+        [pull.name, f"d_{state}", number(pull.force / 1e3), number(pull.elongation, 4),
+         ABSENT if pull.strain is None else number(100 * pull.strain, 3)]
+        for state, at in each.states.items() for pull in pulls(each.exact, at.d)
+    ]  # fmt: skip
+    heads = ["", "at", "force\n[kN]", "elongation\n[m]", "elongation\n[%]"]
+    title = "Ties, and forces against the motion with the way of their points"
+    return [Table(title, heads, rows, numbers=(2, 3, 4))] if rows else []
+
+
+def _return_periods(methods: Mapping[str, Method]) -> dict[str, dict[str, Any]]:
+    """Of each method, where the hazard is known."""
+    known = {key: each for key, each in methods.items() if each.return_period is not None}
+    return {key: {"years": each.return_period, "beyond": each.beyond} for key, each in known.items()}
+
+
+def _histories(found: Dynamic) -> dict[str, Any]:
+    def of(confident: bool) -> dict[str, Any]:
+        return {
+            "mean": found.mean(confident=confident),
+            "past_d0": found.passed(confident=confident),
+            "unknown": found.unknown(confident=confident) if found.checked else None,
+            "holds": {state: found.holds(state, confident=confident) for state in found.allowed},
+        }
+
+    return {
+        "state": next(iter(found.allowed)),
+        "motions": found.motions.kind,
+        "floor": found.motions.floor,
+        "records": [
+            {
+                "name": each.name,
+                "d_with_FC": each.with_confidence,
+                "d_without_FC": each.without,
+                "known_to_with_FC": each.known_to_with_confidence,
+                "known_to_without_FC": each.known_to_without,
+            }
+            for each in found.records
+        ],
+        "wanted": found.enough,
+        "with_FC": of(True),
+        "without_FC": of(False),
+    }

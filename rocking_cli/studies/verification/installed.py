@@ -1,0 +1,50 @@
+"""The codes of practice that are installed, found through the entry points `rocking.codes`."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.metadata import EntryPoint
+
+from rocking_cli.errors import MechanismError
+from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.registry import Plugins
+from rocking_cli.studies.verification.code import Code
+from rocking_cli.studies.verification.site_file import Site
+
+GROUP = "rocking.codes"
+
+
+class Codes(Plugins[Code]):
+    """Codes by what site files call them. Listing names loads nothing; looking one up loads it.
+
+    Raises
+    ------
+    InputError
+        On looking up an unknown name.
+    MechanismError
+        On looking up a plugin that cannot be loaded, is no code, or has a name that two packages claim.
+    """
+
+    kind = "code"
+
+    def __init__(self) -> None:
+        super().__init__(GROUP)
+
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> Code:
+        """What was loaded, if it is a complete code of its name."""
+        if not (isinstance(loaded, type) and issubclass(loaded, Code)) or loaded.__abstractmethods__:
+            raise MechanismError(f"{origin(point)} is not a code: it must derive from Code and be complete")
+        texts = [getattr(loaded, key, None) for key in ("name", "edition")]
+        if getattr(loaded, "key", None) != point.name or not all(isinstance(each, str) for each in texts):
+            raise MechanismError(f"{origin(point)} is not a code: it needs key = {point.name!r}, a name and an edition")
+        fields = getattr(loaded, "site", None)
+        if not (isinstance(fields, type) and issubclass(fields, Site)):
+            raise MechanismError(f"{origin(point)} is not a code: its site must be a class derived from Site")
+        return loaded()
+
+
+@cache
+def codes() -> Codes:
+    """The codes there are."""
+    return Codes()
