@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, Self
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Literal, Self
 
 Standing = Literal["transcription", "code", "ours", "plain"]
 """Of a formula: of the code, and checked against a transcription of its text but not yet against its print; of the
@@ -14,6 +17,17 @@ MEANING: dict[Standing, str] = {
     "ours": "our reading, or our choice where the code leaves it open",
     "plain": "mechanics or arithmetic, which need no code",
 }
+MINUS = "−"
+MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
+"""A subscript or superscript: `d_[0]^[*]` has both."""
+AND_SO_ON = re.compile(r"([^();]+?)( \+ |; )…")
+"""A piece that is there once for each of several numbers: `({P} · {x} + …)`."""
+PLAIN = {
+    "α": "alpha", "γ": "gamma", "ζ": "zeta", "η": "eta", "θ": "theta", "κ": "kappa", "ξ": "xi", "π": "pi", "ρ": "rho",
+    "φ": "phi", "ψ": "psi", "Σ": "sum", "Δ": "D", "√": "sqrt", "·": "x", "≥": ">=", "≤": "<=", "′": "'", "²": "2",
+    "–": "-", MINUS: "-",
+}  # fmt: skip
+"""What stands for the signs of a formula where there are plain characters only."""
 
 
 class Clause(str):
@@ -28,6 +42,10 @@ class Clause(str):
         clause.transcribed = transcribed
         return clause
 
+    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, bool]]:
+        """Keep all of it in copies and in other processes."""
+        return (str(self),), {"transcribed": self.transcribed}
+
 
 @dataclass(frozen=True)
 class Working:
@@ -40,7 +58,7 @@ class Working:
     meaning : str
         What it is, in a few words.
     formula : str
-        By which formula, in plain text.
+        By which formula.
     numbers : str
         The same with numbers put in; empty where they are many.
     value : float
@@ -51,6 +69,10 @@ class Working:
         Where in the code.
     standing : {"transcription", "code", "ours", "plain"}
         How far the formula was checked, see `MEANING`; of a formula of the code its clause decides.
+    state : str
+        The limit state to which it belongs; empty if it belongs to none alone.
+    section : str
+        The part of the calculation in which it stands.
     """
 
     symbol: str
@@ -61,7 +83,128 @@ class Working:
     unit: str
     clause: str
     standing: Standing = "code"
+    state: str = ""
+    section: str = ""
 
     def __post_init__(self) -> None:
         if self.standing == "code" and isinstance(self.clause, Clause) and self.clause.transcribed:
             object.__setattr__(self, "standing", "transcription")
+
+
+def as_written(value: float) -> str:
+    """A number in a formula."""
+    return f"{value + 0.0:.6g}"
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A formula of a code, written once for every printout.
+
+    Parameters
+    ----------
+    symbol : str
+        What it gives; subscripts and superscripts as in `d_[0]^[*]`, names that differ from use to use in slots, as in
+        `T_[{state}]`.
+    text : str
+        Its right-hand side, in symbols, with the same marks and slots.
+    numbers : str
+        The same with a slot for each number; `{P} · {x} + …` is a sum over several.
+    unit : str
+        Of the result.
+    clause : str
+        Where in the code.
+    meaning : str
+        What it is, in a few words; of a code with a sheet, the key of its texts.
+    standing : {"code", "ours", "plain"}
+        How far it was checked, see `MEANING`.
+    """
+
+    symbol: str
+    text: str = ""
+    numbers: str = ""
+    unit: str = ""
+    clause: str = ""
+    meaning: str = field(default="", kw_only=True)
+    standing: Standing = field(default="code", kw_only=True)
+
+    def working(
+        self,
+        value: float,
+        names: Mapping[str, Any] | None = None,
+        /,
+        write: Callable[[float], str] = as_written,
+        marks: Callable[[str], str] = str,
+        **numbers: Any,
+    ) -> Working:
+        """A line of a calculation by this formula.
+
+        Parameters
+        ----------
+        value : float
+            The result.
+        names : mapping of str to str, optional
+            What is in the slots of symbol, text, unit and meaning; `state` is the limit state of the line.
+        write : callable
+            How a number is written.
+        marks : callable
+            How a formula is written with the decimal marks of a language.
+        **numbers
+            What is in the slots of the numbers: a number, several for a sum, or a text as it is.
+        """
+        names = names or {}
+        return Working(
+            self.symbol.format(**names),
+            self.meaning.format(**names),
+            marks(self.text.format(**names)),
+            put(marks(self.numbers), numbers, write),
+            value,
+            self.unit.format(**names),
+            self.clause,
+            self.standing,
+            names.get("state", ""),
+        )
+
+
+def put(numbers: str, given: Mapping[str, Any], write: Callable[[float], str]) -> str:
+    """A formula with numbers in its slots, those below zero and with a power of ten in parentheses."""
+
+    def held(value: Any) -> str:
+        text = value if isinstance(value, str) else write(value)
+        return f"({text})" if not isinstance(value, str) and re.search(r"[-−^]", text) else text
+
+    def repeated(found: re.Match[str]) -> str:
+        piece, between = found[1].strip(), found[2]
+        lists = {name: given[name] for name in re.findall(r"{(\w+)}", piece)}
+        each = [piece.format(**{name: held(value) for name, value in zip(lists, row, strict=True)})
+                for row in zip(*lists.values(), strict=True)]  # fmt: skip
+        return found[1][: len(found[1]) - len(found[1].lstrip())] + between.join(each)
+
+    single = {name: held(value) for name, value in given.items() if not isinstance(value, list | tuple)}
+    return AND_SO_ON.sub(repeated, numbers).format(**single)
+
+
+def in_plain(text: str) -> str:
+    """A formula, or a text with symbols, in plain characters: `alpha0 g/(e* FC)`, `T_SLV`."""
+
+    def mark(found: re.Match[str]) -> str:
+        below, what = found[1] == "_", found[2]
+        return what if what == "*" or (below and what.isdigit()) else f"{found[1]}{what}"
+
+    return "".join(PLAIN.get(sign, sign) for sign in MARK.sub(mark, text))
+
+
+class Later(Sequence[Working]):
+    """Workings that are written when they are first looked at."""
+
+    def __init__(self, write: Callable[[], Sequence[Working]]) -> None:
+        self._write = write
+
+    @cached_property
+    def _written(self) -> Sequence[Working]:
+        return self._write()
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._written[place]
+
+    def __len__(self) -> int:
+        return len(self._written)

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import date
 from functools import cached_property
 from math import isnan
 from typing import Any, NamedTuple
 
 from rocking_cli.studies.verification.told import WITH_COMMA, filled, said_in
+from rocking_cli.studies.verification.working import MINUS, Formula, Working
 from rocking_cli.views.sheet import texts_en, texts_it
 
 DIGITS = 6  # significant: recomputed from printed numbers, a result agrees to five
 ABSENT = "–"
-MINUS = "−"
 
 
 class Table(NamedTuple):
@@ -77,11 +77,17 @@ class Language:
             text = text.replace(".", ",")
         return f"{text} · 10^[{str(int(power)).replace('-', MINUS)}]" if power else text
 
-    def put(self, formula: str, **numbers: float) -> str:
-        """A formula with numbers in its slots, those below zero in parentheses."""
-        written = {name: self.number(value) for name, value in numbers.items()}
-        held = {name: f"({text})" if MINUS in text or "^" in text else text for name, text in written.items()}
-        return self.formula(formula).format(**held)
+    def step(
+        self, formula: Formula, value: float, names: Mapping[str, Any] | None = None, /, **numbers: Any
+    ) -> Working:
+        """A line of a calculation by a formula of the code, in this language; see `Formula.working`."""
+        found = formula.working(value, names, write=self.number, marks=self.formula, **numbers)
+        return replace(
+            found,
+            meaning=self.say(found.meaning, **(names or {})),
+            unit=self.texts.get(f"unit {found.unit}", found.unit),
+            clause=self.texts.get(f"clause {found.clause}", found.clause),
+        )
 
     def formula(self, formula: str) -> str:
         """The numbers that a formula itself has, such as 1.68, as the language writes them."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
+from rocking_cli.studies.verification.working import MARK
+
 Place = Literal["", "sub", "sup"]
-MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
 
 
 class Run(NamedTuple):

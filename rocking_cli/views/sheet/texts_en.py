@@ -27,7 +27,7 @@ TEXTS = {
     "symbol": "symbol",
     "value": "value",
     "unit": "unit",
-    "years": "years",
+    "unit years": "years",
     # how to read it
     "reading": "How to read it",
     "per_kilogram": "The file gives no masses: weights are per kilogram of the whole structure, in N/kg.",

@@ -52,7 +52,7 @@ TEXTS = {
     "symbol": "simbolo",
     "value": "valore",
     "unit": "unità",
-    "years": "anni",
+    "unit years": "anni",
     # how to read it
     "reading": "Come leggere la relazione",
     "per_kilogram": "Il file non assegna le masse: i pesi sono per chilogrammo dell'intera struttura, in N/kg.",

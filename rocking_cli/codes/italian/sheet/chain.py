@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.displaced import Displaced, Moved
@@ -14,7 +14,6 @@ from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Steps
 from rocking_cli.views.sheet.language import Language
 
-CLAUSE = clauses.ALPHA0
 ROUNDING = 1e-12  # of the size of a thing: what is smaller is none
 NONE = 1e-9  # of what makes up a sum: what is left of it is none
 
@@ -90,34 +89,16 @@ def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
     for k, block in enumerate(chain.blocks, 1):
         own = [each for each in chain.weights if each.spot.body in block.bodies]
         carried, inertial = ([scale.weight(getattr(each, key)) for each in own] for key in ("carried", "inertial"))
-        which = " + ".join(block.bodies)
-        for symbol, values, total, what in (
-            (f"P_[{k}]", carried, scale.weight(block.P), "P"), (f"PQ_[{k}]", inertial, scale.weight(block.PQ), "PQ"),
-        ):  # fmt: skip
-            put = _added(say, values)
-            yield Working(symbol, say.say(f"of_block_{what}", block=which), "Σ", put, total, scale.unit, CLAUSE)
-        shares = inertial if block.PQ else carried
+        names = {"k": k, "block": " + ".join(block.bodies), "unit": scale.unit}
+        yield say.step(F.P, scale.weight(block.P), names, P=carried)
+        yield say.step(F.PQ, scale.weight(block.PQ), names, P=inertial)
         for axis, at in (("x", block.at.real), ("y", block.at.imag)):
             places = [each.spot.at.real if axis == "x" else each.spot.at.imag for each in own]
-            put = _mean(say, shares, places)
-            symbol, formula = f"{axis}_[G{k}]", f"Σ (P+Q) {axis}/Σ (P+Q)"
-            yield Working(symbol, say.say("G", block=which), formula, put, scale.near(at), "m", "", "plain")
+            yield say.step(F.G, scale.near(at), {**names, "axis": axis}, P=inertial if block.PQ else carried, x=places)
         if block.P and block.P != block.PQ:
             places = [each.spot.at.real for each in own]
             value = sum(p * x for p, x in zip(carried, places, strict=True)) / scale.weight(block.P)
-            put, formula = _mean(say, carried, places), "Σ P x/Σ P"
-            yield Working(f"x_[P{k}]", say.say("GP", block=which), formula, put, scale.near(value), "m", "", "plain")
-
-
-def _added(say: Language, values: Sequence[float]) -> str:
-    return say.put(" + ".join(f"{{v{k}}}" for k in range(len(values))), **{f"v{k}": v for k, v in enumerate(values)})
-
-
-def _mean(say: Language, shares: Sequence[float], places: Sequence[float]) -> str:
-    given = {f"s{k}": s for k, s in enumerate(shares)} | {f"x{k}": x for k, x in enumerate(places)}
-    some = range(len(shares))
-    put = " + ".join(f"{{s{k}}} · {{x{k}}}" for k in some)
-    return say.put(f"({put})/({' + '.join(f'{{s{k}}}' for k in some)})", **given)
+            yield say.step(F.GP, scale.near(value), names, P=carried, x=places)
 
 
 def at_work(say: Language, position: Displaced, scale: Scale) -> Grid:
@@ -167,88 +148,81 @@ def held(say: Language, position: Displaced, scale: Scale) -> list[Item]:
     return [Grid(say.say("held"), heads, rows, (1, 2, 3))]
 
 
-def _sum_over(say: Language, position: Displaced, scale: Scale, kind: str) -> tuple[str, float]:
-    """The numbers of a sum over the blocks, and its value: P y', (P+Q) x' or (P+Q) x'^2."""
-    numbers: dict[str, float] = {}
-    terms = []
-    total = most = 0.0
-    for k, each in enumerate(position.blocks):
-        force = each.block.P if kind == "Py" else each.block.PQ
-        way = each.dy if kind == "Py" else each.dx
-        numbers |= {f"p{k}": scale.weight(force), f"w{k}": scale.near(way)}
-        terms.append(f"{{p{k}}} · {{w{k}}}" + ("^[2]" if kind == "PQxx" else ""))
-        total += scale.weight(force) * way ** (2 if kind == "PQxx" else 1)
-        most += abs(scale.weight(force) * scale.length)
-    return say.put(" + ".join(terms), **numbers), 0.0 if abs(total) < NONE * most else total
+@dataclass(frozen=True)
+class Sums:
+    """The sums over the blocks at a position, as they are printed.
+
+    Parameters
+    ----------
+    position : Displaced
+    scale : Scale
+    """
+
+    position: Displaced
+    scale: Scale
+
+    @property
+    def carried(self) -> list[float]:
+        """P of each block."""
+        return [self.scale.weight(each.block.P) for each in self.position.blocks]
+
+    @property
+    def inertial(self) -> list[float]:
+        """P + Q of each block."""
+        return [self.scale.weight(each.block.PQ) for each in self.position.blocks]
+
+    @property
+    def up(self) -> list[float]:
+        """y' of each block."""
+        return [self.scale.near(each.dy) for each in self.position.blocks]
+
+    @property
+    def sideways(self) -> list[float]:
+        """x' of each block."""
+        return [self.scale.near(each.dx) for each in self.position.blocks]
+
+    @property
+    def works(self) -> list[float]:
+        """What each force and tie takes."""
+        return [self.scale.weight(each.work) for each in self.position.held]
+
+    def over(self, weights: list[float], ways: list[float], power: int = 1) -> float:
+        """A sum of weights times ways; without rounding about zero."""
+        total = sum(weight * way**power for weight, way in zip(weights, ways, strict=True))
+        most = sum(abs(weight * self.scale.length) for weight in weights)
+        return 0.0 if abs(total) < NONE * most else total
 
 
-def lifting(say: Language, position: Displaced, scale: Scale, at: str = "") -> Iterator[Working]:
-    """Steps to V' at a position, its works added up: `at` names it."""
-    unit = f"{scale.unit} m"
-    put, value = _sum_over(say, position, scale, "Py")
-    yield Working(f"ΣPy′{at}", say.say("Py"), "Σ P y′", put, value, unit, CLAUSE)
-    if position.held:
-        works = [scale.weight(each.work) for each in position.held]
-        yield Working(f"L{at}", say.say("L"), "−Σ F r′ + Σ N L′", _added(say, works), sum(works), unit, CLAUSE)
-    if position.rest:
-        yield Working(f"V_[m]{at}", say.say("V_m"), "", "", scale.weight(position.rest), unit, "", "plain")
-
-
-def driving(say: Language, position: Displaced, scale: Scale, at: str = "") -> Iterator[Working]:
-    """Steps to the sum of (P+Q) x' at a position."""
-    unit = f"{scale.unit} m"
-    put, value = _sum_over(say, position, scale, "PQx")
-    yield Working(f"Σ(P+Q)x′{at}", say.say("PQx"), "Σ (P+Q) x′", put, value, unit, CLAUSE)
-    if position.more:
-        yield Working(f"B_[m]{at}", say.say("B_m"), "", "", scale.weight(position.more), unit, "", "plain")
-
-
-def multiplier(say: Language, position: Displaced, scale: Scale, symbol: str, at: str = "") -> Iterator[Working]:
+def multiplier(say: Language, position: Displaced, scale: Scale, symbol: str) -> Iterator[Working]:
     """Steps to alpha at a position."""
-    yield from lifting(say, position, scale, at)
-    yield from driving(say, position, scale, at)
-    _, lifted = _sum_over(say, position, scale, "Py")
-    _, driven = _sum_over(say, position, scale, "PQx")
-    numbers, over, under = {"P": lifted, "x": driven}, ["P"], ["x"]
-    formula, below = ["Σ P y′"], ["Σ (P+Q) x′"]
+    sums, unit = Sums(position, scale), {"unit": scale.unit}
+    lifted, driven = sums.over(sums.carried, sums.up), sums.over(sums.inertial, sums.sideways)
+    over, under = {F.PY.text: lifted}, {F.PQX.text: driven}
+    yield say.step(F.PY, lifted, unit, P=sums.carried, y=sums.up)
     if position.held:
-        numbers["L"] = sum(scale.weight(each.work) for each in position.held)
-        over.append("L")
-        formula.append("L")
+        over["L"] = sum(sums.works)
+        yield say.step(F.HELD, over["L"], unit, L=sums.works)
     if position.rest:
-        numbers["V"] = scale.weight(position.rest)
-        over.append("V")
-        formula.append("V_[m]")
+        over["V_[m]"] = scale.weight(position.rest)
+        yield say.step(F.V_M, over["V_[m]"], unit)
+    yield say.step(F.PQX, driven, unit, P=sums.inertial, x=sums.sideways)
     if position.more:
-        numbers["B"] = scale.weight(position.more)
-        under.append("B")
-        below.append("B_[m]")
-    put = say.put(f"({_slots(over)})/({_slots(under)})", **numbers)
-    alpha = position.alpha
+        under["B_[m]"] = scale.weight(position.more)
+        yield say.step(F.B_M, under["B_[m]"], unit)
     most = sum(abs(each.block.P) for each in position.blocks) * scale.length / abs(position.driven)
-    value = 0.0 if abs(alpha) < NONE * most else alpha
-    text = f"({' + '.join(formula)})/({' + '.join(below)})"
-    yield Working(symbol, say.say("alpha"), text, put, value, "", CLAUSE)
-
-
-def _slots(names: Sequence[str]) -> str:
-    return " + ".join(f"{{{name}}}" for name in names)
+    value = 0.0 if abs(position.alpha) < NONE * most else position.alpha
+    names = {"symbol": symbol, "over": " + ".join(over), "under": " + ".join(under)}
+    yield say.step(F.ALPHA, value, names, V=[*over.values()], B=[*under.values()])
 
 
 def _sums(say: Language, chain: Chain, rest: Displaced, scale: Scale) -> Iterator[Working]:
-    unit = scale.unit
+    sums, names = Sums(rest, scale), {"unit": scale.unit}
     yield from multiplier(say, rest, scale, "α_[0]")
-    inertial = [scale.weight(block.PQ) for block in chain.blocks]
-    total = scale.weight(chain.inertial)
-    yield Working("Σ(P+Q)", say.say("PQ"), "Σ (P+Q)", _added(say, inertial), total, unit, CLAUSE)
-    put, second = _sum_over(say, rest, scale, "PQxx")
-    yield Working("Σ(P+Q)x′^[2]", say.say("PQxx"), "Σ (P+Q) x′^[2]", put, second, f"{unit} m²", clauses.E_STAR)
-    first = scale.weight(chain.first)
-    put = say.put("{a}^[2]/({b} · {c})", a=first, b=total, c=second)
-    formula = "[Σ (P+Q) x′]^[2]/(Σ (P+Q) · Σ (P+Q) x′^[2])"
-    yield Working("e^[*]", say.say("e"), formula, put, chain.e_star, "", clauses.E_STAR)
+    first, total = scale.weight(chain.first), scale.weight(chain.inertial)
+    yield say.step(F.SUM_PQ, total, names, P=sums.inertial)
+    second = sums.over(sums.inertial, sums.sideways, 2)
+    yield say.step(F.PQXX, second, names, P=sums.inertial, x=sums.sideways)
+    yield say.step(F.E_STAR, chain.e_star, first=first, PQ=total, second=second)
     if chain.mechanism.has_mass:
         g = chain.mechanism.gravity
-        put = say.put("1000 · {e} · {PQ}/{g}", e=chain.e_star, PQ=total, g=g)
-        mass = chain.e_star * chain.inertial / g
-        yield Working("M^[*]", say.say("M"), "e^[*] Σ (P+Q)/g", put, mass, "kg", say.say("not_in_edition"), "ours")
+        yield say.step(F.M_STAR, chain.e_star * chain.inertial / g, e=chain.e_star, PQ=total, g=g)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
-from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum, Spectrum
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Method, Verified
@@ -103,49 +103,45 @@ class Methods:
 
     def _items(self, name: str, method: Method, asked: Asked, more: str = "") -> Iterator[Item]:
         """Yield the capacity a_g, its check, zeta_E, and the return period."""
-        say, spectrum = self.say, self.ground.spectrum(asked.state)
-        assert spectrum is not None and method.a_g is not None and method.asked is not None  # its state is given
+        spectrum = self.ground.spectrum(asked.state)
+        assert spectrum is not None and method.a_g is not None  # its state is given
         symbol = f"a_[g,{name.replace('_SLC', '')}{more}]"
-        yield from self._solved(symbol, say.say("a_g_method"), spectrum, asked, method.a_g, method.clause)
-        put = say.put("{a}/{b}", a=method.a_g, b=method.asked)
-        zeta = Working(f"ζ_[E{more}]", say.say("zeta", state=asked.state), f"{symbol}/a_[g]", put, method.zeta or 0.0,
-                       "", clauses.ZETA)  # fmt: skip
-        yield Steps([zeta])
+        names = {"symbol": symbol, "what": "a_g_method", "state": asked.state, "asked": "a_[g]", "more": more}
+        yield from self._solved(names, spectrum, asked, method.a_g, method.clause)
+        yield Steps([self._zeta(method, names)])
         yield from self._lasts(method, asked, more)
 
+    def _zeta(self, method: Method, names: Mapping[str, str]) -> Working:
+        return self.say.step(F.ZETA, method.zeta or 0.0, names, a=method.a_g, b=method.asked)
+
     def _solved(
-        self, symbol: str, what: str, spectrum: Spectrum, asked: Asked, a_g: float, clause: str
+        self, names: Mapping[str, str], spectrum: Spectrum, asked: Asked, a_g: float, clause: str
     ) -> Iterator[Item]:
         """Yield the a_g at which a demand equals a capacity, and its check if it was found by iteration."""
-        say, own = self.say, self._demand(spectrum, asked)
+        say, own, found = self.say, self._demand(spectrum, asked), {**names, "capacity": asked.name}
         if is_close(a_g, spectrum.ag * asked.capacity / own):
-            put = say.put("{ag} · {c}/{d}", ag=spectrum.ag, c=asked.capacity, d=own)
             under = f"({asked.demand})" if " " in asked.demand else asked.demand
-            yield Steps([Working(symbol, what, f"a_[g] · {asked.name}/{under}", put, a_g, "g", clause)])
+            numbers = {"ag": spectrum.ag, "c": asked.capacity, "d": own}
+            yield Steps([say.step(replace(F.CAPACITY, clause=clause), a_g, {**found, "demand": under}, **numbers)])
             return
-        formula = f"{asked.demand}(a_[g]) = {asked.name}"
-        yield Steps([Working(symbol, say.say("iterated", what=what), formula, "", a_g, "g", clause)])
+        yield Steps([say.step(replace(F.CAPACITY_FOUND, clause=clause), a_g, {**found, "demand": asked.demand})])
         yield Sentence(say.say("check", state=asked.state))
         yield Steps(list(self._checked(spectrum.with_ag(a_g), asked)))
 
     def _linear(self, method: Method) -> Iterator[Item]:
         """Yield q times the a_g at which rocking starts at SLD, and its zeta_E and return period at SLV."""
         say, ground, q = self.say, self.ground, self.ground.site.q
-        assert method.a_g is not None and method.asked is not None  # SLV is always given
+        assert method.a_g is not None  # SLV is always given
         asked = self._activation(ground.state_of_activation)
-        what, start = say.say("a_g_start", state=asked.state), method.a_g / q
         if ground.of_activation != ground.spectrum(asked.state):  # the ground of SLV under the mode of SLD
             yield Sentence(say.say("mode_of_SLD"))
             yield Steps(list(self._checked(ground.of_activation, asked)))
-        yield from self._solved(
-            "a_[g,0]", what, ground.of_activation, asked, start, self.found.methods["damage"].clause
-        )
-        put = say.put("{q} · {a}", q=q, a=start)
-        linear = Working("a_[g,linear]", say.say("a_g_method"), "q · a_[g,0]", put, method.a_g, "g", method.clause)
-        put = say.put("{a}/{b}", a=method.a_g, b=method.asked)
-        formula = "a_[g,linear]/a_[g,SLV]"
-        zeta = Working("ζ_[E]", say.say("zeta", state="SLV"), formula, put, method.zeta or 0.0, "", clauses.ZETA)
-        yield Steps([linear, zeta])
+        start, damage = method.a_g / q, self.found.methods["damage"]
+        names = {"symbol": "a_[g,0]", "what": "a_g_start", "state": asked.state}
+        yield from self._solved(names, ground.of_activation, asked, start, damage.clause)
+        linear = say.step(F.LINEAR, method.a_g, q=q, a=start)
+        names = {"symbol": "a_[g,linear]", "asked": "a_[g,SLV]", "state": "SLV", "more": ""}
+        yield Steps([linear, self._zeta(method, names)])
         yield from self._lasts(method, Asked("SLV", "a_[g,linear]", method.a_g, "g", "a_[g]"), "")
 
     def _checked(self, spectrum: Spectrum, asked: Asked) -> Iterator[Working]:
@@ -166,12 +162,10 @@ class Methods:
         say, TR, hazard = self.say, method.return_period, self.ground.hazard
         if TR is None or hazard is None:
             return
-        years = say.say("years")
         if method.beyond:
             yield Sentence(say.say("beyond_long" if (method.zeta or 0) >= 1 else "beyond_short", TR=say.number(TR)))
             return
-        formula = f"{asked.demand}(T_[R]) = {asked.name}"
-        yield Steps([Working(f"T_[R{more}]", say.say("TR_capacity"), formula, "", TR, years, clauses.RETURN_PERIOD)])
+        yield Steps([say.step(F.LASTS, TR, {"more": more, "demand": asked.demand, "capacity": asked.name})])
         yield Sentence(say.say("check_TR"))
         spectrum = self.ground.at_return_period(TR, asked.state)
         rows = list(hazard_at(say, hazard, TR))

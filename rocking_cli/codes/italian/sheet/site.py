@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import log
 
-from rocking_cli.codes.italian import clauses
-from rocking_cli.codes.italian.demand import DAMPING, GroundSpectrum
+from rocking_cli.codes.italian import formulas as F
+from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.hazard import (
     LONGEST,
@@ -19,6 +19,7 @@ from rocking_cli.codes.italian.hazard import (
     return_period,
     soil_factor,
 )
+from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.codes.italian.site import SIZES, Element, Shaking
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -26,14 +27,10 @@ from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
 from rocking_cli.views.sheet.language import Language
 
-STATES = ("SLD", "SLV", "SLC")
-ON_ROCK = (
-    ("a_[g]", "ag", "g", "a_[g,#]"),
-    ("F_[0]", "F0", "", "F_[0,#]"),
-    ("T_[C]^[*]", "TC", "s", "T_[C,#]^[*]"),
-)
-"""What the rows of a hazard table hold: symbol, name, unit, and symbol in a row on either side."""
+STATES = ("SLD", *(rule.state for rule in RULES))
 SYMBOLS = {"ag": ("a_[g]", "g"), "F0": ("F_[0]", ""), "TC": ("T_[C]", "s"), "S": ("S", "")}
+OTHERS = {"VN": ("V_[N]", "years"), "CU": ("C_[U]", ""), "T0": ("T_[0]", "s")}
+OF_FLOOR = {"z": ("z", "m"), "H": ("H", "m"), "n": ("n", "")}
 
 
 def part(say: Language, ground: Ground) -> Part:
@@ -42,32 +39,39 @@ def part(say: Language, ground: Ground) -> Part:
     return Part("site", say.say("site"), [_given(say, ground)], [_of_state(say, ground, each) for each in states])
 
 
+def given(say: Language, ground: Ground) -> Iterator[Working]:
+    """What the file says that has a place in the code."""
+    site = ground.site
+    yield say.step(F.FC, site.FC)
+    yield say.step(F.Q, site.q)
+    for state in STATES:
+        known = ground.spectrum(state) is not None or getattr(site.floor, state, None) is not None
+        if site.floor is not None and known:
+            mode = site.floor.mode(state)
+            yield say.step(F.T1, mode.T1, {"state": state})
+            yield say.step(F.XI1, mode.xi1, {"state": state})
+
+
 def _given(say: Language, ground: Ground) -> Grid:
     """What the file says, beside tables."""
     site = ground.site
-    rows = [["FC", say.say("given_FC"), say.number(site.FC), ""], ["q", say.say("given_q"), say.number(site.q), ""]]
-    for state, given in (("SLV", site), ("SLC", site.SLC), ("SLD", site.SLD)):
-        rows += _sizes(say, state, given)
-    for key, symbol, unit in (("VN", "V_[N]", "years"), ("CU", "C_[U]", ""), ("T0", "T_[0]", "s")):
+    FC, q, *modes = ([each.symbol, each.meaning, say.number(each.value), each.unit] for each in given(say, ground))
+    rows = [FC, q]
+    for state, shaking in (("SLV", site), ("SLC", site.SLC), ("SLD", site.SLD)):
+        rows += _sizes(say, state, shaking)
+    for key, (symbol, unit) in OTHERS.items():
         value = getattr(site, key)
         if value is not None:
-            rows.append(
-                [symbol, say.say(f"given_{key}"), say.number(value), say.say(unit) if unit == "years" else unit]
-            )
+            rows.append([symbol, say.say(f"given_{key}"), say.number(value), say.texts.get(f"unit {unit}", unit)])
     if site.soil is not None:
         rows.append(["", say.say("given_soil"), site.soil, ""])
     if ground.hazard is not None:
         rows.append(["", say.say("given_topography"), site.topography, ""])
     if site.floor is not None:
-        for key, symbol, unit in (("z", "z", "m"), ("H", "H", "m"), ("n", "n", "")):
+        for key, (symbol, unit) in OF_FLOOR.items():
             rows.append([symbol, say.say(f"given_{key}"), say.number(float(getattr(site.floor, key))), unit])
-        for state in STATES:
-            if ground.spectrum(state) is None and getattr(site.floor, state, None) is None:
-                continue
-            mode = site.floor.mode(state)
-            rows.append(["T_[1]", say.say("given_T1", state=state), say.number(mode.T1), "s"])
-            rows.append(["ξ_[1]", say.say("given_xi1", state=state), say.number(mode.xi1), ""])
-    return Grid(say.say("given"), [say.say(key) for key in ("symbol", "quantity", "value", "unit")], rows, (2,))
+    heads = [say.say(key) for key in ("symbol", "quantity", "value", "unit")]
+    return Grid(say.say("given"), heads, [*rows, *modes], (2,))
 
 
 def _sizes(say: Language, state: str, given: Shaking | None) -> Iterator[list[str]]:
@@ -94,29 +98,21 @@ def _of_state(say: Language, ground: Ground, state: str) -> Part:
 
 def _own_period(say: Language, one: Element) -> Working:
     """The period of an element that is free to vibrate."""
-    put = "{k} · {L}/{t} · {L} · √({w}/({E} · {g}))"
     L, t = one.size
-    put = say.put(put, k=one.kappa, L=L, t=t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
-    return Working("T_[0]", say.say("given_T0"), "κ (L/t) L √(w/(E g))", put, one.period, "s", clauses.OWN_PERIOD)
+    return say.step(F.OWN_PERIOD, one.period, kappa=one.kappa, L=L, t=t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
 
 
 def _of_life(say: Language, ground: Ground, state: str) -> Iterator[Working]:
     """The return period of a limit state, and the ground at it."""
-    site, TR = ground.site, ground.return_period(state)
-    if ground.hazard is None or TR is None or site.VN is None or site.CU is None:
+    site, TR, hazard = ground.site, ground.return_period(state), ground.hazard
+    if hazard is None or TR is None or site.VN is None or site.CU is None:
         return
     life, P = site.VN * site.CU, PROBABILITY[state]
-    put = say.put("{VN} · {CU}", VN=site.VN, CU=site.CU)
-    yield Working("V_[R]", say.say("VR"), "V_[N] C_[U]", put, life, say.say("years"), clauses.REFERENCE_LIFE)
-    bounds = {"least": max(SHORTEST, ground.hazard.table[0][0]), "most": min(LONGEST, ground.hazard.table[-1][0])}
-    put, formula = "−{VR}/ln(1 − {P})", "−V_[R]/ln(1 − P)"
-    if not is_close(return_period(life, state), TR):
-        put = f"max({{least}}; min({{most}}; {put}))"
-    put = say.put(put, VR=life, P=P, **bounds)
-    yield Working(
-        "T_[R]", say.say("TR", state=state, percent=100 * P), formula, put, TR, say.say("years"), clauses.RETURN_PERIOD
-    )
-    yield from hazard_at(say, ground.hazard, TR)
+    yield say.step(F.REFERENCE_LIFE, life, VN=site.VN, CU=site.CU)
+    formula = F.RETURN_PERIOD if is_close(return_period(life, state), TR) else F.RETURN_PERIOD_BOUND
+    first, last = max(SHORTEST, hazard.table[0][0]), min(LONGEST, hazard.table[-1][0])
+    yield say.step(formula, TR, {"state": state, "percent": 100 * P}, VR=life, P=P, first=first, last=last)
+    yield from hazard_at(say, hazard, TR)
 
 
 def is_close(one: float, other: float) -> bool:
@@ -130,15 +126,10 @@ def hazard_at(say: Language, hazard: Hazard, TR: float) -> Iterator[Working]:
     k = min(next((k for k, row in enumerate(hazard.table[1:]) if row[0] >= TR), last), last)
     low, high = hazard.table[k], hazard.table[k + 1]
     r = log(TR / low[0]) / log(high[0] / low[0])
-    put = say.put("ln({T}/{a})/ln({b}/{a})", T=TR, a=low[0], b=high[0])
-    formula = "ln(T_[R]/T_[R,a])/ln(T_[R,b]/T_[R,a])"
-    yield Working("r", say.say("r"), formula, put, r, "", clauses.HAZARD)
+    yield say.step(F.BETWEEN, r, T=TR, a=low[0], b=high[0])
     found = hazard.parameters(TR)
-    for j, (symbol, key, unit, row) in enumerate(ON_ROCK, 1):
-        put = say.put("{a} · ({b}/{a})^[{r}]", a=low[j], b=high[j], r=r)
-        low_row, high_row = (row.replace("#", which) for which in "ab")
-        formula = f"{low_row} ({high_row}/{low_row})^[r]"
-        yield Working(symbol, say.say(f"rock_{key}"), formula, put, found[j - 1], unit, clauses.HAZARD)
+    for j, (formula, value) in enumerate(zip(F.ON_ROCK, found, strict=True), 1):
+        yield say.step(formula, value, a=low[j], b=high[j], r=r)
     yield from _on_soil(say, hazard, hazard.spectrum(TR), found[2])
 
 
@@ -146,22 +137,20 @@ def _on_soil(say: Language, hazard: Hazard, spectrum: GroundSpectrum, TC_star: f
     first, second, least, most, factor, power = SOILS[hazard.soil]
     S_S, S_T = soil_factor(hazard.soil, spectrum.F0, spectrum.ag), TOPOGRAPHY[hazard.topography]
     C_C = corner_factor(hazard.soil, TC_star)
-    if second:
-        put = say.put(
-            "max({least}; min({most}; {first} − {second} · {F0} · {ag}))",
-            first=first, second=second, least=least, most=most, F0=spectrum.F0, ag=spectrum.ag,
-        )  # fmt: skip
-        formula = say.formula(f"{least:.3g} ≤ {first:.2f} − {second:.2f} F_[0] a_[g]/g ≤ {most:.3g}")
-    else:
-        formula, put = "1", "1"
-    yield Working("S_[S]", say.say("S_S", soil=hazard.soil), formula, put, S_S, "", clauses.SOIL)
-    put = say.put("{S_S} · {S_T}", S_S=S_S, S_T=S_T)
-    yield Working("S", say.say("S"), "S_[S] S_[T]", put, S_S * S_T, "", clauses.S)
-    formula, put = ("1", "1")
-    if power:
-        exponent = say.formula(f"{power:.2f}".replace("-", "−"))
-        formula = say.formula(f"{factor:.2f} (T_[C]^[*])") + f"^[{exponent}]"
-        put = say.put("{factor} · {T}", factor=factor, T=TC_star) + f"^[{exponent}]"
-    yield Working("C_[C]", say.say("C_C", soil=hazard.soil), formula, put, C_C, "", clauses.SOIL)
-    put = say.put("{C} · {T}", C=C_C, T=TC_star)
-    yield Working("T_[C]", say.say("TC"), "C_[C] T_[C]^[*]", put, spectrum.TC, "s", clauses.TC)
+    sizes = {"least": least, "most": most, "first": first, "second": second}
+    names = {key: f"{value:.2f}" if key in ("first", "second") else f"{value:.3g}" for key, value in sizes.items()}
+    names |= {"soil": hazard.soil, "factor": f"{factor:.2f}", "power": f"{power:.2f}".replace("-", "−")}
+    yield say.step(F.SOIL if second else F.SOIL_A, S_S, names, F0=spectrum.F0, ag=spectrum.ag, **sizes)
+    yield say.step(F.S, S_S * S_T, S_S=S_S, S_T=S_T)
+    corner = F.CORNER if power else F.CORNER_A
+    yield say.step(corner, C_C, names, factor=factor, T=TC_star, power=say.formula(names["power"]))
+    yield say.step(F.TC, spectrum.TC, C=C_C, T=TC_star)
+
+
+def amplifications(say: Language, ground: Ground) -> Iterator[Working]:
+    """A of a floor at each limit state that the site gives."""
+    damping = {rule.state: rule.damping for rule in RULES}
+    for state in STATES:
+        spectrum = ground.spectrum(state)
+        if isinstance(spectrum, FloorSpectrum):
+            yield spectra.amplified(say, spectrum, damping.get(state, DAMPING), state)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.codes.italian import clauses
+from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.displaced import Displaced
 from rocking_cli.codes.italian.ground import Ground
@@ -57,81 +57,67 @@ class Writer:
 
     def _ends(self) -> Iterator[Item]:
         """a0* and d0*."""
-        say, curve, g = self.say, self.curve, self.curve.chain.mechanism.gravity
-        rows = [self._accelerated("a_[0]^[*]", "α_[0]", curve.chain.alpha0, curve.a0, say.say("a0"), g)]
-        yield Steps([*rows, *self._control()])
+        say, curve = self.say, self.curve
+        a0 = say.step(F.A0, curve.a0, **self._accelerated(curve.chain.alpha0))
+        yield Steps([a0, self._control()])
         end = Displaced(curve, curve.end)
-        yield Steps([Working("φ_[0]", say.say("phi_0"), "α(φ) = 0", "", curve.end, "rad", clauses.D)])
+        yield Steps([say.step(F.PHI_0, curve.end)])
         yield chains.at_work(say, end, self.scale)
         yield from chains.held(say, end, self.scale)
         rows = list(chains.multiplier(say, end, self.scale, "α(φ_[0])"))
-        yield Steps([*rows, *self._moved(end, "φ_[0]", "d_[0]^[*]", say.say("d0"))])
+        yield Steps([*rows, *self._moved(end, {"at": "φ_[0]", "symbol": "d_[0]^[*]", "what": "d0"})])
 
-    def _accelerated(self, symbol: str, name: str, alpha: float, value: float, what: str, g: float) -> Working:
-        """a* from a multiplier."""
+    def _accelerated(self, alpha: float) -> dict[str, float]:
+        """What a* is computed from, by a multiplier."""
         chain, FC = self.curve.chain, self.curve.confidence
-        put = self.say.put("{alpha} · {g}/({e} · {FC})", alpha=alpha, g=g, e=chain.e_star, FC=FC)
-        return Working(symbol, what, f"{name} g/(e^[*] FC)", put, value, "m/s²", clauses.A_STAR)
+        return {"alpha": alpha, "g": chain.mechanism.gravity, "e": chain.e_star, "FC": FC}
 
-    def _control(self) -> Iterator[Working]:
+    def _control(self) -> Working:
         """x_C' of the control point."""
-        say, curve, scale = self.say, self.curve, self.scale
-        chain, control = curve.chain, curve.control
+        say, scale, control = self.say, self.scale, self.curve.control
+        chain = self.curve.chain
         dx = chain.sideways(control)
         if control.body is None:
-            put = say.put("{a}/{b}", a=scale.weight(chain.first), b=scale.weight(chain.inertial))
-            what, formula = say.say("control_barycentre"), "Σ (P+Q) x′/Σ (P+Q)"
-            yield Working("x_[C]′", what, formula, put, dx, "m", clauses.D, "ours")
-            return
-        what = say.say("control_point", body=control.body, x=say.number(control.at.real), y=say.number(control.at.imag))
-        own = next(each for each in Displaced(curve, 0.0).blocks if control.body in each.block.bodies)
+            return say.step(F.X_C, dx, first=scale.weight(chain.first), PQ=scale.weight(chain.inertial))
+        names = {"body": control.body, "x": say.number(control.at.real), "y": say.number(control.at.imag)}
+        own = next(each for each in Displaced(self.curve, 0.0).blocks if control.body in each.block.bodies)
         if own.centre is None:
-            yield Working("x_[C]′", what, "x′", say.put("{x}", x=own.dx), dx, "m", clauses.D)
-            return
-        put = say.put("{t} · ({y} − {o})", t=own.turns, y=control.at.imag, o=scale.near(own.centre.imag))
-        yield Working("x_[C]′", what, "θ′ (y_[C] − y_[O])", put, dx, "m", clauses.D)
+            return say.step(F.X_C_STRAIGHT, dx, names, x=own.dx)
+        return say.step(F.X_C_TURNS, dx, names, turns=own.turns, y=control.at.imag, O=scale.near(own.centre.imag))
 
-    def _moved(self, position: Displaced, name: str, symbol: str, what: str) -> Iterator[Working]:
+    def _moved(self, position: Displaced, names: Mapping[str, str]) -> Iterator[Working]:
         """d_C and d at a position."""
         say, curve, scale = self.say, self.curve, self.scale
         chain, control = curve.chain, curve.control
-        d_C = chain.displacement_of_control(position.phi, control)
+        d_C, total = chain.displacement_of_control(position.phi, control), scale.weight(chain.inertial)
         if control.body is None:
-            given = {f"p{k}": scale.weight(each.block.PQ) for k, each in enumerate(position.blocks)}
-            given |= {f"x{k}": each.gone for k, each in enumerate(position.blocks)}
-            terms = " + ".join(f"{{p{k}}} · {{x{k}}}" for k in range(len(position.blocks)))
-            put = say.put(f"({terms})/{{total}}", **given, total=scale.weight(chain.inertial))
-            formula = "Σ (P+Q) Δx/Σ (P+Q)"
+            weights, ways = [scale.weight(each.block.PQ) for each in position.blocks], [b.gone for b in position.blocks]
+            yield say.step(F.D_C, d_C, names, P=weights, x=ways, PQ=total)
         else:
             follow = chain.mechanism.followed(np.array([position.phi]), chain.direction)
             x = float(follow(Spot(control.body, control.at)).z[0].real)
             one, other = (x, control.at.real) if chain.direction > 0 else (control.at.real, x)
-            put = say.put("{one} − {other}", one=scale.near(one), other=scale.near(other))
-            formula = "|x_[C](φ) − x_[C](0)|"
-        yield Working(f"d_[C]({name})", say.say("d_C"), formula, put, d_C, "m", clauses.D)
+            yield say.step(F.D_C_POINT, d_C, names, one=scale.near(one), other=scale.near(other))
         first, second = scale.weight(chain.first), scale.weight(chain.second)
-        put = say.put("{d} · {b}/({x} · {a})", d=d_C, b=second, x=chain.sideways(control), a=first)
-        formula = "d_[C] Σ (P+Q) x′^[2]/(x_[C]′ Σ (P+Q) x′)"
         d = curve.displacement_at(position.phi)
-        yield Working(symbol, what, formula, put, d, "m", clauses.D)
+        yield say.step(F.D, d, names, d=d_C, second=second, x=chain.sideways(control), first=first)
 
     def _state(self, rule: Rule) -> Iterator[Item]:
         """A limit state on the exact curve."""
         say, s, at = self.say, rule.state, self.found.states[rule.state]
+        names = {"state": s, "on": s, "at": f"φ_[{s}]", "symbol": f"d(φ_[{s}])", "what": "d_again"}
         yield Steps([self._allowed(rule, at)])
         broken = rule.at_breaks and self.curve.broken is not None and at.d == self.curve.broken
         phi = self.curve.torn if broken and self.curve.torn is not None else self.curve.rotation(at.d)
         position = Displaced(self.curve, phi)
-        yield Steps([Working(f"φ_[{s}]", say.say("phi"), f"d(φ) = d_[{s}]", "", phi, "rad", clauses.D)])
+        yield Steps([say.step(F.PHI, phi, names)])
         yield chains.at_work(say, position, self.scale)
         yield from chains.held(say, position, self.scale)
         yield from self._ties(rule, at)
-        rows = list(self._moved(position, f"φ_[{s}]", f"d(φ_[{s}])", say.say("d_again", state=s)))
+        rows = list(self._moved(position, names))
         rows += chains.multiplier(say, position, self.scale, f"α(φ_[{s}])")
         here = self.curve.acceleration_at(phi)
-        g = self.curve.chain.mechanism.gravity
-        symbol = f"a^[*]_[{s}]"
-        rows.append(self._accelerated(symbol, f"α(φ_[{s}])", position.alpha, here, say.say("a_there"), g))
+        rows.append(say.step(F.A_THERE, here, names, **self._accelerated(position.alpha)))
         yield Steps([*rows, *self._period_and_demand(rule, at, s, here)])
 
     def _ties(self, rule: Rule, at: State) -> Iterator[Item]:
@@ -148,43 +134,31 @@ class Writer:
 
     def _allowed(self, rule: Rule, at: State) -> Working:
         """The displacement that a limit state allows."""
-        say, curve, s = self.say, self.curve, rule.state
+        curve = self.curve
         ends = {"t": curve.broken if rule.at_breaks else None, "a": curve.seat.d if curve.seat is not None else None}
-        known = {name: d for name, d in ends.items() if d is not None}
-        formula, put = f"{rule.share:g} d_[0]^[*]", "{share} · {d0}"
-        if known:
-            formula = f"min({'; '.join([formula, *(f'd_[{name}]' for name in known)])})"
-            put = f"min({'; '.join([put, *(f'{{{name}}}' for name in known)])})"
-        formula, put = say.formula(formula), say.put(put, share=rule.share, d0=curve.d0, **known)
-        return Working(f"d_[{s}]", say.say("d_state", state=s), formula, put, at.d, "m", clauses.LIMITS)
+        known = {f"d_[{name}]": d for name, d in ends.items() if d is not None}
+        names = {"state": rule.state, "share": f"{rule.share:g}", "ends": "; ".join(known)}
+        formula = F.ALLOWED_LEAST if known else F.ALLOWED
+        return self.say.step(formula, at.d, names, share=rule.share, d0=curve.d0, d=[*known.values()])
 
     def _period_and_demand(self, rule: Rule, at: State, name: str, a: float) -> Iterator[Working]:
         """T, S_De there and the ratio; `a` is a* of the curve that `name` is on [m/s2]."""
         say, s, T0 = self.say, rule.state, self.ground.site.own_period
+        names = {"state": s, "on": name, "a": f"a^[*]_[{name}]" if T0 is None else f"a_[{name}]"}
         if T0 is not None:
-            put = say.put("min({a}; 4 · π^[2] · {d}/{T}^[2])", a=a, d=at.d, T=T0)
-            formula = f"min(a^[*]_[{name}]; 4 π^[2] d_[{s}]/T_[0]^[2])"
-            yield Working(f"a_[{name}]", say.say("a_elastic"), formula, put, at.a, "m/s²", clauses.ELASTIC)
-        symbol = f"a_[{name}]" if T0 is not None else f"a^[*]_[{name}]"
-        put = say.put(f"{rule.factor:g} · π · √({{d}}/{{a}})", d=at.d, a=at.a)
-        formula = say.formula(f"{rule.factor:g} π √(d_[{s}]/{symbol})")
-        yield Working(f"T_[{name}]", say.say("T", state=s), formula, put, at.T, "s", rule.clause)
+            yield say.step(F.A_ELASTIC, at.a, names, a=a, d=at.d, T0=T0)
+        yield say.step(F.PERIOD[s], at.T, names, d=at.d, a=at.a)
         spectrum = self.ground.spectrum(s)
         if spectrum is None or at.demand is None or at.ratio is None:
             return
         yield from spectra.displacement(say, spectrum, spectra.At(f"T_[{name}]", at.T, rule.damping))
-        put = say.put("{d}/{demand}", d=at.d, demand=at.demand)
-        formula = f"d_[{s}]/S_[De](T_[{name}])"
         still = self.found.passes(s) and not at.passes and LINE not in name
-        what = say.say("passes" if at.passes else "passes_still" if still else "fails", state=s)
-        yield Working(f"ρ_[{name}]", what, formula, put, at.ratio, "", clauses.NONLINEAR)
+        names["outcome"] = "passes" if at.passes else "passes_still" if still else "fails"
+        yield say.step(F.RHO, at.ratio, names, d=at.d, demand=at.demand)
 
     def _on_line(self, rule: Rule) -> Iterator[Working]:
         """The same limit state on the straight line."""
-        say, s, at, curve = self.say, rule.state, self.found.straight_states[rule.state], self.curve
-        a = curve.a0 * (1 - at.d / curve.d0)
-        name = f"{s},{LINE}"
-        put = say.put("{a0} · (1 − {d}/{d0})", a0=curve.a0, d=at.d, d0=curve.d0)
-        formula = f"a_[0]^[*] (1 − d_[{s}]/d_[0]^[*])"
-        yield Working(f"a^[*]_[{name}]", say.say("a_line"), formula, put, a, "m/s²", clauses.LINE)
+        s, at, curve = rule.state, self.found.straight_states[rule.state], self.curve
+        a, name = curve.a0 * (1 - at.d / curve.d0), f"{rule.state},{LINE}"
+        yield self.say.step(F.A_LINE, a, {"state": s, "on": name}, a0=curve.a0, d=at.d, d0=curve.d0)
         yield from self._period_and_demand(rule, at, name, a)

@@ -150,7 +150,7 @@ TEXTS = {
     "alpha": "multiplier",
     "e": "participating mass ratio",
     "M": "participating mass",
-    "not_in_edition": "not in this edition",
+    "clause not in the code": "not in this edition",
     # curve
     "curve": "Capacity curve",
     "a0": "acceleration that activates the mechanism",
@@ -184,7 +184,10 @@ TEXTS = {
     "mode_of_SLD": "T_[1] and ξ_[1] are here those of SLD.",
     "a_g_start": "ground acceleration on rock at which rocking starts, by the ground of {state}",
     "a_g_method": "capacity as a ground acceleration on rock",
-    "iterated": "{what}, found by iteration",
+    "a_g_start_iterated": (
+        "ground acceleration on rock at which rocking starts, by the ground of {state}, found by iteration"
+    ),
+    "a_g_method_iterated": "capacity as a ground acceleration on rock, found by iteration",
     "check": "Check, with the ground of {state} at this a_[g]: F_[0], T_[C] and S unchanged, T_[D] recomputed.",
     "zeta": "capacity over demand at {state}",
     "TR_capacity": "capacity as a return period, found by iteration",

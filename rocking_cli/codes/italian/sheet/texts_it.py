@@ -155,7 +155,7 @@ TEXTS = {
     "alpha": "moltiplicatore di collasso",
     "e": "frazione di massa partecipante",
     "M": "massa partecipante",
-    "not_in_edition": "non in questa edizione",
+    "clause not in the code": "non in questa edizione",
     # curve
     "curve": "Curva di capacità",
     "a0": "accelerazione di attivazione del meccanismo",
@@ -192,7 +192,10 @@ TEXTS = {
     "mode_of_SLD": "T_[1] e ξ_[1] sono qui quelli dello SLD.",
     "a_g_start": "accelerazione al suolo su roccia che attiva il meccanismo, con l'azione dello {state}",
     "a_g_method": "accelerazione al suolo su roccia sopportata",
-    "iterated": "{what}, per tentativi",
+    "a_g_start_iterated": (
+        "accelerazione al suolo su roccia che attiva il meccanismo, con l'azione dello {state}, per tentativi"
+    ),
+    "a_g_method_iterated": "accelerazione al suolo su roccia sopportata, per tentativi",
     "check": "Controllo, con l'azione di {state} per questo a_[g]: F_[0], T_[C] e S fissi, T_[D] conseguente.",
     "zeta": "capacità divisa per la domanda allo {state}",
     "TR_capacity": "periodo di ritorno sopportato, per tentativi",
