@@ -595,7 +595,7 @@ class TestMethods:
         lines = {line.symbol: line for line in found.workings}
         assert lines["e*"].value == found.chain.e_star and lines["a0*"].value == found.a0
         assert lines["d0*"].value == pytest.approx(found.d0, rel=1e-12)
-        assert lines["T_SLC"].value == found.states["SLC"].T and lines["a_g,nonlinear"].value == a_g(found)["nonlinear"]
+        assert lines["T_SLC"].value == found.states["SLC"].T and lines["a_g,damage"].value == a_g(found)["damage"]
         assert lines["M*"].standing == "ours" if "M*" in lines else not OPPENHEIM.has_mass
         for line in lines.values():  # what is put in gives what comes out
             if line.numbers and line.symbol in ("alpha0", "e*", "a0*", "d0*", "d_SLV"):

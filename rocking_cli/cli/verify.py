@@ -129,7 +129,8 @@ def command(
         from rocking_cli.cli import sheets
 
         sheets.write(sheet, found, site, title, sheets.made(structure, file, Path(site_file), chosen))
-    terminal.show(view(found, site.site.name), as_json=as_json)
+    every = terminal.asked("verbose")
+    terminal.show(view(found, site.site.name, every_step=every), as_json=as_json)
     if missing or refused:
         ctx.exit(INCOMPLETE)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rocking_cli.errors import InputError, Problem
@@ -20,7 +21,15 @@ V = TypeVar("V", bound=Verified)
 
 
 class Showing(Generic[F, V]):
-    """How the results of a code are shown; a code that shows more, or otherwise, overrides what it needs."""
+    """How the results of a code are shown; a code that shows more, or otherwise, overrides what it needs.
+
+    Attributes
+    ----------
+    of_site : sequence of str
+        The symbols of the workings of the site that are shown, in their order; empty for all.
+    """
+
+    of_site: Sequence[str] = ()
 
     def of_direction(self, found: F, each: V, where: str) -> Iterable[Table | str]:
         """Return the tables and sentences of a direction, which `where` names."""
@@ -73,19 +82,33 @@ def showing(found: Verification) -> Showing[Any, Any]:
     return own or Showing[Any, Any]()
 
 
-def view(found: Verification, site: str | None = None) -> View:
-    """The methods side by side for each direction, which governs, and what to know of them."""
+def view(found: Verification, site: str | None = None, *, every_step: bool = False) -> View:
+    """The methods side by side for each direction, which governs, and what to know of them.
+
+    Parameters
+    ----------
+    found : Verification
+        The verification.
+    site : str, optional
+        What the site is called.
+    every_step : bool
+        Whether to show every line of the calculation too: symbol, formula, numbers, result and clause.
+    """
     sides, own = shown(found), showing(found)
     parts: list[Table | str] = [
         f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
     ]
     if found.workings:
-        parts.append(_site(found))
+        parts.append(_site(found, own.of_site))
     for where, each in sides.items():
         parts += own.of_direction(found, each, where)
     if len(sides) > 1:
         parts.append(own.of_directions(found))
     parts += found.remarks
+    if every_step:
+        parts += steps(found.workings)
+        for where, each in sides.items():
+            parts += steps(each.workings, where)
     parts.append(standing([*found.workings, *(line for each in sides.values() for line in each.workings)]))
     parts += [f"Caution: {text}" for text in found.mechanism.cautions()]
     return View(lambda: data(found), [part for part in parts if part])
@@ -122,21 +145,30 @@ def verdict(each: Verified, where: str) -> str:
     )
 
 
-def _site(found: Verification) -> Table:
+def _site(found: Verification, symbols: Sequence[str]) -> Table:
     """What is the same in both directions, with the formula of each number; a column for each limit state."""
     rows: dict[str, dict[str, Working]] = {}
     for line in found.workings:
-        symbol, _, state = line.symbol.partition(",")
-        rows.setdefault(symbol, {})[state] = line
+        rows.setdefault(line.symbol, {})[line.state] = line
     states = list(dict.fromkeys(state for each in rows.values() for state in each if state)) or [""]
     cells = []
-    for symbol, each in rows.items():
+    for symbol in symbols or rows:
+        if symbol not in rows:
+            continue
+        each = rows[symbol]
         known = [each.get(state, each.get("")) for state in states]
         one = next(iter(each.values()))
-        known = known or [each[""]]
         values = [number(line.value) if line is not None else ABSENT for line in known]
         cells.append([symbol, *values, one.unit, one.formula, cited(one)])
     return Table("Site", ["", *states, "unit", "formula", "clause"], cells, numbers=range(1, len(states) + 1))
+
+
+def steps(workings: Sequence[Working], where: str = "") -> Iterator[Table]:
+    """Yield every line of a calculation, a table for each section; `where` names the direction."""
+    heads = ["", "formula", "numbers", "result", "unit", "clause"]
+    for section, lines in groupby(workings, key=lambda line: line.section):
+        rows = [[line.symbol, line.formula, line.numbers, number(line.value), line.unit, cited(line)] for line in lines]
+        yield Table(": ".join(part for part in (where, section) if part) or "Calculation", heads, rows, numbers=(3,))
 
 
 def cited(line: Working) -> str:
@@ -170,7 +202,7 @@ def standing(workings: Sequence[Working]) -> str:
     if not workings:
         return ""
     ours, unchecked, transcribed = (
-        {each.symbol.partition(",")[0]: each.meaning for each in workings if each.standing == standing}
+        {each.symbol: each.meaning for each in workings if each.standing == standing}
         for standing in ("ours", "code", "transcription")
     )
     said = (

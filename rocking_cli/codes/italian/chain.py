@@ -54,6 +54,8 @@ class Block:
         x' of the barycentre of P + Q, positive in the direction of rocking [m].
     dy : float
         y' of the barycentre of P, up [m].
+    x_of_P : float
+        Where the barycentre of P is sideways at rest [m].
     """
 
     bodies: Sequence[str]
@@ -62,6 +64,7 @@ class Block:
     at: complex
     dx: float
     dy: float
+    x_of_P: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +120,8 @@ class Chain:
         velocity = [complex(self._follow_at_rest(each.spot).dz[0]) for each in weights]
         dx = sum(share * v.real for share, v in zip(shares, velocity, strict=True)) / (sum(shares) or 1.0)
         dy = sum(each.carried * v.imag for each, v in zip(weights, velocity, strict=True)) / (P or 1.0)
-        return Block(names, P, PQ, complex(at), self.direction * dx, dy)
+        x_of_P = sum(each.carried * each.spot.at.real for each in weights) / (P or 1.0)
+        return Block(names, P, PQ, complex(at), self.direction * dx, dy, x_of_P)
 
     @cached_property
     def _follow_at_rest(self) -> Follow:

@@ -193,9 +193,16 @@ class TableSpectrum:
         return float(t[(self._at(t, damping) * t**2).argmax()])
 
     def _at(self, T: Reals, damping: float) -> Reals:
-        eta = correction(damping)
+        return np.asarray(self.undamped(T) * self.corrected(T, damping))
+
+    def undamped(self, T: Reals) -> Reals:
+        """The ordinates of the table at periods, straight between its own, shape (n,) [m/s2]."""
+        return np.asarray(np.interp(T, *self._known))
+
+    def corrected(self, T: Reals, damping: float) -> Reals:
+        """The correction for damping at periods, shape (n,)."""
         share = np.minimum(T / self.ramp, 1.0) if self.ramp > 0 else np.ones_like(T)
-        return np.asarray(np.interp(T, *self._known) * (1 - (1 - eta) * share))
+        return np.asarray(1 - (1 - correction(damping)) * share)
 
     def _turns(self, knots: Reals, damping: float) -> Reals:
         """Where S_e t^2 turns between two periods: S_e is (p + q t)(r + s t) there."""
@@ -296,11 +303,15 @@ class FloorSpectrum:
 
         Above T1 it is not less than that of the ground, above b T1 not less than its value at b T1.
         """
-        found = self.alone(period, damping) * (period / (2 * pi)) ** 2
+        return max(self.bounds(period, damping))
+
+    def bounds(self, period: float, damping: float) -> list[float]:
+        """What a displacement demand is not below [m]: the floor's own, the ground's, and that at b T1, as they count."""
+        found = [self.alone(period, damping) * (period / (2 * pi)) ** 2]
         if period > self.T1:
-            found = max(found, self.ground.displacement(period, damping))
+            found.append(self.ground.displacement(period, damping))
         if period > ABOVE * self.T1:
-            found = max(found, self.acceleration(self.T1, damping) * (ABOVE * self.T1 / (2 * pi)) ** 2)
+            found.append(self.acceleration(self.T1, damping) * (ABOVE * self.T1 / (2 * pi)) ** 2)
         return found
 
 

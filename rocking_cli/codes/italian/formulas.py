@@ -13,10 +13,10 @@ from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.studies.verification.working import Formula
 
 # What the site file says
-FC = Formula("FC", clause=clauses.A_STAR, meaning="given_FC")
-Q = Formula("q", clause=clauses.LINEAR, meaning="given_q")
-T1 = Formula("T_[1]", unit="s", clause=clauses.MODE, meaning="given_T1", standing="plain")
-XI1 = Formula("ξ_[1]", clause=clauses.MODE, meaning="given_xi1", standing="plain")
+FC = Formula("FC", "given", clause=clauses.A_STAR, meaning="given_FC")
+Q = Formula("q", "given", clause=clauses.LINEAR, meaning="given_q")
+T1 = Formula("T_[1]", "given", unit="s", clause=clauses.MODE, meaning="given_T1", standing="plain")
+XI1 = Formula("ξ_[1]", "given", clause=clauses.MODE, meaning="given_xi1", standing="plain")
 OWN_PERIOD = Formula(
     "T_[0]", "κ (L/t) L √(w/(E g))", "{kappa} · {L}/{t} · {L} · √({w}/({E} · {g}))", "s", clauses.OWN_PERIOD,
     meaning="given_T0",

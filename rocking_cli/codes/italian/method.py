@@ -6,20 +6,23 @@ Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018:
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from math import pi, sqrt
 
-from rocking_cli.codes.italian import clauses, wordings, workings
+from rocking_cli.codes.italian import clauses, wordings
 from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import DAMPING, Spectrum
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Method, State, Verification, Verified
 from rocking_cli.codes.italian.rules import RULES, Rule
+from rocking_cli.codes.italian.sheet.build import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.ties import elastic, lasting
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.verification.control import Control
+from rocking_cli.studies.verification.working import Later
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"
@@ -123,7 +126,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     remarks = [*otherwise, *wordings.of_site(ground, list(found.values()))]
     return Verification(
         taken, KEY, NAME, EDITION, found,
-        workings=workings.of_ground(ground), remarks=remarks, taken_otherwise=otherwise,
+        workings=Later(partial(workings_of_site, ground)), remarks=remarks, taken_otherwise=otherwise,
     )  # fmt: skip
 
 
@@ -141,7 +144,7 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         by_it = _Case(ground, usual)
         others = by_it.methods({rule.state: by_it.state(rule) for rule in RULES})
         remarks.append(wordings.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
-    return Verified(
+    found = Verified(
         direction=direction,
         first=RULES[0].state,
         exact=exact,
@@ -155,9 +158,9 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         straight_methods=line.methods(on_line),
         governing={state: _governs(methods, *pair) for state, pair in OF_STATE.items()},
         governs=_governs(methods, DAMAGE, NONLINEAR),
-        workings=workings.of_direction(exact, states, methods, ground),
         remarks=remarks,
     )
+    return replace(found, workings=Later(partial(workings_of_direction, ground, found)))
 
 
 def _governs(methods: Mapping[str, Method], damage: str, nonlinear: str) -> str:

@@ -6,9 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli import names
+from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian import words
 from rocking_cli.codes.italian.results import Dynamic, Method, RecordPeak, State, Verification, Verified
 from rocking_cli.codes.italian.ties import pulls
+from rocking_cli.studies.verification.working import in_plain
 from rocking_cli.views.verification import Showing, cited, columns
 from rocking_cli.views.view import ABSENT, Table, number
 
@@ -16,8 +18,19 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+OF_SITE = [
+    in_plain(each.symbol.format(at="T_[0]"))
+    for each in (
+        F.FC, F.Q, F.OWN_PERIOD, F.RETURN_PERIOD, *F.ON_ROCK, F.S, F.TC, F.PEAK, F.TD, F.T1, F.XI1, F.PSI, F.GAMMA,
+        F.S_Z, F.AMPLIFIED, F.S_E_LEVEL, F.S_EZ_BOUND,
+    )
+]  # fmt: skip
+
+
 class ItalianShowing(Showing[Verification, Verified]):
     """How it is shown."""
+
+    of_site = OF_SITE
 
     def of_direction(self, found: Verification, each: Verified, where: str) -> Iterable[Table | str]:
         """Return the capacity curve, the methods, the verdict and why the methods differ."""
@@ -73,7 +86,7 @@ def _capacity(each: Verified, where: str) -> Table:
         line = each.straight_states[name]
         rows += [
             [f"d_{name}", number(at.d), number(line.d), "m", clause[f"d_{name}"]],
-            [f"a*(d_{name})", number(at.a), number(line.a), "m/s2", clause[f"a*(d_{name})"]],
+            [f"a*(d_{name})", number(at.a), number(line.a), "m/s2", clause[f"a*_{name}"]],
             [f"T_{name}", number(at.T), number(line.T), "s", clause[f"T_{name}"]],
         ]
         if at.demand is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, Self
 
@@ -24,7 +24,7 @@ AND_SO_ON = re.compile(r"([^();]+?)( \+ |; )…")
 """A piece that is there once for each of several numbers: `({P} · {x} + …)`."""
 PLAIN = {
     "α": "alpha", "γ": "gamma", "ζ": "zeta", "η": "eta", "θ": "theta", "κ": "kappa", "ξ": "xi", "π": "pi", "ρ": "rho",
-    "φ": "phi", "ψ": "psi", "Σ": "sum", "Δ": "D", "√": "sqrt", "·": "x", "≥": ">=", "≤": "<=", "′": "'", "²": "2",
+    "φ": "phi", "ψ": "psi", "Σ": "sum", "Δ": "D", "√": "sqrt", "·": "*", "≥": ">=", "≤": "<=", "′": "'", "²": "2",
     "–": "-", MINUS: "-",
 }  # fmt: skip
 """What stands for the signs of a formula where there are plain characters only."""
@@ -89,6 +89,13 @@ class Working:
     def __post_init__(self) -> None:
         if self.standing == "code" and isinstance(self.clause, Clause) and self.clause.transcribed:
             object.__setattr__(self, "standing", "transcription")
+
+    def in_plain(self, section: str = "") -> Working:
+        """The same in plain characters, in a section of the calculation."""
+        texts: dict[str, Any] = {
+            key: in_plain(getattr(self, key)) for key in ("symbol", "meaning", "formula", "numbers", "unit")
+        }
+        return replace(self, **texts, section=in_plain(section))
 
 
 def as_written(value: float) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rocking_cli.studies.verification.working import Working
@@ -71,6 +71,15 @@ class Part:
     heading: str
     items: Sequence[Item]
     parts: Sequence[Part] = ()
+
+
+def workings(parts: Iterable[Part]) -> Iterator[Working]:
+    """The steps of parts in plain characters, each with the heading under which it stands."""
+    for part in parts:
+        for item in part.items:
+            if isinstance(item, Steps):
+                yield from (row.in_plain(part.heading) for row in item.rows)
+        yield from workings(part.parts)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve
@@ -91,14 +91,14 @@ def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
         carried, inertial = ([scale.weight(getattr(each, key)) for each in own] for key in ("carried", "inertial"))
         names = {"k": k, "block": " + ".join(block.bodies), "unit": scale.unit}
         yield say.step(F.P, scale.weight(block.P), names, P=carried)
-        yield say.step(F.PQ, scale.weight(block.PQ), names, P=inertial)
+        moved = F.PQ if chain.is_by_the_letter else replace(F.PQ, standing="ours")
+        yield say.step(moved, scale.weight(block.PQ), names, P=inertial)
         for axis, at in (("x", block.at.real), ("y", block.at.imag)):
             places = [each.spot.at.real if axis == "x" else each.spot.at.imag for each in own]
             yield say.step(F.G, scale.near(at), {**names, "axis": axis}, P=inertial if block.PQ else carried, x=places)
         if block.P and block.P != block.PQ:
             places = [each.spot.at.real for each in own]
-            value = sum(p * x for p, x in zip(carried, places, strict=True)) / scale.weight(block.P)
-            yield say.step(F.GP, scale.near(value), names, P=carried, x=places)
+            yield say.step(F.GP, scale.near(block.x_of_P), names, P=carried, x=places)
 
 
 def at_work(say: Language, position: Displaced, scale: Scale) -> Grid:
@@ -186,17 +186,16 @@ class Sums:
         """What each force and tie takes."""
         return [self.scale.weight(each.work) for each in self.position.held]
 
-    def over(self, weights: list[float], ways: list[float], power: int = 1) -> float:
-        """A sum of weights times ways; without rounding about zero."""
-        total = sum(weight * way**power for weight, way in zip(weights, ways, strict=True))
-        most = sum(abs(weight * self.scale.length) for weight in weights)
-        return 0.0 if abs(total) < NONE * most else total
+    def near(self, total: float, weights: list[float]) -> float:
+        """A sum over weights as it is printed: without rounding about zero."""
+        value, most = self.scale.weight(total), sum(abs(weight * self.scale.length) for weight in weights)
+        return 0.0 if abs(value) < NONE * most else value
 
 
 def multiplier(say: Language, position: Displaced, scale: Scale, symbol: str) -> Iterator[Working]:
     """Steps to alpha at a position."""
     sums, unit = Sums(position, scale), {"unit": scale.unit}
-    lifted, driven = sums.over(sums.carried, sums.up), sums.over(sums.inertial, sums.sideways)
+    lifted, driven = sums.near(position.lifted, sums.carried), sums.near(position.driven, sums.inertial)
     over, under = {F.PY.text: lifted}, {F.PQX.text: driven}
     yield say.step(F.PY, lifted, unit, P=sums.carried, y=sums.up)
     if position.held:
@@ -220,7 +219,7 @@ def _sums(say: Language, chain: Chain, rest: Displaced, scale: Scale) -> Iterato
     yield from multiplier(say, rest, scale, "α_[0]")
     first, total = scale.weight(chain.first), scale.weight(chain.inertial)
     yield say.step(F.SUM_PQ, total, names, P=sums.inertial)
-    second = sums.over(sums.inertial, sums.sideways, 2)
+    second = scale.weight(chain.second)
     yield say.step(F.PQXX, second, names, P=sums.inertial, x=sums.sideways)
     yield say.step(F.E_STAR, chain.e_star, first=first, PQ=total, second=second)
     if chain.mechanism.has_mass:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import pi
 
 import numpy as np
 
@@ -93,13 +92,12 @@ def _of_table(say: Language, spectrum: TableSpectrum, at: At) -> Iterator[Workin
     """Yield the steps to S_e between two ordinates, with the correction that increases from T = 0."""
     T, a = np.array(spectrum.points, dtype=np.float64).T
     k, name = int(np.clip(np.searchsorted(T, at.T, side="right") - 1, 0, len(T) - 2)), {"at": at.name}
-    at5 = float(np.interp(at.T, T, a)) * spectrum.factor
+    period = np.array([at.T])
+    at5, by = float(spectrum.undamped(period)[0]) / G, float(spectrum.corrected(period, at.damping)[0])
     ends = {"a": float(a[k]), "b": float(a[k + 1]), "Ta": float(T[k]), "Tb": float(T[k + 1])}
     yield say.step(F.S_5, at5, name, k=spectrum.factor, T=at.T, **ends)
-    eta, share = correction(at.damping), min(at.T / spectrum.ramp, 1.0) if spectrum.ramp > 0 else 1.0
-    by = 1 - (1 - eta) * share
-    if share < 1:
-        yield say.step(F.ETA_T, by, name, eta=eta, T=at.T, R=spectrum.ramp)
+    if spectrum.ramp > at.T:
+        yield say.step(F.ETA_T, by, name, eta=correction(at.damping), T=at.T, R=spectrum.ramp)
     yield say.step(F.S_E_TABLE, spectrum.acceleration(at.T, at.damping), name, a=at5, by=by, g=G)
 
 
@@ -114,23 +112,21 @@ def displacement(say: Language, spectrum: Spectrum, at: At) -> Iterator[Working]
 
 def _undisturbed(say: Language, spectrum: Spectrum, at: At, symbol: str) -> Iterator[Working]:
     """The displacement of the ground at a period, under a symbol."""
+    value, formula, by = spectrum.displacement(at.T, at.damping), F.S_DE, at
     if isinstance(spectrum, TableSpectrum):
-        t = spectrum.governing(at.T, at.damping)
-        yield say.step(F.FURTHEST, t, {"at": at.name})
-        yield from acceleration(say, spectrum, At("t", t, at.damping))
-        S_e = spectrum.acceleration(t, at.damping)
-        yield say.step(F.S_DE_TABLE, S_e * (t / (2 * pi)) ** 2, {"symbol": symbol, "at": "t"}, S=S_e, T=t)
-        return
-    assert isinstance(spectrum, GroundSpectrum)
-    start = LONG[spectrum.soil] if spectrum.soil is not None else None
-    names, given = {"symbol": symbol, "at": at.name}, _of_ground_motion(spectrum, at)
-    if start is None or start >= at.T:
-        yield from acceleration(say, spectrum, at)
-        S_e = spectrum.acceleration(at.T, at.damping)
-        yield say.step(F.S_DE, S_e * (at.T / (2 * pi)) ** 2, names, S=S_e, T=at.T)
-        return
-    formula = F.S_DE_GROUND if at.T > GROUND else F.S_DE_LONG
-    yield say.step(formula, spectrum.displacement(at.T, at.damping), names, T=at.T, TE=start, TF=GROUND, **given)
+        by, formula = At("t", spectrum.governing(at.T, at.damping), at.damping), F.S_DE_TABLE
+        yield say.step(F.FURTHEST, by.T, {"at": at.name})
+    else:
+        assert isinstance(spectrum, GroundSpectrum)
+        start = LONG[spectrum.soil] if spectrum.soil is not None else None
+        if start is not None and start < at.T:
+            formula = F.S_DE_GROUND if at.T > GROUND else F.S_DE_LONG
+            given = {**_of_ground_motion(spectrum, at), "T": at.T, "TE": start, "TF": GROUND}
+            yield say.step(formula, value, {"symbol": symbol}, **given)
+            return
+    yield from acceleration(say, spectrum, by)
+    S_e = spectrum.acceleration(by.T, at.damping)
+    yield say.step(formula, value, {"symbol": symbol, "at": by.name}, S=S_e, T=by.T)
 
 
 def amplified(say: Language, floor: FloorSpectrum, damping: float, state: str = "") -> Working:
@@ -149,18 +145,14 @@ def _alone(say: Language, floor: FloorSpectrum, T: float, damping: float, symbol
 def _of_floor(say: Language, floor: FloorSpectrum, at: At) -> Iterator[Working]:
     yield amplified(say, floor, at.damping)
     yield _alone(say, floor, at.T, at.damping, f"S_[eZ]({at.name})")
-    alone = floor.alone(at.T, at.damping)
-    bounds = {"d_[Z]": alone * (at.T / (2 * pi)) ** 2}
-    yield say.step(F.D_Z, bounds["d_[Z]"], {"at": at.name}, S=alone, T=at.T)
+    bounds, names = floor.bounds(at.T, at.damping), ["d_[Z]", "d_[g]", "d_[b]"]
+    yield say.step(F.D_Z, bounds[0], {"at": at.name}, S=floor.alone(at.T, at.damping), T=at.T)
     if at.T > floor.T1:
-        bounds["d_[g]"] = floor.ground.displacement(at.T, at.damping)
         yield from _undisturbed(say, floor.ground, at, "d_[g]")
     if at.T > ABOVE * floor.T1:
-        A = floor.amplification(at.damping)
-        bounds["d_[b]"] = A * floor.peak * (ABOVE * floor.T1 / (2 * pi)) ** 2
-        yield say.step(F.D_B, bounds["d_[b]"], A=A, S=floor.peak, T=floor.T1)
-    value, names = floor.displacement(at.T, at.damping), {"at": at.name, "bounds": "; ".join(bounds)}
-    yield say.step(F.S_DE_FLOOR, value, names, d=[*bounds.values()])
+        yield say.step(F.D_B, bounds[2], A=floor.amplification(at.damping), S=floor.peak, T=floor.T1)
+    value, shown = floor.displacement(at.T, at.damping), "; ".join(names[: len(bounds)])
+    yield say.step(F.S_DE_FLOOR, value, {"at": at.name, "bounds": shown}, d=bounds)
 
 
 def at_own_period(say: Language, spectrum: Spectrum, T0: float, damping: float) -> Iterator[Working]:
@@ -178,4 +170,4 @@ def at_own_period(say: Language, spectrum: Spectrum, T0: float, damping: float) 
     yield _alone(say, spectrum, T0, damping, "S_[eZ,1](T_[0])")
     yield from acceleration(say, spectrum.ground, at)
     own, under = spectrum.alone(T0, damping), spectrum.ground.acceleration(T0, damping)
-    yield say.step(F.S_EZ_BOUND, max(own, under), {"at": at.name}, own=own, under=under)
+    yield say.step(F.S_EZ_BOUND, spectrum.acceleration(T0, damping), {"at": at.name}, own=own, under=under)

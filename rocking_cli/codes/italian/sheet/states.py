@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.capacity import ExactCurve, StraightCurve
 from rocking_cli.codes.italian.displaced import Displaced
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import State, Verified
@@ -159,6 +159,6 @@ class Writer:
     def _on_line(self, rule: Rule) -> Iterator[Working]:
         """The same limit state on the straight line."""
         s, at, curve = rule.state, self.found.straight_states[rule.state], self.curve
-        a, name = curve.a0 * (1 - at.d / curve.d0), f"{rule.state},{LINE}"
+        a, name = StraightCurve(curve.a0, curve.d0).acceleration(at.d), f"{rule.state},{LINE}"
         yield self.say.step(F.A_LINE, a, {"state": s, "on": name}, a0=curve.a0, d=at.d, d0=curve.d0)
         yield from self._period_and_demand(rule, at, name, a)
