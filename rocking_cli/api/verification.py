@@ -72,6 +72,7 @@ def verify(
     """
     from rocking_cli.studies.verification.check import verify, with_histories
     from rocking_cli.studies.verification.control import control_at
+    from rocking_cli.studies.verification.motions import Histories
     from rocking_cli.views import verification as views
 
     wrong = [sign for sign in polarities if sign not in (1, -1)]
@@ -84,8 +85,8 @@ def verify(
         point = control_at(ready.mechanism, x, y, body[0] if body else None)
     found = verify(ready, known, point)
     if motions:
-        found = with_histories(found, ready, known, [_motion(each) for each in motions], polarities, state=state,
-                               on_floor=on_floor)  # fmt: skip
+        asked = Histories([_motion(each) for each in motions], polarities, state, on_floor)
+        found = with_histories(found, ready, known, asked)
 
     def draw() -> Figure:
         return views.showing(found).draw(found)

@@ -13,6 +13,7 @@ from rocking_cli.io.files import write_whole
 from rocking_cli.report.verified import VerifiedReport
 from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
 from rocking_cli.studies.verification.check import read_site, verify, with_histories
+from rocking_cli.studies.verification.motions import Histories
 from rocking_cli.views.sheet.build import Made, sheet, sheet_of
 from rocking_cli.views.sheet.language import Language
 
@@ -80,6 +81,6 @@ def of_report(
     found = verify(structure, site)
     if motions:
         scaled = [each.motion.scaled(each.factor) for each in motions]
-        found = with_histories(found, structure, site, scaled, signs, state=state, on_floor=on_floor)
+        found = with_histories(found, structure, site, Histories(scaled, signs, state, on_floor))
     of = made(structure, given, site_path, motions)
     return VerifiedReport(found, sheet(found, site, Language("en"), title, of))

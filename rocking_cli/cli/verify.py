@@ -161,6 +161,7 @@ def _histories(
     """
     from rocking_cli.cli.waiting import compile_first
     from rocking_cli.studies.verification.check import with_histories
+    from rocking_cli.studies.verification.motions import Histories
 
     chosen, refused = motion_files.gather(
         paths, asked.pulses, asked.reading, asked.scaling, structure.growth, "this structure"
@@ -170,5 +171,5 @@ def _histories(
     compile_first()
     motions = [each.motion.scaled(each.factor) for each in chosen]
     with terminal.progress(len(motions), "records") as advance:
-        under = with_histories(found, structure, site, motions, asked.signs, advance, state=state, on_floor=on_floor)
+        under = with_histories(found, structure, site, Histories(motions, asked.signs, state, on_floor, advance))
     return under, chosen, refused

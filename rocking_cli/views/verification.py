@@ -27,25 +27,16 @@ class Showing(Generic[F, V]):
     ----------
     of_site : sequence of str
         The symbols of the workings of the site that are shown, in their order; empty for all.
+    compared : str
+        Of what directions have a ratio.
     """
 
     of_site: Sequence[str] = ()
+    compared: str = "capacity to demand"
 
     def of_direction(self, found: F, each: V, where: str) -> Iterable[Table | str]:
         """Return the tables and sentences of a direction, which `where` names."""
         return [methods(each, where), verdict(each, where), *each.remarks]
-
-    def of_directions(self, found: F) -> str:
-        """State which direction governs; empty if none does."""
-        ratios = [each.ratio for each in found.directions.values()]
-        if found.alike or None in ratios:
-            return ""
-        least = found.governs
-        one, other = (found.directions[each].ratio for each in (least, least.opposite))
-        return (
-            f"The {least.label} direction governs: its ratio of capacity to demand is {one:.3g}, against {other:.3g} "
-            "in the other direction."
-        )
 
     def data(self, found: F, each: V) -> dict[str, Any]:
         """Return a direction as plain data."""
@@ -103,7 +94,7 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     for where, each in sides.items():
         parts += own.of_direction(found, each, where)
     if len(sides) > 1:
-        parts.append(own.of_directions(found))
+        parts.append(_which_direction(found, own.compared))
     parts += found.remarks
     if every_step:
         parts += steps(found.workings)
@@ -120,6 +111,18 @@ def shown(found: Verification) -> dict[str, Any]:
     if len(each) == 2 and each[0].is_like(each[1]):
         return {"Both directions": each[0]}
     return {f"{one.direction.label.capitalize()} direction": one for one in each}
+
+
+def _which_direction(found: Verification, compared: str) -> str:
+    """State which direction governs, with the ratios of both; empty if none does."""
+    least = found.governs
+    one, other = found.compared(least), found.compared(least.opposite)
+    if found.alike or one is None or other is None:
+        return ""
+    return (
+        f"The {least.label} direction governs: its ratio of {compared} is {one:.3g}, against {other:.3g} in the other "
+        "direction."
+    )
 
 
 def methods(each: Verified, where: str) -> Table:

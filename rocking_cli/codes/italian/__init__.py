@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from importlib.resources import files
 from typing import Any, ClassVar
@@ -14,9 +14,9 @@ from rocking_cli.codes.italian.results import Verification, Verified
 from rocking_cli.codes.italian.site import ItalianSite, of_each
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.prepared import Prepared
-from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.verification.code import Code, Number
 from rocking_cli.studies.verification.control import Control
+from rocking_cli.studies.verification.motions import Histories
 
 
 def _zeta(key: str) -> Number:
@@ -47,19 +47,10 @@ class Italian(Code):
         return method.verify(mechanism, site, control)
 
     def with_histories(
-        self,
-        found: Verification,
-        structure: Prepared,
-        site: ItalianSite,
-        motions: Sequence[GroundMotion],
-        signs: Sequence[int],
-        progress: Callable[[int], object],
-        *,
-        state: str | None,
-        on_floor: bool,
+        self, found: Verification, structure: Prepared, site: ItalianSite, asked: Histories
     ) -> Verification:
         """Return a verification with time histories on the capacity curve."""
-        return dynamic.with_histories(found, structure, site, motions, signs, progress, state=state, on_floor=on_floor)
+        return dynamic.with_histories(found, structure, site, asked)
 
     def of_each(self, site: ItalianSite) -> ItalianSite:
         """Return the site of many structures, each of which has an element of its own size."""

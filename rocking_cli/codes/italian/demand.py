@@ -306,7 +306,7 @@ class FloorSpectrum:
         return max(self.bounds(period, damping))
 
     def bounds(self, period: float, damping: float) -> list[float]:
-        """What a displacement demand is not below [m]: the floor's own, the ground's, and that at b T1, as they count."""
+        """What a displacement demand is not below [m]: the floor's own, the ground's, and that at b T1."""
         found = [self.alone(period, damping) * (period / (2 * pi)) ** 2]
         if period > self.T1:
             found.append(self.ground.displacement(period, damping))

@@ -7,7 +7,7 @@ without FC it is the structure's own history. Its inertia is that of the mechani
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
 
@@ -20,7 +20,7 @@ from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.studies.verification.motions import where_it_stands
+from rocking_cli.studies.verification.motions import Histories, where_it_stands
 from rocking_cli.text import did_you_mean
 
 RECORDS = 7  # that the code wants before the mean may be used
@@ -69,27 +69,17 @@ def peaks(
     return found
 
 
-def with_histories(
-    found: Verification,
-    structure: Prepared,
-    site: ItalianSite,
-    motions: Sequence[GroundMotion],
-    signs: Sequence[int],
-    progress: Callable[[int], object],
-    *,
-    state: str | None,
-    on_floor: bool,
-) -> Verification:
+def with_histories(found: Verification, structure: Prepared, site: ItalianSite, asked: Histories) -> Verification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
     taken = structure if found.mechanism is structure.mechanism else Prepared(found.mechanism, structure.file)
     model = taken.model("nonlinear")
     curves = {direction: each.exact for direction, each in found.directions.items()}
-    state = _state_of_records(found, state)
-    what, moved = where_it_stands(motions, floor_at(site, state), on_floor=on_floor)
+    state = _state_of_records(found, asked.state)
+    what, moved = where_it_stands(asked, floor_at(site, state))
     every = []
     for motion in moved:
-        every.append(peaks(model, curves, motion, signs))
-        progress(1)
+        every.append(peaks(model, curves, motion, asked.signs))
+        asked.progress(1)
     directions = {
         direction: replace(
             each,

@@ -66,14 +66,17 @@ class Method(frame.Method):
         return self.capacity
 
     @property
-    def asked(self) -> float | None:
-        """Demand: that of its limit state at the site [g]."""
-        return self.demand
-
-    @property
     def zeta(self) -> float | None:
         """zeta_E, capacity over demand."""
         return self.ratio
+
+    @property
+    def lasts(self) -> str:
+        """The return period as it is printed, whether or not it is beyond the table; empty if it is not known."""
+        if self.return_period is None:
+            return ""
+        mark = ("" if self.zeta is None else ">" if self.zeta >= 1 else "<") if self.beyond else ""
+        return f"{mark}{self.return_period:.0f}"
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ OF_SITE = [
 class ItalianShowing(Showing[Verification, Verified]):
     """How it is shown."""
 
-    of_site = OF_SITE
+    of_site, compared = OF_SITE, "displacement capacity to demand"
 
     def of_direction(self, found: Verification, each: Verified, where: str) -> Iterable[Table | str]:
         """Return the capacity curve, the methods, the verdict and why the methods differ."""
@@ -45,10 +45,6 @@ class ItalianShowing(Showing[Verification, Verified]):
             yield _records(each.dynamic)
             yield from words.of_histories(each.dynamic, each.exact.confidence)
 
-    def of_directions(self, found: Verification) -> str:
-        """State which direction governs, by the ratios of displacements."""
-        return words.which_direction(found)
-
     def data(self, found: Verification, each: Verified) -> dict[str, Any]:
         """Return a direction as plain data."""
         return _data(each)
@@ -58,7 +54,15 @@ class ItalianShowing(Showing[Verification, Verified]):
         return columns(
             ["direction", "method", "a_g [g]", "asked [g]", "zeta_E", "TR [years]", "governs"],
             [
-                [direction.label, key, method.a_g, method.asked, method.zeta, method.return_period, key == each.governs]
+                [
+                    direction.label,
+                    key,
+                    method.a_g,
+                    method.demand,
+                    method.zeta,
+                    method.return_period,
+                    key == each.governs,
+                ]
                 for direction, each in found.directions.items()
                 for key, method in each.methods.items()
             ],
@@ -106,12 +110,12 @@ def _methods(each: Verified) -> Table:
         if method.a_g is None:
             continue
         line = each.straight_methods[key]
-        years = [_years(method)] if known else []
+        years = [method.lasts or ABSENT] if known else []
         governs = "governs" if key in each.governing.values() else ""
         rows.append(
             [
                 method.title,
-                *(number(each, 4) for each in (method.a_g, line.a_g, method.asked, method.zeta)),
+                *(number(each, 4) for each in (method.a_g, line.a_g, method.demand, method.zeta)),
                 *years,
                 method.clause,
                 governs,
@@ -126,16 +130,6 @@ def _methods(each: Verified) -> Table:
         *(["TR\n[years]"] if known else []),
     ]
     return Table("Capacity by method", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
-
-
-def _years(method: Method) -> str:
-    """A return period, and whether it is beyond the table."""
-    if method.return_period is None:
-        return ABSENT
-    mark = ""
-    if method.beyond and method.zeta is not None:
-        mark = ">" if method.zeta >= 1 else "<"
-    return f"{mark}{method.return_period:.0f}"
 
 
 def _records(found: Dynamic) -> Table:

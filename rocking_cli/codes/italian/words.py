@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rocking_cli.codes.italian.results import Dynamic, Verification, Verified
+from rocking_cli.codes.italian.results import Dynamic, Verified
 from rocking_cli.dynamics.holding import NOT_CHECKED
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
@@ -26,14 +26,14 @@ def _verdict_at(found: Verified, state: str, suffix: str) -> str | None:
     `suffix` ends the names of the methods of this limit state.
     """
     at, counts = found.states[state], found.methods[found.governing[state]]
-    if at.demand is None or at.ratio is None or counts.a_g is None or counts.asked is None or counts.zeta is None:
+    if at.demand is None or at.ratio is None or counts.a_g is None or counts.demand is None or counts.zeta is None:
         return None
     outcome = f"{state}: {'passes' if found.passes(state) else 'fails'}."
     held = (
         f"the displacement capacity, {at.d:.4g} m, is {at.ratio:.3g} times the demand of {at.demand:.4g} m at T = "
         f"{at.T:.3g} s"
     )
-    capacity = f"Capacity a_g = {counts.a_g:.4g} g, demand {counts.asked:.4g} g: zeta_E = {counts.zeta:.3g}."
+    capacity = f"Capacity a_g = {counts.a_g:.4g} g, demand {counts.demand:.4g} g: zeta_E = {counts.zeta:.3g}."
     if found.governing[state] == f"damage{suffix}":
         by_displacement = found.methods[f"nonlinear{suffix}"].a_g or 0.0
         return (
@@ -80,10 +80,10 @@ def beyond_first(found: Verified, first: str) -> Iterator[str]:
         if said is not None:
             yield said
     damage = found.methods.get("SLD")
-    if damage is not None and damage.zeta is not None and damage.asked is not None and damage.a_g is not None:
+    if damage is not None and damage.zeta is not None and damage.demand is not None and damage.a_g is not None:
         yield (
             f"SLD: {'passes' if damage.passed else 'fails'}. Rocking starts at a_g = {damage.a_g:.4g} g; the demand "
-            f"is {damage.asked:.4g} g."
+            f"is {damage.demand:.4g} g."
         )
 
 
@@ -150,21 +150,4 @@ def _of_some(found: Dynamic, *, confident: bool) -> str:
     return (
         f"{start}: no record takes the structure past d0* = {found.d0:.4g} m; the mean peak displacement, "
         f"{mean:.4g} m, is {' and '.join(held)}."
-    )
-
-
-def which_direction(found: Verification) -> str:
-    """State which direction governs, with the ratios of both."""
-    (one, other) = found.directions.values()
-    ratios = [each.states[found.first].ratio for each in (one, other)]
-    if None in ratios:
-        return ""
-    least = found.governs
-    ratio = found.directions[least].states[found.first].ratio
-    rest = found.directions[least.opposite].states[found.first].ratio
-    if ratio is None or rest is None or found.alike:
-        return ""
-    return (
-        f"The {least.label} direction governs: its ratio of displacement capacity to demand is {ratio:.3g}, against "
-        f"{rest:.3g} in the other direction."
     )

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, PluginError, Problem
-from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.io.yaml_file import Document
 from rocking_cli.studies.verification import site_file
 from rocking_cli.studies.verification.code import Code
 from rocking_cli.studies.verification.control import Control
 from rocking_cli.studies.verification.installed import codes
+from rocking_cli.studies.verification.motions import Histories
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.site_file import Site, SiteFile
 
@@ -94,17 +93,7 @@ def _held(found: object, code: Code) -> Verification:
     return found
 
 
-def with_histories(
-    found: Verification,
-    structure: Prepared,
-    site: SiteFile,
-    motions: Sequence[GroundMotion],
-    signs: Sequence[int],
-    progress: Callable[[int], object] = int,
-    *,
-    state: str | None = None,
-    on_floor: bool = False,
-) -> Verification:
+def with_histories(found: Verification, structure: Prepared, site: SiteFile, asked: Histories) -> Verification:
     """Return a verification with time histories under a set of records.
 
     Parameters
@@ -115,16 +104,8 @@ def with_histories(
         The structure.
     site : SiteFile
         The site.
-    motions : sequence of GroundMotion
-        The records, as scaled. If the site has a floor, ground motions are carried to it.
-    signs : sequence of int
-        Polarities, of 1 and -1.
-    progress : callable
-        Called with 1 after each record.
-    state : str, optional
-        The limit state to which the records belong; by default the first one.
-    on_floor : bool
-        Whether the motions are those of the floor of the site, and not of the ground.
+    asked : Histories
+        The records, and to what they belong.
 
     Raises
     ------
@@ -134,6 +115,4 @@ def with_histories(
     SolverError
         If a motion cannot be followed to its end.
     """
-    return code_of(site).with_histories(
-        found, structure, site.site, motions, signs, progress, state=state, on_floor=on_floor
-    )
+    return code_of(site).with_histories(found, structure, site.site, asked)

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import guard
 from rocking_cli.studies.verification.control import Control
+from rocking_cli.studies.verification.motions import Histories
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.site_file import Site
 
@@ -102,18 +102,7 @@ class Code(ABC):
         """Return the answer of `verify` from what was found in each direction; `more` are fields of `Verification`."""
         return Verification(mechanism, self.key, self.name, self.edition, directions, **more)
 
-    def with_histories(
-        self,
-        found: Any,
-        structure: Prepared,
-        site: Any,
-        motions: Sequence[GroundMotion],
-        signs: Sequence[int],
-        progress: Callable[[int], object],
-        *,
-        state: str | None,
-        on_floor: bool,
-    ) -> Verification:
+    def with_histories(self, found: Any, structure: Prepared, site: Any, asked: Histories) -> Verification:
         """Return a verification with time histories; a code that has no such method refuses them.
 
         Parameters are those of `rocking_cli.studies.verification.check.with_histories`.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -32,35 +32,56 @@ class Motions:
     floor: str | None = None
 
 
-def where_it_stands(
-    motions: Sequence[GroundMotion], floor: Floor | None, *, on_floor: bool
-) -> tuple[Motions, Sequence[GroundMotion]]:
-    """Return what the motions of histories are, and ground motions carried to the floor of a site.
+@dataclass(frozen=True)
+class Histories:
+    """The time histories that are asked for.
 
     Parameters
     ----------
     motions : sequence of GroundMotion
-        As scaled.
+        The records, as scaled. If the site has a floor, ground motions are carried to it.
+    signs : sequence of int
+        Polarities, of 1 and -1.
+    state : str, optional
+        The limit state to which the records belong; by default the first one.
+    on_floor : bool
+        Whether the motions are those of the floor of the site, and not of the ground.
+    progress : callable
+        Called with 1 after each record.
+    """
+
+    motions: Sequence[GroundMotion]
+    signs: Sequence[int] = (1,)
+    state: str | None = None
+    on_floor: bool = False
+    progress: Callable[[int], object] = int
+
+
+def where_it_stands(asked: Histories, floor: Floor | None) -> tuple[Motions, Sequence[GroundMotion]]:
+    """Return what the motions of histories are, and ground motions carried to the floor of a site.
+
+    Parameters
+    ----------
+    asked : Histories
+        The histories.
     floor : Floor or None
         The floor of the site on which the structure stands; None if it stands on the ground.
-    on_floor : bool
-        Whether the motions are those of the floor.
 
     Raises
     ------
     InputError
         If the motions cannot be of the floor, or are mixed.
     """
-    carried = [motion.ground is not None for motion in motions]
-    if on_floor and floor is None:
+    motions, carried = asked.motions, [motion.ground is not None for motion in asked.motions]
+    if asked.on_floor and floor is None:
         hint = "give `floor` in the site file, or leave the option out"
         raise InputError(Problem("requires a site with a floor", field="`on_floor`", hint=hint))
-    if any(carried) and on_floor:
+    if any(carried) and asked.on_floor:
         hint = "leave out one of the two: `floor` carries ground motions to a floor"
         raise InputError(Problem("cannot be combined with `floor`", field="`on_floor`", hint=hint))
     if any(carried) and not all(carried):
         raise InputError(Problem("some of the motions are of a floor, others of the ground: give motions of one kind"))
-    if on_floor:
+    if asked.on_floor:
         return Motions("of_floor"), motions
     if carried and all(carried):
         return Motions("carried_by_option", motions[0].processing[-1].removeprefix("floor ")), motions

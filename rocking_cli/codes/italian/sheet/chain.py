@@ -148,79 +148,42 @@ def held(say: Language, position: Displaced, scale: Scale) -> list[Item]:
     return [Grid(say.say("held"), heads, rows, (1, 2, 3))]
 
 
-@dataclass(frozen=True)
-class Sums:
-    """The sums over the blocks at a position, as they are printed.
-
-    Parameters
-    ----------
-    position : Displaced
-    scale : Scale
-    """
-
-    position: Displaced
-    scale: Scale
-
-    @property
-    def carried(self) -> list[float]:
-        """P of each block."""
-        return [self.scale.weight(each.block.P) for each in self.position.blocks]
-
-    @property
-    def inertial(self) -> list[float]:
-        """P + Q of each block."""
-        return [self.scale.weight(each.block.PQ) for each in self.position.blocks]
-
-    @property
-    def up(self) -> list[float]:
-        """y' of each block."""
-        return [self.scale.near(each.dy) for each in self.position.blocks]
-
-    @property
-    def sideways(self) -> list[float]:
-        """x' of each block."""
-        return [self.scale.near(each.dx) for each in self.position.blocks]
-
-    @property
-    def works(self) -> list[float]:
-        """What each force and tie takes."""
-        return [self.scale.weight(each.work) for each in self.position.held]
-
-    def near(self, total: float, weights: list[float]) -> float:
-        """A sum over weights as it is printed: without rounding about zero."""
-        value, most = self.scale.weight(total), sum(abs(weight * self.scale.length) for weight in weights)
-        return 0.0 if abs(value) < NONE * most else value
+def _printed(position: Displaced, scale: Scale, total: float, kind: str) -> float:
+    """A sum over the weights P or PQ of the blocks as it is printed: without rounding about zero."""
+    value, most = scale.weight(total), sum(abs(getattr(each.block, kind)) for each in position.blocks)
+    return 0.0 if abs(value) < NONE * scale.weight(most) * scale.length else value
 
 
 def multiplier(say: Language, position: Displaced, scale: Scale, symbol: str) -> Iterator[Working]:
     """Steps to alpha at a position."""
-    sums, unit = Sums(position, scale), {"unit": scale.unit}
-    lifted, driven = sums.near(position.lifted, sums.carried), sums.near(position.driven, sums.inertial)
-    over, under = {F.PY.text: lifted}, {F.PQX.text: driven}
-    yield say.step(F.PY, lifted, unit, P=sums.carried, y=sums.up)
+    unit, blocks = {"unit": scale.unit}, position.blocks
+    over = {F.PY.text: _printed(position, scale, position.lifted, "P")}
+    under = {F.PQX.text: _printed(position, scale, position.driven, "PQ")}
+    carried, inertial = ([scale.weight(getattr(each.block, key)) for each in blocks] for key in ("P", "PQ"))
+    yield say.step(F.PY, over[F.PY.text], unit, P=carried, y=[scale.near(each.dy) for each in blocks])
     if position.held:
-        over["L"] = sum(sums.works)
-        yield say.step(F.HELD, over["L"], unit, L=sums.works)
+        works = [scale.weight(each.work) for each in position.held]
+        over["L"] = sum(works)
+        yield say.step(F.HELD, over["L"], unit, L=works)
     if position.rest:
         over["V_[m]"] = scale.weight(position.rest)
         yield say.step(F.V_M, over["V_[m]"], unit)
-    yield say.step(F.PQX, driven, unit, P=sums.inertial, x=sums.sideways)
+    yield say.step(F.PQX, under[F.PQX.text], unit, P=inertial, x=[scale.near(each.dx) for each in blocks])
     if position.more:
         under["B_[m]"] = scale.weight(position.more)
         yield say.step(F.B_M, under["B_[m]"], unit)
-    most = sum(abs(each.block.P) for each in position.blocks) * scale.length / abs(position.driven)
+    most = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
     value = 0.0 if abs(position.alpha) < NONE * most else position.alpha
     names = {"symbol": symbol, "over": " + ".join(over), "under": " + ".join(under)}
     yield say.step(F.ALPHA, value, names, V=[*over.values()], B=[*under.values()])
 
 
 def _sums(say: Language, chain: Chain, rest: Displaced, scale: Scale) -> Iterator[Working]:
-    sums, names = Sums(rest, scale), {"unit": scale.unit}
     yield from multiplier(say, rest, scale, "α_[0]")
-    first, total = scale.weight(chain.first), scale.weight(chain.inertial)
-    yield say.step(F.SUM_PQ, total, names, P=sums.inertial)
-    second = scale.weight(chain.second)
-    yield say.step(F.PQXX, second, names, P=sums.inertial, x=sums.sideways)
+    names, inertial = {"unit": scale.unit}, [scale.weight(each.block.PQ) for each in rest.blocks]
+    first, total, second = (scale.weight(value) for value in (chain.first, chain.inertial, chain.second))
+    yield say.step(F.SUM_PQ, total, names, P=inertial)
+    yield say.step(F.PQXX, second, names, P=inertial, x=[scale.near(each.dx) for each in rest.blocks])
     yield say.step(F.E_STAR, chain.e_star, first=first, PQ=total, second=second)
     if chain.mechanism.has_mass:
         g = chain.mechanism.gravity

@@ -112,7 +112,7 @@ class Methods:
         yield from self._lasts(method, asked, more)
 
     def _zeta(self, method: Method, names: Mapping[str, str]) -> Working:
-        return self.say.step(F.ZETA, method.zeta or 0.0, names, a=method.a_g, b=method.asked)
+        return self.say.step(F.ZETA, method.zeta or 0.0, names, a=method.a_g, b=method.demand)
 
     def _solved(
         self, names: Mapping[str, str], spectrum: Spectrum, asked: Asked, a_g: float, clause: str

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rocking_cli.codes.italian.results import Method, Verification, Verified
+from rocking_cli.codes.italian.results import Verification, Verified
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
 from rocking_cli.views.sheet.language import Language, plain
 
@@ -31,14 +31,14 @@ def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> P
 def verdict(say: Language, first: str, where: str, each: Verified) -> Sentence:
     """The answer of a direction."""
     at, counts, passes = each.states[first], each.counts, each.passes(first)
-    if passes is None or at.demand is None or at.ratio is None or counts.a_g is None or counts.asked is None:
+    if passes is None or at.demand is None or at.ratio is None or counts.a_g is None or counts.demand is None:
         return Sentence(say.say("no_state", where=where, state=first), answers=True)
     if each.governs == "damage":
         other = each.methods["nonlinear"].a_g or 0.0
-        why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.asked)
+        why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.demand)
     else:
         why = say.say(
-            "why_nonlinear", d=at.d, ratio=at.ratio, demand=at.demand, T=at.T, a_g=counts.a_g, asked=counts.asked
+            "why_nonlinear", d=at.d, ratio=at.ratio, demand=at.demand, T=at.T, a_g=counts.a_g, asked=counts.demand
         )
     key = "verdict_passes" if passes else "verdict_fails"
     text = say.say(key, where=where, state=first, zeta=counts.zeta, why="@").replace("@", why)
@@ -51,7 +51,7 @@ def _starts_later(say: Language, first: str, where: str, each: Verified) -> Iter
         counts = each.methods[each.governing[state]]
         if state != first and each.governing[state] == f"damage_{state}" and each.passes(state) is not None:
             other = each.methods[f"nonlinear_{state}"].a_g or 0.0
-            why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.asked)
+            why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.demand)
             key = "verdict_passes" if each.passes(state) else "verdict_fails"
             yield Sentence(say.say(key, where=where, state=state, zeta=counts.zeta, why="@").replace("@", why))
 
@@ -59,7 +59,7 @@ def _starts_later(say: Language, first: str, where: str, each: Verified) -> Iter
 def _which(say: Language, found: Verification) -> Iterator[Item]:
     """Which direction governs."""
     least = found.governs
-    ratio, rest = (found.directions[each].states[found.first].ratio for each in (least, least.opposite))
+    ratio, rest = (found.compared(each) for each in (least, least.opposite))
     if ratio is not None and rest is not None and not found.alike:
         yield Sentence(say.say("which", least=say.say(f"short_{least.label}"), ratio=ratio, rest=rest))
 
@@ -72,7 +72,7 @@ def _states(say: Language, where: str, each: Verified) -> Grid:
         rows.append([state, *(say.number(v, 4) for v in (at.d, at.demand, at.T, at.ratio)), outcome])
     damage = each.methods.get("SLD")
     if damage is not None and damage.zeta is not None:
-        numbers = [say.number(v, 4) for v in (damage.a_g, damage.asked, None, damage.zeta)]
+        numbers = [say.number(v, 4) for v in (damage.a_g, damage.demand, None, damage.zeta)]
         numbers[:2] = [f"{text} g" for text in numbers[:2]]
         rows.append([say.say("begins", state="SLD"), *numbers, say.say("yes" if damage.passed else "no")])
     heads = [say.say("limit_state"), f"{say.say('allowed')} [m]", f"{say.say('asked')} [m]", "T [s]", say.say("ratio")]
@@ -86,19 +86,11 @@ def _methods(say: Language, where: str, each: Verified) -> Grid:
         if method.a_g is None:
             continue
         line = each.straight_methods[key]
-        numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.asked, method.zeta)]
-        years = [_years(say, method)] if known else []
+        numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.demand, method.zeta)]
+        years = [method.lasts or say.number(None)] if known else []
         rows.append(
             [say.say(f"method_{key}"), *numbers, *years, say.say("governs") if key in each.governing.values() else ""]
         )
     heads = [say.say("method"), f"a_[g] [g], {say.say('exact')}", f"a_[g] [g], {say.say('line')}"]
     heads += [f"{say.say('asked')} [g]", "ζ_[E]", *([say.say("TR_years")] if known else []), ""]
     return Grid(say.say("methods", where=where), heads, rows, range(1, len(heads) - 1))
-
-
-def _years(say: Language, method: Method) -> str:
-    """A return period, and whether it is beyond the table."""
-    if method.return_period is None:
-        return say.number(None)
-    mark = "" if not method.beyond else ">" if (method.zeta or 0.0) >= 1 else "<"
-    return f"{mark}{method.return_period:.0f}"
