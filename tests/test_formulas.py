@@ -1,0 +1,230 @@
+"""Each formula of the Italian code stands once: the terminal, the workings and the sheet are written from it."""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import replace
+from functools import cache
+from math import log, pi, sqrt
+from pathlib import Path
+from typing import ClassVar
+from unittest.mock import patch
+
+import pytest
+
+from mechanisms.block import Block
+from rocking_cli.codes import italian
+from rocking_cli.codes.italian import formulas
+from rocking_cli.codes.italian.rules import RULES
+from rocking_cli.codes.italian.sheet.build import SHEET, parts
+from rocking_cli.core.registry import Registry
+from rocking_cli.io.yaml_file import parse
+from rocking_cli.structure import parse_structure
+from rocking_cli.studies.verification.check import site_in
+from rocking_cli.studies.verification.control import control_at
+from rocking_cli.studies.verification.working import Formula, as_written, in_plain, put
+from rocking_cli.views.sheet.document import Grid, Steps
+from rocking_cli.views.verification import shown, view
+from rocking_cli.views.view import Table
+from tests.conftest import EXAMPLES
+from tests.test_cli import run
+from tests.test_sheet import CASES, FACADE, FLOOR, HAZARD, PARAPET, SITE, SLC
+
+NUMBER = re.compile(r"\d+\.?\d*(?:e-?\d+)?")
+EVERY = {name: each for name, each in vars(formulas).items() if isinstance(each, Formula)} | {
+    f"PERIOD {state}": each for state, each in formulas.PERIOD.items()
+}
+
+
+class Springy(Block):
+    """A block that says itself that more holds it back, and that more is moved, than its weight."""
+
+    mechanism: ClassVar[str] = "springy"
+
+    def coefficients(self, phi, direction):
+        own = super().coefficients(phi, direction)
+        return replace(own, G=own.G * 1.1, dG=own.dG * 1.1, B=own.B * 1.2, dB=own.dB * 1.2)
+
+
+LARGE = "mechanism: block\nname: large\nwidth: 20\nheight: 160\n"
+MORE = {
+    "soil A, a long life": (FACADE, HAZARD.replace("soil: B", "soil: A").replace("VN: 50", "VN: 300"), None),
+    "beyond 10 s": (LARGE, SITE + "soil: A\n", None),
+    "a point of a body": (FACADE, SITE, (0.1, 8.0, None)),
+    "a level wall": ((EXAMPLES / "symmetric_frame.yaml").read_text(encoding="utf-8"), SITE, (5.0, 6.5, "beam")),
+    "as its floor": (PARAPET, f"{SITE}{FLOOR}T0: 0.4\n", None),
+    "of its own": (Springy(width=0.6, height=8.0), SITE, None),
+    "short": (PARAPET, SITE + SLC + "T0: 0.02\n", None),
+}
+"""Structure, site and control point, beside the cases of the sheet, so that each formula is used."""
+
+
+def found(structure, site, point):
+    """The verification of a case, and its site."""
+    text = isinstance(structure, str)
+    mechanism = parse_structure(structure, "s.yaml", "test", Registry()) if text else structure
+    given = site_in(parse(site, "site.yaml", "site", "")).site
+    control = control_at(mechanism, *point) if point is not None else None
+    return italian.Italian().verify(mechanism, given, control), given
+
+
+@cache
+def case(name):
+    structure, site, *point = MORE[name] if name in MORE else CASES[name]
+    return structure, site, point[0] if point else None
+
+
+def steps(language, verified, site):
+    """What a sheet says of formulas: its steps, and the grid of what the site gives."""
+
+    def of(each):
+        for item in each.items:
+            yield from (item.rows if isinstance(item, Steps) else item.rows if isinstance(item, Grid) else ())
+        for below in each.parts:
+            yield from of(below)
+
+    return [row for part in parts(SHEET.language(language), verified, site) for row in of(part)]
+
+
+def outputs(name):
+    """What the terminal prints, the workings, and the sheet in either language, each computed anew."""
+    verified, site = found(*case(name))
+    tables = [each for each in view(verified, every_step=True).parts if isinstance(each, Table)]
+    lines = [*verified.workings, *(line for each in shown(verified).values() for line in each.workings)]
+    return tables, lines, steps("en", verified, site), steps("it", verified, site)
+
+
+def _is(formula, other):
+    """Whether one is the other, or a copy with the clause of a method."""
+    same = all(getattr(formula, key) == getattr(other, key) for key in ("symbol", "text", "numbers", "meaning"))
+    return same and formula.clause in ("", other.clause)
+
+
+@pytest.fixture(scope="module")
+def used():
+    """Of each formula the first case that uses it, and what is printed there."""
+    where, printed = {}, {}
+    step = Formula.working
+    for name in [*CASES, *MORE]:
+        seen = []
+
+        def noted(self, *args, seen=seen, **named):
+            seen.append(self)
+            return step(self, *args, **named)
+
+        with patch.object(Formula, "working", noted):
+            printed[name] = outputs(name)
+        for key, formula in EVERY.items():
+            if any(_is(formula, each) for each in seen):
+                where.setdefault(key, name)
+    return where, printed
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_a_formula_that_is_blanked_is_blank_in_every_printout(name, used):
+    where, printed = used
+    assert name in where, "no case uses this formula"
+    formula = EVERY[name]
+    before, kept = printed[where[name]], dict(vars(formula))
+    for part in ("text", "numbers"):
+        if not kept[part]:
+            part = "symbol"
+        try:
+            object.__setattr__(formula, part, "")
+            after = outputs(where[name])
+        finally:
+            vars(formula).update(kept)
+        for one, other, which in zip(before, after, ("terminal", "workings", "English", "Italian"), strict=True):
+            if kept["text"] == "given" and part == "text" and which in ("English", "Italian"):
+                continue  # on the sheet these are in a table without formulas
+            assert one != other, (part, which)
+
+
+def test_every_line_gives_its_result_by_the_numbers_that_are_put_in(used):
+    """In plain characters a line is arithmetic of Python but for powers and separators."""
+    known = {"max": max, "min": min, "ln": log, "sqrt": sqrt, "pi": pi}
+    count = 0
+    for tables, lines, *_ in used[1].values():
+        for line in lines:
+            if line.numbers:
+                value = eval(line.numbers.replace("^", "**").replace(";", ","), {"__builtins__": {}}, known)
+                digits = max(abs(float(each)) for each in NUMBER.findall(line.numbers))
+                assert value == pytest.approx(line.value, rel=1e-4, abs=2e-5 * digits), line
+                count += 1
+        rows = [row for table in tables for row in table.rows]
+        assert all([line.symbol, line.formula, line.numbers] in [row[:3] for row in rows] for line in lines)
+    assert count > 2000
+
+
+def test_no_other_file_of_the_code_holds_a_formula():
+    folder = Path(italian.__file__).parent
+    for file in folder.rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Name)
+                and node.func.id in ("Formula", "Working")
+            ):
+                assert file.name == "formulas.py", (file, node.lineno)
+
+
+def test_a_new_limit_state_is_one_rule():
+    assert [*formulas.PERIOD] == [rule.state for rule in RULES]
+    assert formulas.PERIOD["SLV"].text == "1.68 π √(d_[{state}]/{a})"
+
+
+class TestFormula:
+    """What a code without a sheet uses."""
+
+    RATIO = Formula("ρ_[{state}]", "C/D", "{C}/{D}", "g", "4.2", meaning="capacity over demand at {state}")
+
+    def test_it_is_filled(self):
+        line = self.RATIO.working(1.5, {"state": "ULS"}, C=0.3, D=0.2)
+        assert (line.symbol, line.formula, line.numbers, line.value) == ("ρ_[ULS]", "C/D", "0.3/0.2", 1.5)
+        assert (line.meaning, line.unit, line.clause) == ("capacity over demand at ULS", "g", "4.2")
+        assert (line.state, line.standing) == ("ULS", "code")
+        assert line.in_plain("Strength").symbol == "rho_ULS" and line.in_plain("Strength").section == "Strength"
+
+    @pytest.mark.parametrize(
+        ("numbers", "given", "wanted"),
+        [
+            ("{P} · {x} + …", {"P": [1.0, 2.0], "x": [3.0, -4.0]}, "1 · 3 + 2 · (-4)"),
+            ("({P} · {x} + …)/({P} + …)", {"P": [1.0, 2.0], "x": [3.0, 4.0]}, "(1 · 3 + 2 · 4)/(1 + 2)"),
+            ("min({a} · {b}; {d}; …)", {"a": 0.4, "b": 2.0, "d": [5.0, 6.0]}, "min(0.4 · 2; 5; 6)"),
+            ("{a} · {b}^[{n}]", {"a": 1e-9, "b": -2.0, "n": "−0.20"}, "(1e-09) · (-2)^[−0.20]"),
+        ],
+    )
+    def test_numbers_below_zero_and_sums(self, numbers, given, wanted):
+        assert put(numbers, given, as_written) == wanted
+
+    def test_a_sum_needs_as_many_of_each(self):
+        with pytest.raises(ValueError, match="shorter"):
+            put("{P} · {x} + …", {"P": [1.0, 2.0], "x": [3.0]}, as_written)
+
+    @pytest.mark.parametrize(
+        ("marked", "plain"),
+        [
+            ("α_[0] g/(e^[*] FC)", "alpha0 g/(e* FC)"), ("d_[SLV]", "d_SLV"), ("a^[*]_[SLV,lin]", "a*_SLV,lin"),
+            ("Σ (P+Q) x′^[2]", "sum (P+Q) x'^2"), ("ξ_[1]^[−1/2] η(ξ)", "xi1^-1/2 eta(xi)"),
+            ("√(10/5) ≥ 0.55", "sqrt(10/5) >= 0.55"),
+        ],
+    )  # fmt: skip
+    def test_plain_characters(self, marked, plain):
+        assert in_plain(marked) == plain and plain.isascii()
+
+    def test_every_formula_is_plain_in_the_terminal(self, used):
+        for tables, lines, *_ in used[1].values():
+            assert all(
+                each.isascii() for line in lines for each in (line.symbol, line.formula, line.numbers, line.unit)
+            )
+            assert tables
+
+
+def test_the_terminal_prints_every_step_at_its_most_verbose(tmp_path):
+    (tmp_path / "s.yaml").write_text(FACADE, encoding="utf-8")
+    (tmp_path / "site.yaml").write_text(SITE, encoding="utf-8")
+    words = ("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml")
+    brief, whole = run(*words).stdout, run("-v", *words).stdout
+    assert "Both directions: Kinematic chain, at rest" in whole and "0.075 * 9.80665/(1 * 1.35)" in whole
+    assert "Kinematic chain" not in brief and all(line in whole.splitlines() for line in brief.splitlines())
