@@ -139,7 +139,8 @@ class Methods:
         start, damage = method.a_g / q, self.found.methods["damage"]
         names = {"symbol": "a_[g,0]", "what": "a_g_start", "state": asked.state}
         yield from self._solved(names, ground.of_activation, asked, start, damage.clause)
-        linear = say.step(F.LINEAR, method.a_g, q=q, a=start)
+        by_code = F.LINEAR if asked.state == "SLD" else replace(F.LINEAR, standing="ours")
+        linear = say.step(by_code, method.a_g, q=q, a=start)
         names = {"symbol": "a_[g,linear]", "asked": "a_[g,SLV]", "state": "SLV", "more": ""}
         yield Steps([linear, self._zeta(method, names)])
         yield from self._lasts(method, Asked("SLV", "a_[g,linear]", method.a_g, "g", "a_[g]"), "")
