@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.plugins.errors import guard
 from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
@@ -17,10 +18,17 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Verification)
 V = TypeVar("V", bound=Verified)
+SHOWN = ("of_direction", "of_directions", "data", "table", "draw")
+"""The methods that a code overrides: whatever fails there is an error of the plugin."""
 
 
 class Showing(Generic[F, V]):
     """How the results of a code are shown; a code that shows more, or otherwise, overrides what it needs."""
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """Guard what a subclass shows."""
+        super().__init_subclass__(**named)
+        guard(cls, SHOWN, lambda own, method: f"{own.__qualname__} failed in {method}")
 
     def of_direction(self, found: F, each: V, where: str) -> Iterable[Table | str]:
         """Return the tables and sentences of a direction, which `where` names."""
@@ -49,6 +57,7 @@ class Showing(Generic[F, V]):
             "governs": each.governs,
             "ratio": each.ratio,
             "passes": each.passed,
+            "remarks": list(each.remarks),
         }  # fmt: skip
 
     def table(self, found: F) -> dict[str, Sequence[Any]]:
@@ -69,8 +78,12 @@ class Showing(Generic[F, V]):
 
 def showing(found: Verification) -> Showing[Any, Any]:
     """How the results of the code of a verification are shown."""
-    own: Showing[Any, Any] | None = codes()[found.code].showing()
-    return own or Showing[Any, Any]()
+    own = codes()[found.code].showing()
+    if own is None:
+        return Showing[Any, Any]()
+    if not isinstance(own, Showing):
+        raise PluginError(f"the code {found.code} failed in showing: it must return a Showing or None")
+    return own
 
 
 def view(found: Verification, site: str | None = None) -> View:
