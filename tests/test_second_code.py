@@ -148,6 +148,20 @@ class Unknown(Demo):
         return self.found(mechanism, found)
 
 
+class StrictSite(DemoSite):
+    @classmethod
+    def between(cls, given, sound):
+        if sound("rare") and sound("frequent") and given.get("rare", 1.0) < given.get("frequent", 0.0):
+            yield ("rare",), "is below the acceleration of frequent earthquakes"
+
+
+class Strict(Demo):
+    key, site = "strict", StrictSite
+
+    def verify(self, mechanism, site, control=None):
+        raise rk.InputError(rk.Problem("cannot be used for a block", field="rare"))
+
+
 class NoExampleSite(Site):
     soil: str = quantity("class of the soil: of the code")
     table: list[list[float]] = quantity("rows of\nperiod and acceleration", example=[[0.0, 1.0], [1.0, 0.5]])
@@ -163,7 +177,21 @@ class OwnStarter(Demo):
     key, starter = "own_starter", "code: NTC2018\nFC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\n"
 
 
-EVERY = (Demo, Divides, Nothing, NoMethod, NoRatio, Unmade, Shown, NoShowing, BadSheet, Unknown, NoExample, OwnStarter)
+EVERY = (
+    Demo,
+    Divides,
+    Nothing,
+    NoMethod,
+    NoRatio,
+    Unmade,
+    Shown,
+    NoShowing,
+    BadSheet,
+    Unknown,
+    Strict,
+    NoExample,
+    OwnStarter,
+)
 MODULE = "tests.test_second_code"
 HERE = r"\(.*test_second_code\.py:\d+\)"
 
@@ -256,6 +284,13 @@ class TestVerify:
         said = run("verify", "block.yaml", *demo, code=2).stderr
         assert "site.yaml:3:7: rare must be more than 0 m/s2, got -2" in said
         assert "site.yaml:4:1: FC is not a field of the site" in said
+
+    def test_what_a_code_itself_refuses_has_its_line(self, demo):
+        site_of(Strict)
+        assert "site.yaml:3:7: rare cannot be used for a block" in run("verify", *demo, code=2).stderr
+        Path("site.yaml").write_text("code: strict\nfrequent: 3\nrare: 2\n", encoding="utf-8")
+        said = run("verify", *demo, code=2).stderr
+        assert "site.yaml:3:7: rare is below the acceleration of frequent earthquakes" in said
 
     def test_a_missing_field_has_a_hint_at_its_own_starter(self, demo):
         Path("site.yaml").write_text("code: UNI-demo\nfrequent: 0.8\n", encoding="utf-8")
@@ -542,11 +577,12 @@ class TestGuide:
             if name.startswith("test_"):
                 check(TestContract())
 
-    def test_its_sheet_is_written(self, guide, demo):
+    def test_its_sheet_is_written(self, guide, demo, monkeypatch):
         guide("DemoWithSheet")
         run("verify", "block.yaml", *demo, "--sheet", "s.html")
         page = Path("s.html").read_text(encoding="utf-8")
         assert "The verification is satisfied: ratio 1.83" in page and "1.5 x 2.452" in page
+        monkeypatch.setattr("rocking_cli.cli.structures.prepared", lambda files: pytest.fail("too late"))
         said = run("verify", "block.yaml", *demo, "--sheet", "t.html", "--language", "it", code=2).stderr
         assert "--language: there is no calculation sheet in 'it'" in said and "known: en" in said
         assert not Path("t.html").exists()
