@@ -15,6 +15,7 @@ from make_runs import Content, Run, keep, run, shown
 from parts import asked, renewed
 
 from rocking_cli import Registry
+from rocking_cli.studies import verification
 
 DOCS = Path(__file__).resolve().parent
 PROJECT = DOCS.parent
@@ -52,6 +53,8 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
         return make_reference.equivalent_blocks(what)
     if kind == "core":
         return make_reference.helpers(what)
+    if kind == "verification":
+        return make_reference.helpers(what, verification)
     if kind == "names":
         return make_reference.public_names(what)
     return {"options": make_reference.command_line}[kind]()

@@ -6,14 +6,17 @@ from enum import Enum
 from inspect import Parameter, cleandoc, getdoc, isclass, signature
 from pathlib import Path
 from textwrap import dedent, indent
+from types import ModuleType
 from typing import Any
 
 import click
+from pydantic import BaseModel
 
 import rocking_cli
 from rocking_cli import core
 from rocking_cli.cli.help import OF_RECORDS, RecordOption
 from rocking_cli.cli.main import main
+from rocking_cli.studies.verification import Code
 from rocking_cli.views.mechanisms import fields
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
@@ -109,14 +112,14 @@ def public_names(names: str) -> str:
     return "\n".join(rows)
 
 
-def helpers(names: str) -> str:
-    """Return signature and first sentence of names of `rocking_cli.core`, for authors of plugins.
+def helpers(names: str, module: ModuleType = core) -> str:
+    """Return signature and first sentence of names of `rocking_cli.core`, or a module, for authors of plugins.
 
     With a dot, a method that `Mechanism` has: `.bodies`.
     """
     lines = []
     for name in names.split():
-        each = getattr(core.Mechanism if name.startswith(".") else core, name.lstrip("."))
+        each = getattr(core.Mechanism if name.startswith(".") else module, name.lstrip("."))
         first = " ".join((getdoc(each) or "").split("\n\n")[0].split())
         lines.append(f"- `{called(name.lstrip('.'), each)}`: {plain(first)}")
     return "\n".join(lines)
@@ -127,7 +130,7 @@ def called(name: str, each: Any) -> str:
     if isclass(each) and issubclass(each, Enum):
         return ", ".join(f"{name}.{member}" for member in each.__members__)
     is_called = callable(each) and not getattr(each, "_is_protocol", False)  # a property is not
-    if not is_called or (isclass(each) and issubclass(each, core.Mechanism | Exception)):
+    if not is_called or (isclass(each) and issubclass(each, BaseModel | Code | Exception)):
         return name
     found = signature(each)
     taken = [argument(one) for one in found.parameters.values() if one.name != "self"]

@@ -67,7 +67,8 @@ def did_you_mean(word: str, known: list[str]) -> str | None:
     """Return a hint with the known word nearest to a mistyped one, or the list of all."""
     from difflib import get_close_matches
 
-    close = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
+    lowered = {each.lower(): each for each in known}
+    close = [lowered[each] for each in get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)]
     return f"did you mean {close[0]}?" if close else f"known: {', '.join(sorted(known))}" if known else None
 
 

@@ -11,6 +11,7 @@ import rocking_cli as rk
 from rocking_cli.codes.italian import words
 from rocking_cli.core import Direction
 from rocking_cli.studies.verification.installed import codes
+from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.verification import standing, view
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
@@ -303,18 +304,61 @@ class TestClauses:
         for symbol in CLAUSES:
             expected = "code" if symbol in UNCHECKED else "ours" if symbol.startswith("A") else "transcription"
             assert lines[symbol].standing == expected, symbol
-        said = standing(list(lines.values()))
+        said = standing(list(lines.values()), ": [formula] or §section")
+        assert "each formula in the code: [formula] or §section. None" in said
         assert "They agree with a transcription of its text, except for V_R, r, a_g, F0, T_C*, S_S, S, C_C, " in said
         assert "psi, a*_SLV,lin, a*_SLC,lin, zeta_E, zeta_E,lin." in said
         assert "None of the formulas has been checked against the printed code yet" in said
 
 
-def test_the_sheet_cites_the_code_alike(tmp_path):
+@pytest.mark.parametrize(("damage", "linear"), [("", "‡"), ("SLD: {ag: 0.08, F0: 2.5, TC: 0.36, S: 1.2}\n", "*")])
+def test_the_sheet_cites_the_code_alike(damage, linear, tmp_path):
+    """The linear method by the ground of SLV is ours, on the sheet as in the terminal."""
     site = "FC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\nfloor: {z: 6, H: 9, T1: 0.4, xi1: 0.1, n: 3}\n"
-    (tmp_path / "site.yaml").write_text(site, encoding="utf-8")
+    (tmp_path / "site.yaml").write_text(site + damage, encoding="utf-8")
     (tmp_path / "b.yaml").write_text("mechanism: block\nwidth: 0.6\nheight: 8\n", encoding="utf-8")
-    run("verify", tmp_path / "b.yaml", "--site", tmp_path / "site.yaml", "--sheet", tmp_path / "o.html")
+    files = ("verify", tmp_path / "b.yaml", "--site", tmp_path / "site.yaml")
+    said = run(*files, "--sheet", tmp_path / "o.html").stdout
     page = (tmp_path / "o.html").read_text(encoding="utf-8")
     cited = set(re.findall(r'class="clause">([^<]+)<', page))
     assert {"[3.2.6]*", "[3.2.7]*", "[C7.2.6]*", "[C7.2.7]*", "[C7.2.10]*", "[C8.7.1.8]*", "§8.3†", "§C7.2.3†"} <= cited
-    assert {"§C8.7.1.2.1.7*", "§C8.7.1.2.1.8*", "[C7.2.6], [C7.2.9]‡"} <= cited
+    assert {f"§C8.7.1.2.1.7{linear}", "§C8.7.1.2.1.8*", "[C7.2.6], [C7.2.9]‡"} <= cited
+    assert ("a_g,linear (capacity as a ground acceleration on rock)" in " ".join(said.split())) == (linear == "‡")
+
+
+class TestStanding:
+    """How far formulas were checked, of a code that has any of the kinds."""
+
+    def lines(self, *standings):
+        kinds = ("print", "transcription", "code", "ours", "plain")
+        return [Working(each[0], each, "", "", 1.0, "", "1", each) for each in kinds if each in standings]
+
+    @pytest.mark.parametrize(
+        ("standings", "wanted", "not_said"),
+        [
+            (("print",), "Every formula has been checked against the printed code.", "have"),
+            (
+                ("print", "code"),
+                "Only p of the formulas has been checked against the printed code: have the others",
+                "yet",
+            ),
+            (
+                ("print", "transcription", "code"),
+                "The others agree with a transcription of its text, except for c.",
+                "None",
+            ),
+            (("code",), "None of the formulas has been checked against the printed code yet: have them", "agree"),
+            (
+                ("ours",),
+                "Our own choices ('ours'), where the code is silent or we depart from its wording: o (ours).",
+                "clauses",
+            ),
+        ],
+    )
+    def test_each_is_said(self, standings, wanted, not_said):
+        said = standing(self.lines(*standings), ": §section")
+        assert wanted in said and not_said not in said.replace("have the others", "").replace(wanted, "")
+        assert ("in the code: §section." in said) == (standings != ("ours",))
+
+    def test_of_plain_mechanics_nothing_is_said(self):
+        assert standing(self.lines("plain")) == standing([]) == ""

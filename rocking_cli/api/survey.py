@@ -119,7 +119,8 @@ def design(
     until : str
         The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number. The metrics are
         `lambda`, `phi_cr`, `p`, `alpha0`, with motions `peak_ratio` and `overturned`, of their neighbours, and with a
-        site `zeta_damage`, `zeta_linear` and `zeta_nonlinear`. A neighbour of unknown outcome counts as overturning.
+        site `ratio`, and `zeta_damage`, `zeta_linear` and `zeta_nonlinear` or the numbers of another code. A neighbour
+        of unknown outcome counts as overturning.
     motions : GroundMotion, Pulse, str or Path, or a sequence of these
         Ground motions; the worst one governs.
     scale : float

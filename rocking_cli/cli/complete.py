@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 import click
 from click.shell_completion import CompletionItem
 
+CODES = "rocking.codes"
+"""Entry-point group of codes of practice, as in `studies.verification.installed`, which takes long to import."""
 Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
 
 
@@ -23,6 +25,11 @@ def mechanisms(*more: str) -> Completer:
 def shapes(ending: str = "") -> Completer:
     """Complete names of installed pulse shapes, each with a suffix."""
     return _plugins("rocking.pulses", ending=ending)
+
+
+def codes(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Complete names of installed codes of practice."""
+    return _plugins(CODES)(ctx, param, incomplete)
 
 
 def listed(words: Sequence[str]) -> Completer:

@@ -6,8 +6,6 @@ import errno
 import io
 import os
 import sys
-import warnings
-from collections.abc import Callable
 from importlib import import_module
 from time import monotonic
 from typing import Any
@@ -17,7 +15,7 @@ import click
 from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
 from rocking_cli.cli.help import Context
-from rocking_cli.errors import CacheWarning, InputError, PluginWarning, Problem, RockingError
+from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
@@ -48,9 +46,7 @@ class _Context(Context):
         if self.refused is not None and self.info_name not in DO_WITHOUT:
             raise self.refused
         defaults.say(self)
-        with terminal.results_only(), warnings.catch_warnings():
-            warnings.simplefilter("always", PluginWarning)
-            warnings.showwarning = _show(warnings.showwarning)
+        with terminal.plugins_apart():
             return super().invoke(callback, *args, **named)
 
 
@@ -61,19 +57,6 @@ def _check_environment() -> None:
         hint = "unset this environment variable, or give seconds since 1970"
         what = f"must be a whole number of at most {LATEST} digits, got {cut(repr(given))}"
         raise InputError(Problem(what, field="SOURCE_DATE_EPOCH", hint=hint))
-
-
-def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """Show warnings about plugins and the cache of compiled code as the other warnings of this program."""
-
-    def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-        if not issubclass(category, (PluginWarning, CacheWarning)):
-            otherwise(message, category, *where, **more)
-            return
-        terminal.warning(str(message))
-        terminal.debug_traceback(message.__cause__ if isinstance(message, Warning) else None)
-
-    return show
 
 
 class LazyGroup(click.Group):

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from difflib import get_close_matches
 from importlib.resources import files
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rocking_cli.cli import complete, options, terminal
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.verification.code import Code
 
 STARTERS = ("facade", "parapet", "gable", "pinnacle", "corner", "bell_cell", "column_with_tendon", "statue")
 """Common structures, each a file in the data of the package. A mechanism of the same name has priority."""
@@ -18,8 +23,17 @@ SITE = "site"
 
 
 @click.command(short_help="Print a template file, or create a plugin package.")
-@click.argument("name", shell_complete=complete.mechanisms(STUDY, SITE, *STARTERS))
+@click.argument("name", metavar="NAME", required=False, shell_complete=complete.mechanisms(STUDY, SITE, *STARTERS))
 @click.option("--plugin", is_flag=True, help="Create a package for a mechanism of your own, called NAME.")
+@click.option(
+    "--code",
+    is_flag=False,
+    flag_value="",
+    metavar="[CODE]",
+    shell_complete=complete.codes,
+    help="With `site`: code of practice of the site file.  [default: NTC2018]  With --plugin, alone: create a package "
+    "for a code of practice.",
+)
 @click.option(
     "-o",
     "--out",
@@ -29,15 +43,19 @@ SITE = "site"
     help="New folder for the package.  [default: rocking-NAME, in this folder]",
 )
 @options.as_json
-def command(name: str, plugin: bool, out: str | None, as_json: bool) -> None:
+@click.pass_context
+def command(
+    ctx: click.Context, name: str | None, plugin: bool, code: str | None, out: str | None, as_json: bool
+) -> None:
     """Print a commented template: a working structure file of the mechanism NAME, or a common structure.
 
     The common structures are facade, parapet, gable, pinnacle, corner, bell_cell, column_with_tendon and statue.
-    `study` is a fragility study of a block.yaml in the same folder, and `site` a site file for `rocking verify`.
+    `study` is a fragility study of a block.yaml in the same folder, and `site` a site file for `rocking verify`: of the
+    Italian code, or with --code CODE of any installed code of practice.
 
     With --plugin, the command writes a package for a mechanism of your own, called NAME: a working mechanism with
     comments for you to change, its tests, a structure file and its drawing. `pip install` makes it available like the
-    built-in mechanisms.
+    built-in mechanisms. With --plugin and --code, it writes such a package for a code of practice of your own.
 
     \b
     Example:
@@ -45,28 +63,36 @@ def command(name: str, plugin: bool, out: str | None, as_json: bool) -> None:
       rocking new facade > facade.yaml
       rocking new study > study.yaml
       rocking new site > site.yaml
+      rocking new site --code NTC2018 > site.yaml
       rocking new --plugin leaning_pier
+      rocking new --plugin my_code --code
     """
+    if plugin and code and name is None:
+        name, code = code, ""  # `--code NAME` is as clear
+    if name is None:
+        raise click.MissingParameter(ctx=ctx, param=next(each for each in ctx.command.params if each.name == "name"))
     if plugin:
-        from rocking_cli.cli.new_plugin import write
+        from rocking_cli.cli.new_plugin import CODE, MECHANISM, write
 
-        write(name, out, printed=(STUDY, SITE, *STARTERS), as_json=as_json)
+        if code not in (None, "", name):
+            raise click.UsageError(f"--plugin creates one package: give one name, not {name} and {code}.")
+        write(name, out, MECHANISM if code is None else CODE, printed=(STUDY, SITE, *STARTERS), as_json=as_json)
         return
     if out is not None:
         raise click.UsageError("--out requires --plugin: without it the file is printed; redirect it with > FILE.")
+    if code is not None and name != SITE:
+        raise click.UsageError("--code requires `site`, as in `rocking new site --code NTC2018`, or --plugin.")
     if name == STUDY:
         from rocking_cli.cli.new_study import TEMPLATE
 
         _print({"study": STUDY, "yaml": TEMPLATE}, as_json=as_json)
         return
     if name == SITE:
-        from rocking_cli.studies.verification.installed import codes
-        from rocking_cli.studies.verification.site_file import USUAL
-
-        _print({"site": USUAL, "yaml": codes()[USUAL].starter}, as_json=as_json)
+        _print_site(code, as_json=as_json)
         return
     from rocking_cli.core.registry import Registry
     from rocking_cli.errors import InputError, Problem, RockingError
+    from rocking_cli.plugins.installed import find
     from rocking_cli.structure import parse_structure
     from rocking_cli.views.template import template
 
@@ -75,21 +101,66 @@ def command(name: str, plugin: bool, out: str | None, as_json: bool) -> None:
         text = (files("rocking_cli") / "data" / "starters" / f"{name}.yaml").read_text(encoding="utf-8")
         _print({"starter": name, "yaml": text}, as_json=as_json)
         return
+    if name not in registry and name in find(complete.CODES):
+        hint = f"`rocking new site --code {name}` prints a site file"
+        raise InputError(Problem(f"{name} is a code of practice, not a mechanism", hint=hint))
     if name not in registry and (near := get_close_matches(name, STARTERS, n=1)):
         raise InputError(Problem(f"the mechanism {name!r} does not exist", hint=f"did you mean {near[0]}?"))
     text = template(registry[name])
     try:
         parse_structure(text, f"rocking new {name}", name, registry)
     except RockingError as error:
-        terminal.warning(
-            f"the examples of the mechanism {name} are not a valid structure: this file does not work as it is"
-        )
-        terminal.note(str(error))
-        terminal.debug_traceback(error)
+        _warn(f"the examples of the mechanism {name} are not a valid structure", error)
     _print({"mechanism": name, "yaml": text}, as_json=as_json)
 
 
-def _print(made: dict[str, str], *, as_json: bool) -> None:
+def _print_site(asked: str | None, *, as_json: bool) -> None:
+    """Print the site file of a code, by default the usual one, and in JSON the schema of its fields too."""
+    from rocking_cli.cli.new_plugin import quoted
+    from rocking_cli.errors import RockingError
+    from rocking_cli.io.yaml_file import parse
+    from rocking_cli.plugins.errors import blame
+    from rocking_cli.studies.verification.check import site_in
+    from rocking_cli.studies.verification.site_file import HINT, USUAL
+    from rocking_cli.views.template import starter
+
+    key = USUAL if asked is None else asked
+    code = _code(key)
+    getting = f"rocking new site --code {quoted(key)}"
+    text = starter(code, [f"{getting} > site.yaml", "rocking verify block.yaml --site site.yaml"])
+    try:
+        site_in(parse(text, getting, "site", HINT))
+    except RockingError as error:
+        _warn(f"the examples of the code {key} are not a valid site", error)
+    schema: dict[str, Any] = {}
+    if as_json:
+        with blame(f"the code {key} failed in the schema of its site", type(code).__module__):
+            schema = code.site.model_json_schema()
+    _print({"site": key, "yaml": text, "schema": schema}, as_json=as_json)
+
+
+def _code(key: str) -> Code:
+    """Return an installed code. Raises `InputError` with those that are installed."""
+    from rocking_cli.errors import InputError, Problem
+    from rocking_cli.studies.verification.installed import codes
+    from rocking_cli.text import cut, did_you_mean
+
+    if key in codes():
+        return codes()[key]
+    known = f"known: {', '.join(codes())}"
+    guess = did_you_mean(key, list(codes())) or known
+    hint = guess if guess == known else f"{guess} {known}"
+    raise InputError(Problem(f"the code {cut(repr(key))} does not exist" if key else "`code` has no value", hint=hint))
+
+
+def _warn(what: str, error: Exception) -> None:
+    """Warn that a file cannot be used before something is changed in it, and why."""
+    terminal.warning(f"{what}: this file does not work as it is")
+    terminal.note(str(error))
+    terminal.debug_traceback(error)
+
+
+def _print(made: Mapping[str, Any], *, as_json: bool) -> None:
     if as_json:
         terminal.print_json(made)
     else:

@@ -1,4 +1,4 @@
-"""`rocking new --plugin`: create a package for a mechanism of one's own."""
+"""`rocking new --plugin`: create a package for a mechanism, or a code of practice, of one's own."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 from importlib.resources import files
 from keyword import iskeyword, issoftkeyword
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
 from rocking_cli.cli import terminal
@@ -24,31 +25,79 @@ from rocking_cli.text import cut
 
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
+    from rocking_cli.studies.verification.code import Code
 
 NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 LONGEST = 40  # characters of a name, so that no line of the package is too long
 DEVICE = re.compile(r"con|prn|aux|nul|com\d|lpt\d")  # no file can have such a name on Windows
-TEMPLATES = {
-    "pyproject.toml": "package metadata, and the name by which rocking finds it",
-    "rocking_my_mechanism.py": "the mechanism: change this",
-    "tests/test_my_mechanism.py": "tests of the contract, and of a formula by hand",
-    "README.md": "how to go on",
-}
-"""Files of the package; the words my_mechanism, MyMechanism and my-mechanism in them become the name."""
-MODULE = "rocking_my_mechanism.py"
-IMPORTED = ("ClassVar", "MechanismContract", "Self", "Sequence")
-"""Classes that these files import, in addition to those of the core."""
+IMPORTED = ("ClassVar", "CodeContract", "MechanismContract", "Self", "Sequence", "SiteFields")
+"""Classes of these files, and those that they import, in addition to those of the core and of verifications."""
 
 
-def write(name: str, out: str | None, *, printed: Collection[str], as_json: bool) -> None:
+@dataclass(frozen=True)
+class Kind:
+    """What a package can be for.
+
+    Parameters
+    ----------
+    word : str
+        What it is called.
+    folder : str
+        Where its files are, in the data of this package.
+    placeholder : str
+        The name in them: my_mechanism, MyMechanism, my-mechanism and "my mechanism" become the name that is given.
+    files : mapping of str to str
+        What each file is, by its name there.
+    examples : mapping of str to str
+        The same of the files that are made by the program.
+    made : callable
+        Returns the content of these for a class and its name.
+    commands : callable
+        Returns the commands with which to try it.
+    file : str
+        In which files its name stands.
+    example : str
+        A name that it could have.
+    """
+
+    word: str
+    folder: str
+    placeholder: str
+    files: Mapping[str, str]
+    examples: Mapping[str, str]
+    made: Callable[[Any, str], dict[str, bytes]]
+    commands: Callable[[str], list[str]]
+    file: str
+    example: str
+
+    @property
+    def module(self) -> str:
+        """The file of the class."""
+        return f"rocking_{self.placeholder}.py"
+
+    def named(self, text: str, name: str) -> str:
+        """Return a text of the package with its name instead of the placeholder."""
+        spellings: tuple[Callable[[str], str], ...] = (str, of_class, _hyphened, _spaced)
+        words = {spell(self.placeholder): spell(name) for spell in spellings}
+        return re.sub("|".join(words), lambda found: words[found[0]], text)
+
+    def text(self, file: str, name: str) -> str:
+        """Return a file of the package."""
+        content = (files("rocking_cli") / "data" / self.folder / f"{file}.txt").read_text(encoding="utf-8")
+        return self.named(content, name)
+
+
+def write(name: str, out: str | None, kind: Kind, *, printed: Collection[str], as_json: bool) -> None:
     """Write the package, and print its files and the next commands.
 
     Parameters
     ----------
     name : str
-        Name of the mechanism.
+        Name of the mechanism or code.
     out : str or None
         Folder of the package; None for one with its name, in this folder.
+    kind : Kind
+        `MECHANISM` or `CODE`.
     printed : collection of str
         Names of other templates that `rocking new` prints.
     as_json : bool
@@ -57,48 +106,48 @@ def write(name: str, out: str | None, *, printed: Collection[str], as_json: bool
     Raises
     ------
     InputError
-        If the name is not valid for a mechanism, or the folder cannot be made.
+        If the name is not valid, or the folder cannot be made.
     """
     from rocking_cli.io.files import check_new_folder, write_folder
     from rocking_cli.views.plugin import view
 
-    check_name(name, printed)
+    check_name(name, kind, printed)
     folder = Path(f"rocking-{_hyphened(name)}" if out is None else out)
     check_new_folder(folder)
-    described, contents = {_named(file, name): what for file, what in TEMPLATES.items()}, package(name)
-    described |= {f"{name}.yaml": "a structure of it", f"{name}.png": "its picture"}
-    write_folder(folder, contents)
-    commands = [f"cd {_typed(str(folder))}"] if folder.resolve() != Path.cwd() else []
+    described = {kind.named(file, name): what for file, what in {**kind.files, **kind.examples}.items()}
+    write_folder(folder, package(name, kind))
+    commands = [f"cd {quoted(str(folder))}"] if folder.resolve() != Path.cwd() else []
     commands += [
         f'{_python()} -m pip install --editable ".[test]"',
-        f"rocking mechanisms --check {name}",
-        f"rocking draw {name}.yaml",
+        *kind.commands(name),
         f"{_python()} -m pytest",
     ]
-    terminal.show(view(name, str(folder), described, commands), as_json=as_json)
+    terminal.show(view(name, kind.word, str(folder), described, commands), as_json=as_json)
     if not as_json:
         terminal.sentence("Next:")
         for each in commands:
             terminal.result(f"  {each}")  # as it is: it is copied
 
 
-def check_name(name: str, printed: Collection[str]) -> None:
-    """Raise `InputError` if a text cannot be the name of a mechanism in a package of its own."""
+def check_name(name: str, kind: Kind, printed: Collection[str]) -> None:
+    """Raise `InputError` if a text cannot be the name of a mechanism, or code, in a package of its own."""
     from rocking_cli.core.registry import Registry
+    from rocking_cli.studies.verification.installed import Codes
 
     registry = Registry()
     if not NAME.fullmatch(name) or len(name) > LONGEST:
         guess = _spelled(name)
-        free = NAME.fullmatch(guess) and guess not in registry and _taken(guess, printed) is None
-        problem = f"{cut(repr(name))} cannot be the name of a mechanism"
-        hint = f"use at most {LONGEST} of a-z, 0-9 and _, a letter first, such as {guess if free else 'leaning_pier'}"
+        free = NAME.fullmatch(guess) and guess not in registry and _taken(guess, kind, printed) is None
+        problem = f"{cut(repr(name))} cannot be the name of a {kind.word}"
+        hint = f"use at most {LONGEST} of a-z, 0-9 and _, a letter first, such as {guess if free else kind.example}"
         raise InputError(Problem(problem, hint=hint))
-    if name in registry:
-        owner = registry.package_of(name)
-        hint = "take another name" + ("" if owner.startswith("rocking-cli ") else f", or uninstall {owner} first")
-        raise InputError(Problem(f"the mechanism {name} already exists, in {owner}", hint=hint))
-    if (why := _taken(name, printed)) is not None:
-        raise InputError(Problem(f"a mechanism cannot be called {name}: {why}", hint="take another name"))
+    for word, installed in (("mechanism", registry), ("code", Codes())):
+        if name in installed:
+            owner = installed.package_of(name)
+            hint = "take another name" + ("" if owner.startswith("rocking-cli ") else f", or uninstall {owner} first")
+            raise InputError(Problem(f"the {word} {name} already exists, in {owner}", hint=hint))
+    if (why := _taken(name, kind, printed)) is not None:
+        raise InputError(Problem(f"a {kind.word} cannot be called {name}: {why}", hint="take another name"))
 
 
 def _spelled(name: str) -> str:
@@ -107,60 +156,59 @@ def _spelled(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", plain).lstrip("_0123456789")[:LONGEST].rstrip("_")
 
 
-def _taken(name: str, printed: Collection[str]) -> str | None:
+def _taken(name: str, kind: Kind, printed: Collection[str]) -> str | None:
     """Return why a well-spelled name is not free, or None if it is."""
     import yaml
 
     from rocking_cli import core
     from rocking_cli.cli.mechanisms import PARTS
+    from rocking_cli.studies import verification
 
     if name == "cli":
         return "its module would be rocking_cli, the name of this program"
     if iskeyword(name) or issoftkeyword(name):
         return "it is a keyword of Python"
     if not isinstance(yaml.safe_load(name), str):
-        return "in a structure file this word is not read as text"
+        return f"in a {kind.file} file this word is not read as text"
     if name in sys.stdlib_module_names:
         return "Python has a module of this name"
-    if name in printed:
+    if kind is MECHANISM and name in printed:
         return f"`rocking new {name}` prints something else"
-    if name in PARTS:
+    if kind is MECHANISM and name in PARTS:
         return f"`rocking mechanisms {name}` shows something else"
     if DEVICE.fullmatch(name):
         return "it is not a valid file name on Windows"
-    cls = _of_class(name)
+    cls = of_class(name)
     if cls.startswith("Test"):
         return f"its class would be {cls}, which pytest collects as tests"
-    if cls in IMPORTED or hasattr(core, cls) or hasattr(builtins, cls):
+    if cls in IMPORTED or any(hasattr(each, cls) for each in (core, verification, builtins)):
         return f"its class would be {cls}, which already exists"
     return None
 
 
-def package(name: str) -> dict[str, bytes]:
-    """Return the files of the package for a mechanism of this name, with the drawing of its example.
+def package(name: str, kind: Kind | None = None) -> dict[str, bytes]:
+    """Return the files of the package for a mechanism, or code, of this name, with its example.
 
     Parameters
     ----------
     name : str
         Name that has passed `check_name`.
+    kind : Kind, optional
+        By default `MECHANISM`.
 
     Returns
     -------
     dict of str to bytes
         Content of each file, by its path in the folder.
     """
-    from rocking_cli.views.template import template
-
-    texts = {_named(file, name): _named(_text(file), name) for file in TEMPLATES}
-    cls = loaded(texts[_named(MODULE, name)], _named(MODULE, name))
-    texts[f"{name}.yaml"] = template(cls)
-    return {file: text.encode() for file, text in texts.items()} | {f"{name}.png": _drawn(cls, name)}
+    kind = kind or MECHANISM
+    texts = {kind.named(file, name): kind.text(file, name) for file in kind.files}
+    module = kind.named(kind.module, name)
+    return {file: text.encode() for file, text in texts.items()} | kind.made(loaded(texts[module], module), name)
 
 
-def loaded(text: str, file: str) -> type[Mechanism]:
-    """Return the mechanism of a module that is not installed yet."""
-    from rocking_cli.core import Mechanism
-
+def loaded(text: str, file: str) -> type[Any]:
+    """Return the class of a module that is not installed yet: the last one in it."""
     module = ModuleType(Path(file).stem)
     before = sys.modules.get(module.__name__)
     sys.modules[module.__name__] = module  # where the types of its fields are looked for
@@ -170,9 +218,21 @@ def loaded(text: str, file: str) -> type[Mechanism]:
         del sys.modules[module.__name__]
         if before is not None:
             sys.modules[module.__name__] = before
-    (cls,) = (each for each in vars(module).values() if isinstance(each, type) and each.__module__ == module.__name__)
-    assert issubclass(cls, Mechanism)
-    return cls
+    own = [each for each in vars(module).values() if isinstance(each, type) and each.__module__ == module.__name__]
+    return own[-1]
+
+
+def _of_mechanism(cls: type[Mechanism], name: str) -> dict[str, bytes]:
+    from rocking_cli.views.template import template
+
+    return {f"{name}.yaml": template(cls).encode(), f"{name}.png": _drawn(cls, name)}
+
+
+def _of_code(cls: type[Code], name: str) -> dict[str, bytes]:
+    from rocking_cli.views.template import starter
+
+    commands = [f"rocking new site --code {name} > site.yaml", "rocking verify --site site.yaml"]
+    return {"site.yaml": starter(cls(), commands).encode()}
 
 
 def _drawn(cls: type[Mechanism], name: str) -> bytes:
@@ -190,26 +250,16 @@ def _drawn(cls: type[Mechanism], name: str) -> bytes:
     return stream.getvalue()
 
 
-def _text(file: str) -> str:
-    return (files("rocking_cli") / "data" / "plugin" / f"{file}.txt").read_text(encoding="utf-8")
-
-
-def _named(text: str, name: str) -> str:
-    """Return a text of the package with its name instead of that of the template."""
-    words = {
-        "my_mechanism": name,
-        "MyMechanism": _of_class(name),
-        "my-mechanism": _hyphened(name),
-        "my mechanism": name.replace("_", " "),
-    }
-    return re.sub("|".join(words), lambda found: words[found[0]], text)
-
-
 def _hyphened(name: str) -> str:
     return name.replace("_", "-")
 
 
-def _of_class(name: str) -> str:
+def _spaced(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def of_class(name: str) -> str:
+    """Return the name of the class of a mechanism or code."""
     return "".join(word[0].upper() + word[1:] for word in name.split("_"))
 
 
@@ -217,9 +267,43 @@ def _python() -> str:
     """Return the command of the Python that has rocking-cli: `python`, unless that is another one here."""
     found = shutil.which("python")
     same = found is not None and Path(found).parent == Path(sys.executable).parent
-    return "python" if same or not sys.executable else _typed(sys.executable)
+    return "python" if same or not sys.executable else quoted(sys.executable)
 
 
-def _typed(word: str) -> str:
+def quoted(word: str) -> str:
     """Return a word as it is typed in a shell."""
     return subprocess.list2cmdline([word]) if os.name == "nt" else shlex.quote(word)
+
+
+MECHANISM = Kind(
+    word="mechanism",
+    folder="plugin",
+    placeholder="my_mechanism",
+    files={
+        "pyproject.toml": "package metadata, and the name by which rocking finds it",
+        "rocking_my_mechanism.py": "the mechanism: change this",
+        "tests/test_my_mechanism.py": "tests of the contract, and of a formula by hand",
+        "README.md": "how to go on",
+    },
+    examples={"my_mechanism.yaml": "a structure of it", "my_mechanism.png": "its picture"},
+    made=_of_mechanism,
+    commands=lambda name: [f"rocking mechanisms --check {name}", f"rocking draw {name}.yaml"],
+    file="structure",
+    example="leaning_pier",
+)
+CODE = Kind(
+    word="code",
+    folder="plugin_code",
+    placeholder="my_code",
+    files={
+        "pyproject.toml": "package metadata, and the name by which rocking finds it",
+        "rocking_my_code.py": "the code: change this",
+        "tests/test_my_code.py": "tests of the contract, and of numbers by hand",
+        "README.md": "how to go on",
+    },
+    examples={"site.yaml": "a site for it"},
+    made=_of_code,
+    commands=lambda name: ["rocking verify --site site.yaml"],
+    file="site",
+    example="my_code",
+)

@@ -12,6 +12,7 @@ from typing import Any
 
 import click
 
+from rocking_cli.cli import terminal
 from rocking_cli.units import UnitError, read, split
 
 # The names of units stand here again so that `--help` needs no numpy; a test holds them together.
@@ -80,7 +81,8 @@ class Parsed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
         from rocking_cli.errors import InputError
 
         try:
-            return self._parser()(value)
+            with terminal.plugins_apart():
+                return self._parser()(value)
         except InputError as error:
             (problem,) = error.problems
             self.fail(f"{problem.message}{f': {problem.hint}' if problem.hint else ''}.", param, ctx)

@@ -82,6 +82,7 @@ def command(
     if out is None and not as_json:
         out = Path(f"{structures.stem(files[0] if files else None)}.html")
         check_writable(out)
+    site = sheets.site_of_report(Path(site_file), motions=bool(asked)) if site_file is not None else None
     paths, bad = motion_files.find(asked.records)
     keep_apart([("--out", out)], [*files, *(str(each.path) for each in paths), *head.inputs, site_file])
     title = head.block(heads.command_line(ctx))
@@ -96,9 +97,9 @@ def command(
         ctx.exit(InputError.exit_code)
     compile_first()
     verified = None
-    if site_file is not None:
+    if site is not None:
         verified = sheets.of_report(
-            structure, Path(site_file), files[0] if files else None, given, asked.signs, title, state=state,
+            structure, site, files[0] if files else None, given, asked.signs, title, state=state,
             on_floor=on_floor,
         )  # fmt: skip
     with terminal.progress(steps(given), "parts of the report") as advance:

@@ -12,7 +12,7 @@ from rocking_cli.io.browser import as_pdf, browser
 from rocking_cli.io.files import write_whole
 from rocking_cli.report.verified import VerifiedReport
 from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
-from rocking_cli.studies.verification.check import read_site, verify, with_histories
+from rocking_cli.studies.verification.check import read_site, refuse, verify, with_histories
 from rocking_cli.studies.verification.motions import Histories
 from rocking_cli.views.sheet.build import Made, sheet, sheet_of
 from rocking_cli.views.sheet.language import Language
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 def check(asked: SheetAsked, site: SiteFile) -> None:
     """Raise `InputError`, before any work, if a sheet cannot be written."""
-    sheet_of(site)
+    sheet_of(site).language(asked.spoken.key)
     if _is_docx(asked.sheet):
         from rocking_cli.report.sheet_docx import check_package
 
@@ -72,15 +72,22 @@ def write(asked: SheetAsked, found: Verification, site: SiteFile, title: TitleBl
     terminal.note(f"wrote {asked.sheet} ({len(data) / 1e6:.2g} MB)")
 
 
+def site_of_report(path: Path, *, motions: bool) -> SiteFile:
+    """Return the site of a report. Raises `InputError`, before any work, if its code has no part in a report."""
+    site = read_site(path)
+    sheet_of(site)
+    refuse(site, motions=motions)
+    return site
+
+
 def of_report(
-    structure: Prepared, site_path: Path, given: str | None, motions: Sequence[Scaled], signs: Sequence[int],
+    structure: Prepared, site: SiteFile, given: str | None, motions: Sequence[Scaled], signs: Sequence[int],
     title: TitleBlock, *, state: str | None = None, on_floor: bool = False,
 ) -> VerifiedReport:  # fmt: skip
     """Return the verification in a report, with time histories under its ground motions."""
-    site = read_site(site_path)
     found = verify(structure, site)
     if motions:
         scaled = [each.motion.scaled(each.factor) for each in motions]
         found = with_histories(found, structure, site, Histories(scaled, signs, state, on_floor))
-    of = made(structure, given, site_path, motions)
+    of = made(structure, given, Path(site.document.file), motions)
     return VerifiedReport(found, sheet(found, site, Language("en"), title, of))

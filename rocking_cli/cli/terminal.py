@@ -8,7 +8,8 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
 from time import monotonic
 from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TextIO
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TextIO
 import click
 
 from rocking_cli.cli.prose import wrapped
+from rocking_cli.errors import CacheWarning, PluginWarning
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
@@ -41,6 +43,28 @@ def results_only() -> Iterator[None]:
             yield
     finally:
         _results = before
+
+
+@contextmanager
+def plugins_apart() -> Iterator[None]:
+    """Keep what plugins print out of the results, and show warnings about them as the others of this program."""
+    with results_only(), warnings.catch_warnings():
+        warnings.simplefilter("always", PluginWarning)
+        warnings.showwarning = _show(warnings.showwarning)
+        yield
+
+
+def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
+    """Show warnings about plugins and the cache of compiled code as the other warnings of this program."""
+
+    def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+        if not issubclass(category, (PluginWarning, CacheWarning)):
+            otherwise(message, category, *where, **more)
+            return
+        warning(str(message))
+        debug_traceback(message.__cause__ if isinstance(message, Warning) else None)
+
+    return show
 
 
 @contextmanager

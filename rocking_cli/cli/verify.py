@@ -106,7 +106,7 @@ def command(
         raise click.UsageError("--state and --on-floor describe records: give --record FILE or --pulse PULSE.")
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.studies.verification.check import read_site, verify
+    from rocking_cli.studies.verification.check import read_site, refuse, verify
     from rocking_cli.studies.verification.control import control_at
     from rocking_cli.views.verification import showing, view
 
@@ -114,6 +114,7 @@ def command(
     given = [file, site_file, *sheet.inputs, *(str(each.path) for each in paths)]
     keep_apart([("--plot", plot), ("--sheet", sheet.sheet)], given)
     site = read_site(Path(site_file))
+    refuse(site, control=control is not None, motions=bool(asked))
     title = _title(ctx, sheet, site)
     structure = structures.prepared([file] if file else [])
     found = verify(structure, site, control_at(structure.mechanism, *control) if control is not None else None)

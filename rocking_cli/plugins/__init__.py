@@ -1,1 +1,1 @@
-"""Plugins of other packages: mechanisms, record readers, pulse shapes and intensity measures."""
+"""Plugins of other packages: mechanisms, record readers, pulse shapes, intensity measures and codes of practice."""

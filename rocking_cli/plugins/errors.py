@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import wraps
-from inspect import isfunction
+from inspect import isfunction, isgeneratorfunction
 from typing import Any
 
 from rocking_cli.errors import PluginError, RockingError
@@ -81,6 +81,15 @@ def own_traceback(error: BaseException | None) -> str | None:
 def _guarded(
     method: Callable[..., Any], module: str, what: Callable[[type, str], str], but: type[Exception]
 ) -> Callable[..., Any]:
+    if isgeneratorfunction(method):
+
+        @wraps(method)
+        def guarded_parts(self: Any, *args: Any, **named: Any) -> Iterator[Any]:
+            with blame(what(type(self), method.__name__), module, but=but):
+                yield from method(self, *args, **named)
+
+        return guarded_parts
+
     @wraps(method)
     def guarded(self: Any, *args: Any, **named: Any) -> Any:
         with blame(what(type(self), method.__name__), module, but=but):

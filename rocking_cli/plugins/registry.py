@@ -1,4 +1,4 @@
-"""Plugins of one kind by name: mechanisms, record readers, pulse shapes or intensity measures."""
+"""Plugins of one kind by name: mechanisms, record readers, pulse shapes, intensity measures or codes."""
 
 from __future__ import annotations
 

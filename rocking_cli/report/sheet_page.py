@@ -18,7 +18,7 @@ from rocking_cli.text import printable
 from rocking_cli.views.sheet.document import Drawing, Sheet
 from rocking_cli.views.sheet.markup import runs
 
-MARKS = {"transcription": "*", "code": "†", "ours": "‡", "plain": ""}
+MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """What stands beside a formula, by how far it was checked."""
 
 

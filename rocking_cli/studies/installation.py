@@ -18,6 +18,7 @@ from rocking_cli.excitation.records.registry import Readers
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.studies.compiling import CALLED
+from rocking_cli.studies.verification.installed import Codes
 
 OURS = "rocking-cli"
 WITHOUT = ("dev", "docs", "bench", "release")
@@ -26,7 +27,7 @@ WITHOUT = ("dev", "docs", "bench", "release")
 
 @dataclass(frozen=True)
 class Plugin:
-    """An installed mechanism, record reader, pulse shape or measure of intensity.
+    """An installed mechanism, record reader, pulse shape, measure of intensity or code of practice.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ class Installation:
     extras : mapping of str to mapping
         For each extra of the package, those packages likewise.
     plugins : mapping of str to tuple of Plugin
-        Under `mechanisms`, `records`, `pulses` and `measures`.
+        Under `mechanisms`, `records`, `pulses`, `measures` and `codes`.
     cache : str
         The folder of the compiled kernels.
     unwritable : str or None
@@ -92,6 +93,7 @@ def examine() -> Installation:
             "records": _plugins(Readers()),
             "pulses": _plugins(PulseShapes()),
             "measures": _plugins(IntensityMeasures()),
+            "codes": _plugins(Codes()),
         },
         str(cache_folder()),
         unwritable(),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from math import nan
 
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import leave_out
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 from rocking_cli.studies.verification.check import verify
@@ -153,15 +155,23 @@ def _of_codes(name: str) -> Metric | None:
     def value(structure: Prepared, shaking: Shaking | None) -> float:
         if one.of_structure is not None:
             structure.statics  # noqa: B018 - what does not stand is refused with its name
-            return min(one.of_structure(structure.mechanism, each) for each in structure.mechanism.directions)
+            with _blamed(first, name):
+                return min(one.of_structure(structure.mechanism, each) for each in structure.mechanism.directions)
         assert shaking is not None and shaking.site is not None
-        of = own[shaking.site.site.code].of
+        key = shaking.site.site.code
+        of = own[key].of
         assert of is not None  # else it is of the structure
-        values = [of(each) for each in verify(structure, shaking.site).directions.values()]
-        return min((each for each in values if each is not None), default=nan)
+        found = verify(structure, shaking.site).directions.values()
+        with _blamed(key, name):
+            return min((value for each in found if (value := of(each)) is not None), default=nan)
 
-    one = next(iter(own.values()))
+    first, one = next(iter(own.items()))
     return Metric(name, one.unit, one.meaning, value, sited=one.of_structure is None, codes=tuple(own))
+
+
+def _blamed(code: str, name: str) -> AbstractContextManager[None]:
+    """Turn errors of a number of a code into those of its plugin."""
+    return blame(f"the code {code} failed in its number {name}", type(codes()[code]).__module__)
 
 
 def known_metrics() -> list[str]:

@@ -101,9 +101,9 @@ class Surveyed:
         What to bear in mind with its lambda.
     under : Under, optional
         What ground motions do to it, if there are any.
-    ratio : float
+    ratio : float, optional
         What the code of a site allows over what it asks for, in the direction where that is less: it passes from 1.
-        NaN without a site.
+        NaN if the site does not give what the code needs for it; None without a site.
     """
 
     row: int
@@ -122,7 +122,7 @@ class Surveyed:
     doubt: str | None = None
     caution: str | None = None
     under: Under | None = None
-    ratio: float = nan
+    ratio: float | None = None
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,8 @@ def _by_response(found: Surveyed) -> tuple[float, ...]:
 
 
 def _by_ratio(found: Surveyed) -> tuple[float, ...]:
-    return (_rounded(found.ratio), _rounded(found.uplift))
+    assert found.ratio is not None
+    return (inf if isnan(found.ratio) else _rounded(found.ratio), _rounded(found.uplift))
 
 
 ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "ratio": _by_ratio}
@@ -340,7 +341,7 @@ def _alone(place: int, entry: Entry, structure: Prepared, site: SiteFile | None)
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
         "; ".join(doubts(mechanism)) or None,
         mechanism.own_caution() or None,
-        ratio=verify(structure, site).ratio if site is not None else nan,
+        ratio=verify(structure, site).ratio if site is not None else None,
     )
 
 

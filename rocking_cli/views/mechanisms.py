@@ -98,8 +98,8 @@ def part(name: str) -> View:
     return View(data, tables)
 
 
-def fields(cls: type[BaseModel]) -> list[dict[str, Any]]:
-    """The fields of a mechanism's file: name, unit, symbol, bounds, default, description; its own before the common."""
+def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[dict[str, Any]]:
+    """The fields of a file: name, unit, symbol, bounds, default, description; its own before those of a common base."""
     found = []
     for key, info in cls.model_fields.items():
         extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
@@ -120,15 +120,15 @@ def fields(cls: type[BaseModel]) -> list[dict[str, Any]]:
                 "default": None if info.default is PydanticUndefined else info.default,
                 "example": info.examples[0] if info.examples else None,
                 "description": info.description or "",
-                "common": _is_common(cls, key),
+                "common": _is_common(cls, key, common),
             }
         )
     return sorted(found, key=lambda row: row["common"])
 
 
-def _is_common(cls: type[BaseModel], key: str) -> bool:
-    """Whether every mechanism has a field, and this one says nothing of its own on it."""
-    own = cls.__mro__[: cls.__mro__.index(Mechanism)] if issubclass(cls, Mechanism) else [cls]
+def _is_common(cls: type[BaseModel], key: str, common: type[BaseModel]) -> bool:
+    """Whether the base has a field, and this class says nothing of its own on it."""
+    own = cls.__mro__[: cls.__mro__.index(common)] if issubclass(cls, common) else [cls]
     return not any(key in vars(each).get("__annotations__", {}) for each in own)
 
 

@@ -61,7 +61,7 @@ def _row(rank: int, each: Surveyed) -> dict[str, Any]:
             "peak_over": each.under.over,
             "worst": each.under.worst,
         }
-    verified = {} if isnan(each.ratio) else {"ratio": each.ratio}
+    verified = {} if each.ratio is None else {"ratio": each.ratio}
     return {
         "rank": rank,
         "name": each.name,
@@ -138,7 +138,7 @@ def cells(rank: int, each: Surveyed, longest: int | None = NAME, *, unknown: boo
         str(rank),
         cut(name, longest) if longest is not None else name,
         each.mechanism,
-        *([] if isnan(each.ratio) else [number(each.ratio, 4)]),
+        *([] if each.ratio is None else [number(each.ratio, 4)]),
         *shaken,
         *(number(value, 4) for value in numbers),
     ]

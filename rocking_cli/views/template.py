@@ -1,13 +1,21 @@
-"""A structure file to start from, of any mechanism."""
+"""Files to start from: a structure of any mechanism, and a site for any code of practice."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+import yaml
+from pydantic import BaseModel
+
+from rocking_cli.studies.verification.code import Code
+from rocking_cli.studies.verification.site_file import Site
 from rocking_cli.views.mechanisms import fields
 
 LONG = 40  # characters of a field and its value, above which the comment stands
 UNITS = "A number without a unit is in the unit in brackets; 800 mm or 12 ft is also accepted."
+OF_A_SITE = "Numbers are in the unit in brackets."
 
 
 def template(cls: Any) -> str:
@@ -24,32 +32,77 @@ def template(cls: Any) -> str:
     -------
     str
     """
-    lines = [f"# {cls.title}", f"# {cls.source}", f"# {UNITS}", f"mechanism: {cls.mechanism}"]
+    usual = {"name": f"my {cls.mechanism.replace('_', ' ')}", "restitution": "0.9"}
+    lines, missing = _lines(fields(cls), usual, cls.starter)
+    fill_in = [f"# Fill in {', '.join(missing)}: the mechanism gives no example."] if missing else []
+    head = [f"# {cls.title}", f"# {cls.source}", *fill_in, f"# {UNITS}", f"mechanism: {cls.mechanism}"]
+    return "\n".join([*head, *lines]) + "\n"
+
+
+def starter(code: Code, commands: Sequence[str] = ()) -> str:
+    """A commented site file for a code of practice: its own, or one made from its fields as `template` does.
+
+    Parameters
+    ----------
+    code : Code
+        The code.
+    commands : sequence of str
+        What to type to get the file and to use it.
+
+    Returns
+    -------
+    str
+    """
+    if code.starter:
+        return code.starter
+    rows = [row for row in fields(code.site, Site) if row["field"] != "code"]
+    rows.sort(key=lambda row: row["field"] != "name")
+    empty = {row["field"]: "" for row in rows if not row["required"] and row["example"] is None is row["default"]}
+    lines, missing = _lines(rows, {**empty, "name": "my site"})
+    fill_in = [f"# Fill in {', '.join(missing)}: the code gives no example."] if missing else []
+    head = [f"# A site, to verify a structure by the {_in_a_line(f'{code.name} ({code.edition})')}."]
+    head += [f"#   {each}" for each in commands]
+    return "\n".join([*head, *fill_in, f"# {OF_A_SITE}", f"code: {_yaml(code.key)}", *lines]) + "\n"
+
+
+def _lines(
+    rows: Sequence[Mapping[str, Any]], usual: Mapping[str, str], needed: Collection[str] = ()
+) -> tuple[list[str], list[str]]:
+    """Return the lines of some fields, and those of the fields that are needed but have no example.
+
+    Parameters
+    ----------
+    rows : sequence of mapping
+        The fields.
+    usual : mapping of str to str
+        Values that replace the examples of some.
+    needed : collection of str
+        Optional fields that the file needs.
+    """
+    lines: list[str] = []
     missing = []
-    for row in fields(cls):
+    for row in rows:
         unit = f" [{row['unit']}]" if row["unit"] else ""
         symbol = f", {row['symbol']}" if row["symbol"] else ""
         limits = f" ({row['bounds']})" if row["bounds"] else ""
-        used = row["required"] or row["field"] in cls.starter
+        used = row["required"] or row["field"] in needed
         value = row["example"] if row["example"] is not None else row["default"]
-        example = _yaml(value)
-        if row["field"] == "name":
-            example = f"my {cls.mechanism.replace('_', ' ')}"
-        elif row["field"] == "restitution":
-            example = "0.9"
-        elif used and row["example"] is None and row["default"] is None:
+        example = usual.get(row["field"], _yaml(value))
+        if used and row["field"] not in usual and row["example"] is None and row["default"] is None:
             missing.append(row["field"])
             example = ""
         entry = f"{'' if used else '# '}{row['field']}: {example}"
         fill_in = "fill in: " if row["field"] in missing else ""
-        comment = f"# {fill_in}{row['description']}{symbol}{unit}{limits}"
+        comment = f"# {fill_in}{_in_a_line(row['description'])}{symbol}{unit}{limits}"
         if _is_deep(value):
             lines += [comment, *(f"{'' if used else '# '}{line}" for line in _block(row["field"], value))]
             continue
         lines += [f"{entry:<32}  {comment}"] if len(entry) <= LONG else [comment, entry]
-    if missing:
-        lines.insert(2, f"# Fill in {', '.join(missing)}: the mechanism gives no example.")
-    return "\n".join(lines) + "\n"
+    return lines, missing
+
+
+def _in_a_line(text: str) -> str:
+    return " ".join(text.split())
 
 
 def _is_deep(value: Any) -> bool:
@@ -65,8 +118,19 @@ def _block(key: str, value: Any) -> list[str]:
 
 
 def _yaml(value: Any) -> str:
-    if isinstance(value, list):
+    if isinstance(value, BaseModel):
+        value = value.model_dump(mode="json", exclude_none=True)
+    if isinstance(value, list | tuple):
         return f"[{', '.join(_yaml(item) for item in value)}]"
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key}: {_yaml(item)}' for key, item in value.items())}}}"
-    return str(value)
+    return json.dumps(value) if isinstance(value, str) and _must_be_quoted(value) else str(value)
+
+
+def _must_be_quoted(text: str) -> bool:
+    """Whether a text would be something else in a file, alone or in a list."""
+    try:
+        found: object = yaml.safe_load(f"[{text}]  # a comment")
+    except yaml.YAMLError:
+        return True
+    return found != [text]

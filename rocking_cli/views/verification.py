@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.plugins.errors import guard
 from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Verification)
 V = TypeVar("V", bound=Verified)
+SHOWN = ("of_direction", "of_directions", "data", "table", "draw")
+"""The methods that a code overrides: whatever fails there is an error of the plugin."""
 
 
 class Showing(Generic[F, V]):
@@ -29,10 +32,18 @@ class Showing(Generic[F, V]):
         The symbols of the workings of the site that are shown, in their order; empty for all.
     compared : str
         Of what directions have a ratio.
+    notation : str
+        How the clauses are written, such as ": [formula] or §section".
     """
 
     of_site: Sequence[str] = ()
     compared: str = "capacity to demand"
+    notation: str = ""
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """Guard what a subclass shows."""
+        super().__init_subclass__(**named)
+        guard(cls, SHOWN, lambda own, method: f"{own.__qualname__} failed in {method}")
 
     def of_direction(self, found: F, each: V, where: str) -> Iterable[Table | str]:
         """Return the tables and sentences of a direction, which `where` names."""
@@ -49,6 +60,7 @@ class Showing(Generic[F, V]):
             "governs": each.governs,
             "ratio": each.ratio,
             "passes": each.passed,
+            "remarks": list(each.remarks),
         }  # fmt: skip
 
     def table(self, found: F) -> dict[str, Sequence[Any]]:
@@ -69,8 +81,12 @@ class Showing(Generic[F, V]):
 
 def showing(found: Verification) -> Showing[Any, Any]:
     """How the results of the code of a verification are shown."""
-    own: Showing[Any, Any] | None = codes()[found.code].showing()
-    return own or Showing[Any, Any]()
+    own = codes()[found.code].showing()
+    if own is None:
+        return Showing[Any, Any]()
+    if not isinstance(own, Showing):
+        raise PluginError(f"the code {found.code} failed in showing: it must return a Showing or None")
+    return own
 
 
 def view(found: Verification, site: str | None = None, *, every_step: bool = False) -> View:
@@ -151,7 +167,7 @@ def verdict(each: Verified, where: str) -> str:
 def _site(found: Verification, symbols: Sequence[str]) -> Table:
     """What is the same in both directions, with the formula of each number; a column for each limit state."""
     rows: dict[str, dict[str, Working]] = {}
-    for line in found.workings:
+    for line in (each.in_plain() for each in found.workings):
         rows.setdefault(line.symbol, {})[line.state] = line
     states = list(dict.fromkeys(state for each in rows.values() for state in each if state)) or [""]
     cells = []
@@ -200,22 +216,32 @@ def table(found: Verification) -> dict[str, Sequence[Any]]:
     return showing(found).table(found)
 
 
-def standing(workings: Sequence[Working]) -> str:
-    """State how far the formulas were checked against the code; empty if there are none."""
-    if not workings:
-        return ""
-    ours, unchecked, transcribed = (
+def standing(workings: Sequence[Working], notation: str = "") -> str:
+    """State how far the formulas were checked against the code; empty if there are none.
+
+    `notation` says how the code is cited, such as ": [formula] or §section".
+    """
+    ours, unchecked, transcribed, printed = (
         {each.symbol: each.meaning for each in workings if each.standing == standing}
-        for standing in ("ours", "code", "transcription")
+        for standing in ("ours", "code", "transcription", "print")
     )
-    said = (
-        "The clauses name the place of each formula in the code: [formula] or §section. None of the formulas has been "
-        "checked against the printed code yet: have them checked before you rely on a verdict."
-    )
+    said = []
+    if printed or transcribed or unchecked:
+        said.append(f"The clauses name the place of each formula in the code{notation}.")
+    if transcribed or unchecked:
+        which = f"Only {', '.join(printed)} of the formulas" if printed else "None of the formulas"
+        them = "the others" if printed else "them"
+        said.append(
+            f"{which} has been checked against the printed code{'' if printed else ' yet'}: have {them} checked before "
+            "you rely on a verdict."
+        )
+    elif printed:
+        said.append("Every formula has been checked against the printed code.")
     if transcribed:
         others = f", except for {', '.join(unchecked)}" if unchecked else ""
-        said = f"{said} They agree with a transcription of its text{others}."
-    if not ours:
-        return said
-    named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())
-    return f"{said} Our own choices ('ours'), where the code is silent or we depart from its wording: {named}."
+        which = "The others" if printed else "They"
+        said.append(f"{which} agree with a transcription of its text{others}.")
+    if ours:
+        named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())
+        said.append(f"Our own choices ('ours'), where the code is silent or we depart from its wording: {named}.")
+    return " ".join(said)

@@ -31,6 +31,7 @@ class ItalianShowing(Showing[Verification, Verified]):
     """How it is shown."""
 
     of_site, compared = OF_SITE, "displacement capacity to demand"
+    notation = ": [formula] or §section"
 
     def of_direction(self, found: Verification, each: Verified, where: str) -> Iterable[Table | str]:
         """Return the capacity curve, the methods, the verdict and why the methods differ."""

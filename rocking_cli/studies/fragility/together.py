@@ -1,4 +1,4 @@
-"""What must hold between the fields of a study file, also where one of them is wrong by itself."""
+"""What must hold between the fields of a study or site file, also where one of them is wrong by itself."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Sound = Callable[..., bool]
 
 
 class Part(BaseModel):
-    """A part of a study file."""
+    """A part of a study file, or of a site file."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from numbers import Real
 from pathlib import Path
 
 from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.io.yaml_file import Document
+from rocking_cli.plugins.errors import blame
 from rocking_cli.studies.verification import site_file
 from rocking_cli.studies.verification.code import Code
 from rocking_cli.studies.verification.control import Control
 from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.motions import Histories
-from rocking_cli.studies.verification.results import Verification
+from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.site_file import Site, SiteFile
 
 
@@ -41,6 +43,16 @@ def of_each(site: SiteFile) -> SiteFile:
     return replace(site, site=code_of(site).of_each(site.site))
 
 
+def refuse(site: SiteFile, *, control: bool = False, motions: bool = False) -> None:
+    """Raise `InputError` if the code of a site takes no control point, or no ground motions, but there are some."""
+    code = code_of(site)
+    if control and not code.takes_control:
+        raise InputError(Problem(f"{code.key} takes no control point", field="`control`", hint="leave it out"))
+    if motions and not code.takes_motions:
+        hint = "leave out the ground motions"
+        raise InputError(Problem(f"{code.key} has no method with time histories", hint=hint))
+
+
 def verify(
     structure: Prepared,
     site: SiteFile,
@@ -64,12 +76,12 @@ def verify(
     MechanismError
         If the structure does not stand.
     """
+    refuse(site, control=control is not None)
     structure.statics  # noqa: B018 - what does not stand, or jumps, is refused with its name
     code = code_of(site)
-    if control is not None and not code.takes_control:
-        raise InputError(Problem(f"{code.key} takes no control point", field="`control`", hint="leave it out"))
+    taken = {"control": control} if code.takes_control else {}
     try:
-        return _held(code.verify(structure.mechanism, site.site, control), code)
+        return _held(code.verify(structure.mechanism, site.site, **taken), code, "verify")
     except InputError as error:
         own = type(structure.mechanism).model_fields
         placed = site.placed(error).problems
@@ -81,16 +93,20 @@ def verify(
         ) from None
 
 
-def _held(found: object, code: Code) -> Verification:
-    """An answer of a code, if it is one; what else a plugin returns is an error of it."""
-    directions = found.directions.values() if isinstance(found, Verification) else ()
-    if not directions or not all(each.governs in each.methods for each in directions):
-        raise PluginError(
-            f"the code {code.key} failed in verify: it must return a Verification with at least one direction, each "
-            "governed by one of its methods"
-        )
-    assert isinstance(found, Verification)  # it has directions
-    return found
+def _held(found: object, code: Code, method: str) -> Verification:
+    """Return an answer of a code if it is valid; anything else that a plugin returns is an error of the plugin."""
+    failed = f"the code {code.key} failed in {method}"
+    with blame(failed, type(code).__module__):
+        if isinstance(found, Verification) and found.directions and all(map(_is_whole, found.directions.values())):
+            return found
+    raise PluginError(
+        f"{failed}: it must return a Verification with at least one direction, each governed by one of its methods"
+    )
+
+
+def _is_whole(each: Verified) -> bool:
+    """Whether a direction is governed by one of its methods, and its ratio and verdict, often its own, are such."""
+    return each.governs in each.methods and isinstance(each.ratio, Real | None) and each.passed in (None, True, False)
 
 
 def with_histories(found: Verification, structure: Prepared, site: SiteFile, asked: Histories) -> Verification:
@@ -115,4 +131,6 @@ def with_histories(found: Verification, structure: Prepared, site: SiteFile, ask
     SolverError
         If a motion cannot be followed to its end.
     """
-    return code_of(site).with_histories(found, structure, site.site, asked)
+    refuse(site, motions=True)
+    code = code_of(site)
+    return _held(code.with_histories(found, structure, site.site, asked), code, "with_histories")

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.prepared import Prepared
-from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import guard
 from rocking_cli.studies.verification.control import Control
 from rocking_cli.studies.verification.motions import Histories
@@ -89,7 +88,7 @@ class Code(ABC):
         site : Site
             The site, an object of the class attribute `site`.
         control : Control, optional
-            The control point, only for a code that takes one; None for its own choice.
+            The control point, passed only to a code that takes one; None for its own choice.
 
         Raises
         ------
@@ -98,16 +97,21 @@ class Code(ABC):
             with its line.
         """
 
+    @property
+    def takes_motions(self) -> bool:
+        """Whether it has a method with time histories."""
+        return type(self).with_histories is not Code.with_histories
+
     def found(self, mechanism: Mechanism, directions: Mapping[Direction, Verified], **more: Any) -> Verification:
         """Return the answer of `verify` from what was found in each direction; `more` are fields of `Verification`."""
         return Verification(mechanism, self.key, self.name, self.edition, directions, **more)
 
     def with_histories(self, found: Any, structure: Prepared, site: Any, asked: Histories) -> Verification:
-        """Return a verification with time histories; a code that has no such method refuses them.
+        """Return a verification with time histories; only a code that overrides this method takes ground motions.
 
         Parameters are those of `rocking_cli.studies.verification.check.with_histories`.
         """
-        raise InputError(Problem(f"{self.key} has no method with time histories", hint="leave out the ground motions"))
+        raise NotImplementedError
 
     def of_each(self, site: Any) -> Any:
         """Return the site of a survey, in which what is said of the structure itself is left to each row."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import MechanismError
+from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import origin
 from rocking_cli.plugins.registry import Plugins
-from rocking_cli.studies.verification.code import Code
+from rocking_cli.studies.verification.code import Code, Number
 from rocking_cli.studies.verification.site_file import Site
 
 GROUP = "rocking.codes"
@@ -41,7 +43,11 @@ class Codes(Plugins[Code]):
         fields = getattr(loaded, "site", None)
         if not (isinstance(fields, type) and issubclass(fields, Site)):
             raise MechanismError(f"{origin(point)} is not a code: its site must be a class derived from Site")
-        return loaded()
+        numbers = getattr(loaded, "numbers", None)
+        if not (isinstance(numbers, Mapping) and all(isinstance(each, Number) for each in numbers.values())):
+            raise MechanismError(f"{origin(point)} is not a code: its numbers must be a mapping of str to Number")
+        with blame(f"{origin(point)} cannot be made", loaded.__module__):
+            return loaded()
 
 
 @cache

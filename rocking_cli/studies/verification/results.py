@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf, isclose, isfinite, nan
+from math import inf, isclose, isfinite, isnan, nan
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.verification.working import Working
@@ -48,11 +48,17 @@ class Method:
         return None if self.ratio is None else self.ratio >= 1 - CLOSE
 
 
+def governing(methods: Mapping[str, Method]) -> str:
+    """Return the key of the method with the smallest ratio; the first if no ratio is known."""
+    return min(methods, key=lambda key: inf if (ratio := methods[key].ratio) is None or isnan(ratio) else ratio)
+
+
 @dataclass(frozen=True, eq=False)
 class Verified:
     """What was found in one direction of rocking.
 
-    A code whose acceptance is another than that of the method that governs overrides `ratio` and `passed`.
+    A code whose acceptance is another than that of the method that governs overrides `ratio` and `passed`. Both must
+    agree: surveys and designs compare the ratio with 1.
 
     Parameters
     ----------
@@ -60,7 +66,7 @@ class Verified:
     methods : mapping of str to Method
         What each method of the code found, by its key.
     governs : str
-        The key of the method that decides.
+        The key of the method that decides, such as `governing(methods)`.
     workings : sequence of Working
         How the numbers came about.
     remarks : sequence of str

@@ -80,14 +80,15 @@ def site_of(document: Document, codes: Collection[str], fields_of: Callable[[str
     if isinstance(code, str) and code not in codes:
         problem = document.at(("code",), f"there is no code {code!r}", did_you_mean(code, list(codes)))
         raise InputError(*document.problems, problem)
-    model = fields_of(code if isinstance(code, str) else USUAL)
-    site = None
+    code = code if isinstance(code, str) else USUAL
+    model, site = fields_of(code), None
+    lister = HINT if code == USUAL else f"`rocking new site` prints one to start from, if given the code {code}"
     try:
         site = model.model_validate(document.data)
     except ValidationError as error:
         found: Any = error.errors(include_url=False)
         alone = [each for each in found if each["type"] != "geometry"]  # what is wrong between fields is found below
-        document.problems += problems(document, model, alone, owner="the site", lister=HINT)
+        document.problems += problems(document, model, alone, owner="the site", lister=lister)
         places = {place_of(document.data, each) for each in alone}
         for place, message in between_fields(model, document.data, places):
             document.problems.append(document.at(place, message))

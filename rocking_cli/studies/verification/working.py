@@ -8,10 +8,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, Self
 
-Standing = Literal["transcription", "code", "ours", "plain"]
-"""Of a formula: of the code, and checked against a transcription of its text but not yet against its print; of the
-code, and not yet checked; ours, where the code leaves it open; or plain mechanics and arithmetic."""
+Standing = Literal["print", "transcription", "code", "ours", "plain"]
+"""Of a formula: of the code, and checked against its print; checked against a transcription of its text only; or not
+yet checked; ours, where the code leaves it open; or plain mechanics and arithmetic."""
 MEANING: dict[Standing, str] = {
+    "print": "a formula of the code, checked against its printed text",
     "transcription": "a formula of the code, checked against a transcription of its text but not yet against its print",
     "code": "a formula of the code that has not yet been checked against its text",
     "ours": "our reading, or our choice where the code leaves it open",
@@ -67,7 +68,7 @@ class Working:
         Its unit; empty for a pure number.
     clause : str
         Where in the code.
-    standing : {"transcription", "code", "ours", "plain"}
+    standing : {"print", "transcription", "code", "ours", "plain"}
         How far the formula was checked, see `MEANING`; of a formula of the code its clause decides.
     state : str
         The limit state to which it belongs; empty if it belongs to none alone.
@@ -122,7 +123,7 @@ class Formula:
         Where in the code.
     meaning : str
         What it is, in a few words; of a code with a sheet, the key of its texts.
-    standing : {"code", "ours", "plain"}
+    standing : {"code", "print", "ours", "plain"}
         How far it was checked, see `MEANING`.
     """
 

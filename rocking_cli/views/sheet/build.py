@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.plugins.errors import blame
 from rocking_cli.studies.assessment import File, TitleBlock
 from rocking_cli.studies.verification.check import code_of
 from rocking_cli.studies.verification.results import Verification
@@ -55,19 +56,23 @@ class SheetOfCode:
     parts: Callable[[Language, Any, Any], Iterable[Part]]
 
     def language(self, key: str) -> Language:
-        """A language with the texts of the code."""
+        """A language with the texts of the code. Raises `InputError` if there are none."""
+        if key not in self.texts:
+            known = ", ".join(self.texts)
+            raise InputError(
+                Problem(f"there is no calculation sheet in {key!r}", field="`language`", hint=f"known: {known}")
+            )
         return Language(key, self.texts[key], self.spelled)
 
 
 def sheet_of(site: SiteFile) -> SheetOfCode:
     """The sheet of the code of a site. Raises `InputError` if it has none."""
-    found: SheetOfCode | None = code_of(site).sheet()
+    found = code_of(site).sheet()
     if found is None:
-        problem = Problem(
-            f"{site.site.code} has no calculation sheet", site.document.file, field="code",
-            hint="leave out the sheet: `rocking verify` then prints the result",
-        )  # fmt: skip
-        raise InputError(problem)
+        hint = "`rocking verify` prints the result without one"
+        raise InputError(Problem(f"{site.site.code} has no calculation sheet", site.document.file, hint=hint))
+    if not isinstance(found, SheetOfCode):
+        raise PluginError(f"the code {site.site.code} failed in sheet: it must return a SheetOfCode or None")
     return found
 
 
@@ -99,7 +104,8 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
         about[say.say("site_name")] = site.site.name
     about[say.say("date")] = title.date
     about[say.say("program")] = f"rocking-cli {made.versions['rocking-cli']}"
-    first, *others = own.parts(say, found, site.site)
+    with blame(f"the code {site.site.code} failed in its sheet", own.parts.__module__):
+        first, *others = own.parts(say, found, site.site)
     parts = [first, _reading(say, found), *others, _inputs(say, found, title, made)]
     return Sheet(say, say.say("title", name=found.mechanism.name), _subtitle(say, found), about, parts, title.logo)
 
