@@ -77,7 +77,7 @@ class TestPackage:
         for each in found.directions.values():
             assert each.ratio == pytest.approx(2 * 0.25 / 0.25) and each.governs == "ultimate" and each.remarks == []
             assert [(line.symbol, line.value, line.clause) for line in each.workings] == [
-                ("a_0", pytest.approx(0.25), "4.1"), ("a_u", pytest.approx(0.5), "4.2"),
+                ("a_[0]", pytest.approx(0.25), "4.1"), ("a_[u]", pytest.approx(0.5), "4.2"),
             ]  # fmt: skip
         rocks = cls().verify(rk.Block(width=0.14, height=2.8), site).directions[core.Direction.POSITIVE]
         assert rocks.remarks == ["The structure rocks at the serviceability limit state."] and not rocks.passed

@@ -561,7 +561,7 @@ class TestGuide:
             dedent(section.partition(f"\n{before}\n")[2].partition(f"\n{after}")[0])
             for before, after in (
                 ("A complete code:", "4. *Methods.*"),
-                ("A sheet of one part:", "All that a code needs"),
+                ("A sheet of one part:", "`language.step"),
             )
         )
         (tmp_path / "rocking_guide.py").write_text(f"{code}\n{sheet}", encoding="utf-8")
@@ -581,7 +581,7 @@ class TestGuide:
         guide("DemoWithSheet")
         run("verify", "block.yaml", *demo, "--sheet", "s.html")
         page = Path("s.html").read_text(encoding="utf-8")
-        assert "The verification is satisfied: ratio 1.83" in page and "1.5 x 2.452" in page
+        assert "The verification is satisfied: ratio 1.83" in page and "1.5 · 2.45166" in page
         monkeypatch.setattr("rocking_cli.cli.structures.prepared", lambda files: pytest.fail("too late"))
         said = run("verify", "block.yaml", *demo, "--sheet", "t.html", "--language", "it", code=2).stderr
         assert "--language: there is no calculation sheet in 'it'" in said and "known: en" in said

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Verification)
 V = TypeVar("V", bound=Verified)
-SHOWN = ("of_direction", "of_directions", "data", "table", "draw")
+SHOWN = ("of_direction", "data", "table", "draw")
 """The methods that a code overrides: whatever fails there is an error of the plugin."""
 
 
