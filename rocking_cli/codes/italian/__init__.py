@@ -7,7 +7,7 @@ from functools import partial
 from importlib.resources import files
 from typing import Any, ClassVar
 
-from rocking_cli.codes.italian import dynamic, method
+from rocking_cli.codes.italian import method
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.method import DAMAGE, EDITION, KEY, LINEAR, NAME, NONLINEAR
 from rocking_cli.codes.italian.results import Verification, Verified
@@ -50,6 +50,8 @@ class Italian(Code):
         self, found: Verification, structure: Prepared, site: ItalianSite, asked: Histories
     ) -> Verification:
         """Return a verification with time histories on the capacity curve."""
+        from rocking_cli.codes.italian import dynamic
+
         return dynamic.with_histories(found, structure, site, asked)
 
     def of_each(self, site: ItalianSite) -> ItalianSite:

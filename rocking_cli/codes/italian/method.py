@@ -17,7 +17,7 @@ from rocking_cli.codes.italian.demand import DAMPING, Spectrum
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Method, State, Verification, Verified
 from rocking_cli.codes.italian.rules import RULES, Rule
-from rocking_cli.codes.italian.sheet.build import workings_of_direction, workings_of_site
+from rocking_cli.codes.italian.sheet.steps import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.ties import elastic, lasting
 from rocking_cli.core import Direction, Mechanism

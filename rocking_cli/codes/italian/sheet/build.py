@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Verification, Verified
 from rocking_cli.codes.italian.sheet import dynamic, site, summary, texts_en, texts_it
-from rocking_cli.codes.italian.sheet.methods import Methods
-from rocking_cli.codes.italian.sheet.states import Writer
+from rocking_cli.codes.italian.sheet.steps import of_direction
 from rocking_cli.codes.italian.site import ItalianSite
-from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.build import SheetOfCode
-from rocking_cli.views.sheet.document import Drawing, Part, workings
+from rocking_cli.views.sheet.document import Drawing, Part
 from rocking_cli.views.sheet.language import Language
 
 
@@ -25,32 +22,10 @@ def parts(say: Language, found: Verification, given: ItalianSite) -> Iterator[Pa
     yield site.part(say, ground)
     for where, each in shown.items():
         key = each.direction.label
-        below = list(_of_direction(say, ground, each))
+        below = list(of_direction(say, ground, each))
         if each.dynamic is not None:
             below.append(dynamic.part(say, each, each.dynamic, key))
         yield Part(key, where, [], below)
-
-
-def _of_direction(say: Language, ground: Ground, found: Verified) -> Iterator[Part]:
-    key = found.direction.label
-    yield from Writer(say, ground, found).parts(key)
-    yield from Methods(say, ground, found).parts(key)
-
-
-def workings_of_direction(ground: Ground, found: Verified) -> list[Working]:
-    """The steps of a direction."""
-    return list(workings(_of_direction(SHEET.language("en"), ground, found)))
-
-
-def workings_of_site(ground: Ground) -> list[Working]:
-    """What the site file says, and the steps to the ground at each limit state, with the amplification by a floor."""
-    say = SHEET.language("en")
-    whole = site.part(say, ground)
-    found = [each.in_plain(whole.heading) for each in site.given(say, ground)]
-    for part in whole.parts:
-        state = part.key.removeprefix("site-")
-        found += [replace(each, state=state) for each in workings([part])]
-    return found + [each.in_plain(whole.heading) for each in site.amplifications(say, ground)]
 
 
 def _shown(say: Language, found: Verification) -> Mapping[str, Verified]:
