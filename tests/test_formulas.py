@@ -208,6 +208,7 @@ class TestFormula:
             ("α_[0] g/(e^[*] FC)", "alpha0 g/(e* FC)"), ("d_[SLV]", "d_SLV"), ("a^[*]_[SLV,lin]", "a*_SLV,lin"),
             ("Σ (P+Q) x′^[2]", "sum (P+Q) x'^2"), ("ξ_[1]^[−1/2] η(ξ)", "xi1^-1/2 eta(xi)"),
             ("√(10/5) ≥ 0.55", "sqrt(10/5) >= 0.55"),
+            ("Δ_[m] = λ · Ω^[2]", "Delta_m = lambda * Omega^2"),
         ],
     )  # fmt: skip
     def test_plain_characters(self, marked, plain):

@@ -7,15 +7,18 @@ import json
 import math
 import re
 import sys
+from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from textwrap import dedent
+from typing import Literal
 
 import pytest
 
 import rocking_cli as rk
 from rocking_cli.core import quantity
-from rocking_cli.studies.verification import Code, Method, Number, Site, Verified, governing
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.studies.verification import Code, Formula, Method, Number, Site, Verified, governing
 from rocking_cli.studies.verification.installed import GROUP, codes
 from rocking_cli.testing import CodeContract
 from rocking_cli.views.sheet.build import SheetOfCode
@@ -46,6 +49,26 @@ class Demo(Code):
             }
             directions[direction] = Verified(direction, methods, governing(methods), remarks=["A demonstration."])
         return self.found(mechanism, directions)
+
+
+class WorkedSite(DemoSite):
+    soil: Literal["rock", "sand"] = "rock"
+    factor: float | Literal["usual"] = "usual"
+
+
+class Worked(Demo):
+    """With formulas in the signs of a sheet, a choice of words, and a structure that it refuses."""
+
+    key, site = "worked", WorkedSite
+    ONSET = Formula("λ_[0]", "Δ_[i] · β^[2]", "{D} · {b}^[2]", "m/s²", "3.1", meaning="onset of ω", standing="print")
+
+    def verify(self, mechanism, site, control=None):
+        if mechanism.height > 5:
+            raise InputError(Problem("must be at most 5 m for this code", field="height"))
+        found = super().verify(mechanism, site)
+        line = self.ONSET.working(1.5, {"state": "rare"}, D=0.5, b=-3.0)
+        directions = {each: replace(one, workings=[line]) for each, one in found.directions.items()}
+        return self.found(mechanism, directions, workings=[line], remarks=["Of the whole."])
 
 
 class Divides(Demo):
@@ -178,6 +201,7 @@ class OwnStarter(Demo):
 
 
 EVERY = (
+    Worked,
     Demo,
     Divides,
     Nothing,
@@ -406,6 +430,39 @@ frequent: 0.8                     # acceleration of frequent earthquakes [m/s2] 
 rare: 2.0                         # acceleration of rare earthquakes [m/s2] (> 0, <= 50)
 # importance: 1.0                 # importance factor, gamma_I (>= 0.5)
 """
+
+
+class TestWorkings:
+    def test_the_terminal_prints_them_in_plain_characters(self, demo):
+        site_of(Worked)
+        said = run("-v", "verify", "block.yaml", *demo).stdout
+        row = next(line for line in said.splitlines() if line.split()[-2:] == ["of", "omega"])
+        assert row.split() == "lambda0 Delta_i * beta^2 0.5 * (-3)^2 1.5 m/s2 3.1 onset of omega".split()  # noqa: SIM905
+        assert "Every formula has been checked against the printed code." in said and "None" not in said
+        assert "lambda0" in run("verify", "block.yaml", *demo).stdout  # of the site
+
+    def test_json_has_what_belongs_to_no_direction(self, demo):
+        site_of(Worked)
+        found = run_json("verify", "block.yaml", *demo)
+        assert found["site"] == {"lambda0 rare": 1.5} and found["remarks"] == ["Of the whole."]
+
+    def test_a_refused_structure_is_named_with_its_field(self, demo):
+        site_of(Worked)
+        Path("tall.yaml").write_text("mechanism: block\nwidth: 1\nheight: 6\n", encoding="utf-8")
+        assert "tall.yaml: height must be at most 5 m" in run("verify", "tall.yaml", *demo, code=2).stderr
+
+    def test_and_in_a_table_with_its_line_once(self, demo):
+        site_of(Worked)
+        Path("t.csv").write_text("mechanism,width,height\nblock,1,3\nblock,1,6\n", encoding="utf-8")
+        assert "error: t.csv:3: height must be at most 5 m" in some("survey", "t.csv", *demo).stderr
+
+    def test_a_wrong_word_hides_no_wrong_number(self, demo):
+        text = "code: worked\nfrequent: much\nrare: 2\nsoil: clay\nfactor: none\n"
+        Path("site.yaml").write_text(text, encoding="utf-8")
+        said = run("verify", "block.yaml", *demo, code=2).stderr
+        for each in ("site.yaml:2:11: frequent must be a number", "site.yaml:4:7: soil", "site.yaml:5:9: factor"):
+            assert said.count(each) == 1, each
+        assert said.count("factor must be a number, or usual") == 1
 
 
 class TestStarter:

@@ -113,12 +113,17 @@ def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) ->
 def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
     """The errors without those that say of a wrong word that it is no number, where a number or a word may stand."""
     errors = list(errors)
-    words = {error["loc"][:-1] for error in errors if error["type"] == "literal_error"}
+    words = {error["loc"][:-1] for error in errors if error["type"] == "literal_error" and _is_branch(error["loc"][-1])}
     return [
         error
         for error in errors
         if not (error["type"] == "float_type" and isinstance(error["input"], str) and error["loc"][:-1] in words)
     ]
+
+
+def _is_branch(part: int | str) -> bool:
+    """Whether a part of a place is the branch of a union that takes words only, as pydantic writes it."""
+    return isinstance(part, str) and part.startswith("literal[")
 
 
 BOUNDS = {

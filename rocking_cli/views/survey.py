@@ -219,6 +219,7 @@ def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:
     for each in found[:most]:
         said = str(each.error)
         place = "" if said.startswith(f"{one_line(file)}:") else f"{one_line(file)}:{each.line}: "
+        place = place.removesuffix(f"{each.line}: ") if said.startswith(f"{each.line}: ") else place
         yield f"{place}{said}"
     if len(found) > most:
         yield f"{len(found) - most:,} more structures cannot be used: `as_json` lists them all"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Verification)
 V = TypeVar("V", bound=Verified)
-SHOWN = ("of_direction", "data", "table", "draw")
+SHOWN = ("of_direction", "data", "data_of_all", "table", "draw")
 """The methods that a code overrides: whatever fails there is an error of the plugin."""
 
 
@@ -62,6 +62,15 @@ class Showing(Generic[F, V]):
             "passes": each.passed,
             "remarks": list(each.remarks),
         }  # fmt: skip
+
+    def data_of_all(self, found: F) -> dict[str, Any]:
+        """Return as plain data what does not belong to one direction."""
+        return {
+            "site": {
+                f"{each.symbol} {each.state}".strip(): each.value for each in map(Working.in_plain, found.workings)
+            },
+            "remarks": list(found.remarks),
+        }
 
     def table(self, found: F) -> dict[str, Sequence[Any]]:
         """Return a row for each direction and method, by columns."""
@@ -116,7 +125,8 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
         parts += steps(found.workings)
         for where, each in sides.items():
             parts += steps(each.workings, where)
-    parts.append(standing([*found.workings, *(line for each in sides.values() for line in each.workings)]))
+    every = [*found.workings, *(line for each in sides.values() for line in each.workings)]
+    parts.append(standing(every, own.notation))
     parts += [f"Caution: {text}" for text in found.mechanism.cautions()]
     return View(lambda: data(found), [part for part in parts if part])
 
@@ -184,9 +194,12 @@ def _site(found: Verification, symbols: Sequence[str]) -> Table:
 
 def steps(workings: Sequence[Working], where: str = "") -> Iterator[Table]:
     """Yield every line of a calculation, a table for each section; `where` names the direction."""
-    heads = ["", "formula", "numbers", "result", "unit", "clause"]
-    for section, lines in groupby(workings, key=lambda line: line.section):
-        rows = [[line.symbol, line.formula, line.numbers, number(line.value), line.unit, cited(line)] for line in lines]
+    heads = ["", "formula", "numbers", "result", "unit", "clause", "meaning"]
+    for section, lines in groupby((each.in_plain() for each in workings), key=lambda line: line.section):
+        rows = [
+            [line.symbol, line.formula, line.numbers, number(line.value), line.unit, cited(line), line.meaning]
+            for line in lines
+        ]
         yield Table(": ".join(part for part in (where, section) if part) or "Calculation", heads, rows, numbers=(3,))
 
 
@@ -203,6 +216,7 @@ def data(found: Verification) -> dict[str, Any]:
         "edition": found.edition,
         "directions": {direction.label: own.data(found, each) for direction, each in found.directions.items()},
         "governs": found.governs.label,
+        **own.data_of_all(found),
     }
 
 
@@ -221,8 +235,9 @@ def standing(workings: Sequence[Working], notation: str = "") -> str:
 
     `notation` says how the code is cited, such as ": [formula] or §section".
     """
+    plain = [each.in_plain() for each in workings]
     ours, unchecked, transcribed, printed = (
-        {each.symbol: each.meaning for each in workings if each.standing == standing}
+        {each.symbol: each.meaning for each in plain if each.standing == standing}
         for standing in ("ours", "code", "transcription", "print")
     )
     said = []

@@ -50,6 +50,10 @@ class ItalianShowing(Showing[Verification, Verified]):
         """Return a direction as plain data."""
         return _data(each)
 
+    def data_of_all(self, found: Verification) -> dict[str, Any]:
+        """Return nothing more: the ground is in the workings."""
+        return {}
+
     def table(self, found: Verification) -> dict[str, Sequence[Any]]:
         """Return a row for each direction and method."""
         return columns(

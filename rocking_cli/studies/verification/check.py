@@ -87,7 +87,7 @@ def verify(
         placed = site.placed(error).problems
         raise InputError(
             *(
-                replace(each, file=structure.file) if each.file is None and each.field in own else each
+                replace(each, file=structure.file) if each.file is None and each.field in {*own, "mechanism"} else each
                 for each in placed
             )
         ) from None

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, Self
+from unicodedata import name
 
 Standing = Literal["print", "transcription", "code", "ours", "plain"]
 """Of a formula: of the code, and checked against its print; checked against a transcription of its text only; or not
@@ -24,11 +25,10 @@ MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
 AND_SO_ON = re.compile(r"([^();]+?)( \+ |; )…")
 """A piece that is there once for each of several numbers: `({P} · {x} + …)`."""
 PLAIN = {
-    "α": "alpha", "γ": "gamma", "ζ": "zeta", "η": "eta", "θ": "theta", "κ": "kappa", "ξ": "xi", "π": "pi", "ρ": "rho",
-    "φ": "phi", "ψ": "psi", "Σ": "sum", "Δ": "D", "√": "sqrt", "·": "*", "≥": ">=", "≤": "<=", "′": "'", "²": "2",
+    "λ": "lambda", "Σ": "sum", "√": "sqrt", "·": "*", "×": "*", "≥": ">=", "≤": "<=", "′": "'", "²": "2", "³": "3",
     "–": "-", MINUS: "-",
 }  # fmt: skip
-"""What stands for the signs of a formula where there are plain characters only."""
+"""What stands for the signs of a formula where there are plain characters only; Greek letters are spelled."""
 
 
 class Clause(str):
@@ -91,12 +91,12 @@ class Working:
         if self.standing == "code" and isinstance(self.clause, Clause) and self.clause.transcribed:
             object.__setattr__(self, "standing", "transcription")
 
-    def in_plain(self, section: str = "") -> Working:
-        """The same in plain characters, in a section of the calculation."""
+    def in_plain(self, section: str | None = None) -> Working:
+        """The same in plain characters; `section` says in which part of the calculation, if that is not known yet."""
         texts: dict[str, Any] = {
             key: in_plain(getattr(self, key)) for key in ("symbol", "meaning", "formula", "numbers", "unit")
         }
-        return replace(self, **texts, section=in_plain(section))
+        return replace(self, **texts, section=in_plain(self.section if section is None else section))
 
 
 def as_written(value: float) -> str:
@@ -198,7 +198,15 @@ def in_plain(text: str) -> str:
         below, what = found[1] == "_", found[2]
         return what if what == "*" or (below and what.isdigit()) else f"{found[1]}{what}"
 
-    return "".join(PLAIN.get(sign, sign) for sign in MARK.sub(mark, text))
+    return "".join(PLAIN.get(sign) or _spelled(sign) for sign in MARK.sub(mark, text))
+
+
+def _spelled(sign: str) -> str:
+    """A Greek letter by its name; another sign as it is."""
+    if sign.isascii() or not (named := name(sign, "")).startswith("GREEK"):
+        return sign
+    letter = named.rpartition(" ")[2]
+    return letter.capitalize() if "CAPITAL" in named else letter.lower()
 
 
 class Later(Sequence[Working]):
