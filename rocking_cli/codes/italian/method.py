@@ -16,7 +16,7 @@ from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import DAMPING, Spectrum
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Method, State, Verification, Verified
-from rocking_cli.codes.italian.rules import RULES, Rule
+from rocking_cli.codes.italian.rules import FIRST, RULES, Rule
 from rocking_cli.codes.italian.sheet.build import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.ties import elastic, lasting
@@ -146,7 +146,7 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         remarks.append(wordings.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
     found = Verified(
         direction=direction,
-        first=RULES[0].state,
+        first=FIRST,
         exact=exact,
         lambda_=mechanism.uplift(direction),
         a0=exact.a0,

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet import dynamic, site, summary, texts_en, texts_it
 from rocking_cli.codes.italian.sheet.methods import Methods
 from rocking_cli.codes.italian.sheet.states import Writer
@@ -67,8 +68,7 @@ SPELLED = {
     "a0*": "a_[0]^[*]",
     "d0*": "d_[0]^[*]",
     "a*": "a^[*]",
-    "d_SLV": "d_[SLV]",
-    "d_SLC": "d_[SLC]",
+    **{f"d_{rule.state}": f"d_[{rule.state}]" for rule in RULES},
     "xi1^-1/2 eta(xi)": "ξ_[1]^[−1/2] η(ξ)",
     "xi1": "ξ_[1]",
     "S_Z": "S_[Z]",
