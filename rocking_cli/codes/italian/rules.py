@@ -1,4 +1,4 @@
-"""The limit states of displacement of the Italian code [§C8.7.1.2.1.6, C8.7.1.10-11]."""
+"""The limit states of displacement of the Italian code, and their methods [§C8.7.1.2.1.6, C8.7.1.10-11]."""
 
 from __future__ import annotations
 
@@ -49,3 +49,9 @@ FURTHER = (*(rule.state for rule in RULES[1:]), "SLD")
 """Those with fields of their own in a site file and its floor. At SLD only the onset of rocking is verified."""
 STATES = ("SLD", *(rule.state for rule in RULES))
 """All of them, from the most frequent to the rarest."""
+DAMAGE, LINEAR, NONLINEAR = "damage", "linear", "nonlinear"
+OF_STATE = {
+    FIRST: (DAMAGE, NONLINEAR),
+    **{rule.state: (f"{DAMAGE}_{rule.state}", f"{NONLINEAR}_{rule.state}") for rule in RULES[1:]},
+}
+"""Of each limit state its two methods, by whether rocking starts and by displacement; the larger capacity governs."""
