@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import re
+import shutil
+import sys
 from dataclasses import replace
 from functools import cache
 from math import log, pi, sqrt
@@ -12,12 +15,14 @@ from typing import ClassVar
 from unittest.mock import patch
 
 import pytest
+import yaml
 
 from mechanisms.block import Block
 from rocking_cli.codes import italian
 from rocking_cli.codes.italian import formulas
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet.build import SHEET, parts
+from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.structure import parse_structure
@@ -169,9 +174,68 @@ def test_no_other_file_of_the_code_holds_a_formula():
                 assert file.name == "formulas.py", (file, node.lineno)
 
 
-def test_a_new_limit_state_is_one_rule():
+def test_each_limit_state_has_its_formula_of_the_period():
     assert [*formulas.PERIOD] == [rule.state for rule in RULES]
     assert formulas.PERIOD["SLV"].text == "1.68 π √(d_[{state}]/{a})"
+
+
+@pytest.fixture
+def with_one_more(tmp_path, monkeypatch):
+    """A copy of the code with SLN, by the rule of SLC, and the fields that a site file and its floor have for it."""
+    folder, added = shutil.copytree(Path(italian.__file__).parent, tmp_path / "one_more"), []
+    for file in folder.rglob("*.py"):
+        text = file.read_text(encoding="utf-8").replace("rocking_cli.codes.italian", "one_more")
+        if file.name in ("rules.py", "site.py") and file.parent == folder:
+            for line in re.findall(r'^    (?:Rule\(")?SLC[":].*\n', text, re.MULTILINE):
+                added.append(line.replace("SLC", "SLN", 1))
+                text = text.replace(line, added[-1] + line)
+        file.write_text(text, encoding="utf-8")
+    assert len(added) == 3
+    monkeypatch.syspath_prepend(tmp_path)
+    yield importlib.import_module("one_more")
+    for name in [each for each in sys.modules if each.partition(".")[0] == "one_more"]:
+        del sys.modules[name]
+
+
+def by_key(sections):
+    """The items of every part of a sheet."""
+    return {key: each for one in sections for key, each in [(one.key, one.items), *by_key(one.parts).items()]}
+
+
+GROUND = "{ag: 0.26, F0: 2.5, TC: 0.42, S: 1.2}"
+BOTH = f"{SITE}SLN: {GROUND}\nSLC: {GROUND}\n"
+MODES = "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.3, xi1: 0.05}"
+SITES = {
+    "parameters": f"{BOTH}T0: 0.02\n",
+    "not given": SITE,
+    "a long life": HAZARD.replace("VN: 50", "VN: 300"),
+    "its own mode": f"{BOTH}{MODES}, SLN: {{T1: 0.7, xi1: 0.15}}, SLC: {{T1: 0.7, xi1: 0.15}}}}\n",
+    "the mode of SLV": f"{BOTH}{MODES}}}\n",
+}
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+@pytest.mark.parametrize("site", SITES)
+def test_a_new_limit_state_is_a_rule_and_its_fields(with_one_more, site, language):
+    """What is said of SLC is said of SLN, which is the same but in name, in the terminal, in JSON and in the sheet."""
+    code, build = with_one_more.Italian(), importlib.import_module("one_more.sheet.build")
+    given = code.site.model_validate(yaml.safe_load(SITES[site]))
+    roof = {"name": "roof", "mass": 500.0, "at": (0.1, 4.0)}
+    block = Block(width=0.3, height=4.0, density=1800.0, depth=1.0, loads=[roof])
+    verified = code.verify(block, given)
+    side = verified.directions[Direction.POSITIVE]
+    assert "SLN" in side.states
+    parts = by_key(build.parts(build.SHEET.language(language), verified, given))
+    own = {key: items for key, items in parts.items() if "SLC" in key}
+    assert "positive-SLC-line" in own and ("positive-nonlinear_SLC-line" in own) == (site != "not given")
+    assert {key for key in parts if "SLN" in key} == {key.replace("SLC", "SLN") for key in own}
+    for key, items in own.items():
+        assert repr(parts[key.replace("SLC", "SLN")]).replace("SLN", "SLC") == repr(items), key
+    terminal = [*code.showing().of_direction(verified, side, "Positive direction"), *verified.remarks]
+    for said in (parts["summary"], parts["remarks"], parts["site"], terminal, [*verified.workings], [*side.workings],
+                 code.showing().data(verified, side)):  # fmt: skip
+        assert repr(said).count("SLN") == repr(said).count("SLC"), said
+    assert "SLN" in repr([*side.workings]) and "d_[SLN]" in repr(parts["remarks"])
 
 
 class TestFormula:

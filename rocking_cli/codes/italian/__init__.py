@@ -9,8 +9,9 @@ from typing import Any, ClassVar
 
 from rocking_cli.codes.italian import method
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.method import DAMAGE, EDITION, KEY, LINEAR, NAME, NONLINEAR
+from rocking_cli.codes.italian.method import EDITION, KEY, NAME
 from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR
 from rocking_cli.codes.italian.site import ItalianSite, of_each
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.prepared import Prepared

@@ -14,7 +14,7 @@ from rocking_cli.codes.italian.demand import (
     TableSpectrum,
 )
 from rocking_cli.codes.italian.hazard import Hazard
-from rocking_cli.codes.italian.site import ItalianSite, Shaking
+from rocking_cli.codes.italian.site import ItalianSite
 
 LARGEST = 1e6  # g: no ground shakes so; a capacity beyond is none
 AS_LARGE = 1e-13  # relative: a demand that scales with a_g
@@ -49,7 +49,7 @@ class Ground:
         TR = self.return_period(state)
         if TR is not None and self.hazard is not None:
             return self.hazard.spectrum(TR)
-        given: Shaking | None = {"SLV": self.site, "SLC": self.site.SLC, "SLD": self.site.SLD}[state]
+        given = self.site.shaking(state)
         if given is None:
             return None
         if given.spectrum is not None:

@@ -9,9 +9,10 @@ from math import exp, log
 import numpy as np
 
 from rocking_cli.codes.italian.demand import GroundSpectrum
+from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.errors import InputError, Problem
 
-PROBABILITY = {"SLO": 0.81, "SLD": 0.63, "SLV": 0.10, "SLC": 0.05}
+PROBABILITY = {"SLO": 0.81, "SLD": 0.63, **{rule.state: rule.probability for rule in RULES}}
 """Of being exceeded in the reference life, by limit state."""
 SHORTEST, LONGEST = 30.0, 2475.0  # years: return periods beyond are taken as these
 SOILS = {

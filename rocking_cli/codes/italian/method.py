@@ -16,7 +16,7 @@ from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import DAMPING, Spectrum
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Method, State, Verification, Verified
-from rocking_cli.codes.italian.rules import RULES, Rule
+from rocking_cli.codes.italian.rules import DAMAGE, FIRST, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet.steps import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.ties import elastic, lasting
@@ -26,9 +26,6 @@ from rocking_cli.studies.verification.working import Later
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"
-DAMAGE, LINEAR, NONLINEAR = "damage", "linear", "nonlinear"
-OF_STATE = {"SLV": (DAMAGE, NONLINEAR), "SLC": (f"{DAMAGE}_SLC", f"{NONLINEAR}_SLC")}
-"""Of each limit state its two methods, by whether rocking starts and by displacement; the larger capacity governs."""
 
 
 @dataclass(frozen=True)
@@ -146,7 +143,7 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         remarks.append(wordings.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
     found = Verified(
         direction=direction,
-        first=RULES[0].state,
+        first=FIRST,
         exact=exact,
         lambda_=mechanism.uplift(direction),
         a0=exact.a0,

@@ -14,7 +14,7 @@ ENGLISH = {
         "account."
     ),
     "seats": (
-        "The code also limits d_SLV and d_SLC by the loss of support of parts such as beams. This is not checked for "
+        "The code also limits {limited} by the loss of support of parts such as beams. This is not checked for "
         "loads without a `seat` (length of support), and at least one load has none: give it."
     ),
     "seat": "The load {name} loses its seat of {length:.3g} m at d = {d:.4g} m, which limits {limited}.",
@@ -36,7 +36,7 @@ ENGLISH = {
         "unconservative at SLD and in the linear method, or at SLV and SLC. Give `SLD: {{T1, xi1}}` in `floor`, and "
         "T1 and xi1 of SLV beside it."
     ),
-    "same_mode_SLC": "T1 = {T1:g} s and xi1 = {xi1:g} of the floor at SLV are used at SLC too.",
+    "same_mode_further": "T1 = {T1:g} s and xi1 = {xi1:g} of the floor at SLV are used at {states} too.",
     "linear_SLV": (
         "The linear method multiplies by q the a_g at which rocking starts at SLD. The site file does not give SLD in "
         "the same way as SLV, so F0, TC and S of SLV are used, which is our choice."
@@ -111,7 +111,7 @@ ITALIAN = {
     "missing": "Il file del sito non assegna {states}: per tali stati limite non si esegue alcuna verifica.",
     "confidence": "FC = {FC:g}: vale {least:g}, quello di LC1, finché non si considera la resistenza a compressione.",
     "seats": (
-        "La norma limita d_SLV e d_SLC anche per la perdita dell'appoggio di elementi quali le travi: di un carico si "
+        "La norma limita {limited} anche per la perdita dell'appoggio di elementi quali le travi: di un carico si "
         "può assegnare l'appoggio (`seat`), e qui di qualcuno manca."
     ),
     "seat": "Il carico {name} perde il suo appoggio di {length:.3g} m a d = {d:.4g} m, che limita {limited}.",
@@ -133,7 +133,7 @@ ITALIAN = {
         "%: una sola coppia è a sfavore di sicurezza allo SLD e nel metodo lineare, oppure allo SLV e allo SLC. Si "
         "assegni `SLD: {{T1, xi1}}` in `floor`, accanto ai valori dello SLV."
     ),
-    "same_mode_SLC": "T1 = {T1:g} s e xi1 = {xi1:g} dell'edificio allo SLV valgono anche per lo SLC.",
+    "same_mode_further": "T1 = {T1:g} s e xi1 = {xi1:g} dell'edificio allo SLV valgono anche per lo {states}.",
     "linear_SLV": (
         "Il metodo lineare moltiplica per q l'accelerazione a_g di attivazione allo SLD. Il file del sito non assegna "
         "lo SLD nello stesso modo dello SLV: si usano F0, TC e S dello SLV, per nostra scelta."

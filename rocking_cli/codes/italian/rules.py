@@ -1,4 +1,4 @@
-"""The limit states of displacement of the Italian code [§C8.7.1.2.1.6, C8.7.1.10-11]."""
+"""The limit states of displacement of the Italian code, and their methods [§C8.7.1.2.1.6, C8.7.1.10-11]."""
 
 from __future__ import annotations
 
@@ -26,6 +26,8 @@ class Rule:
         A ratio.
     clause : str
         That of its period.
+    probability : float
+        Of being exceeded in the reference life.
     """
 
     state: str
@@ -34,9 +36,22 @@ class Rule:
     factor: float
     damping: float
     clause: str
+    probability: float
 
 
 RULES = (
-    Rule("SLV", 0.4, True, 1.68, 0.08, clauses.T_SLV),
-    Rule("SLC", 0.6, False, 1.56, 0.10, clauses.T_SLC),
+    Rule("SLV", 0.4, True, 1.68, 0.08, clauses.T_SLV, 0.10),
+    Rule("SLC", 0.6, False, 1.56, 0.10, clauses.T_SLC, 0.05),
 )
+"""From the most frequent to the rarest; the first one counts."""
+FIRST = RULES[0].state
+FURTHER = (*(rule.state for rule in RULES[1:]), "SLD")
+"""Those with fields of their own in a site file and its floor. At SLD only the onset of rocking is verified."""
+STATES = ("SLD", *(rule.state for rule in RULES))
+"""All of them, from the most frequent to the rarest."""
+DAMAGE, LINEAR, NONLINEAR = "damage", "linear", "nonlinear"
+OF_STATE = {
+    FIRST: (DAMAGE, NONLINEAR),
+    **{rule.state: (f"{DAMAGE}_{rule.state}", f"{NONLINEAR}_{rule.state}") for rule in RULES[1:]},
+}
+"""Of each limit state its two methods, by whether rocking starts and by displacement; the larger capacity governs."""

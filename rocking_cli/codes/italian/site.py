@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from rocking_cli.codes.italian.rules import FIRST, FURTHER
 from rocking_cli.core import Mechanism
 from rocking_cli.core.fields import quantity
 from rocking_cli.errors import InputError, Problem
@@ -108,7 +109,7 @@ class Floor(Mode):
 
     def mode(self, state: str) -> Mode:
         """Return the first mode at a limit state: that of SLV if no other is given."""
-        return {"SLD": self.SLD, "SLC": self.SLC}.get(state) or self
+        return self if state == FIRST else getattr(self, state) or self
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -191,6 +192,11 @@ class ItalianSite(Shaking, Site):
         """T0 [s], as given or of the element."""
         return self.T0 if self.element is None else self.element.period
 
+    def shaking(self, state: str) -> Shaking | None:
+        """Return what the file says of the ground at a limit state: its own fields are those of SLV."""
+        found: Shaking | None = self if state == FIRST else getattr(self, state)
+        return found
+
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """The ground is given in one way; a hazard has what belongs to it."""
@@ -202,7 +208,7 @@ class ItalianSite(Shaking, Site):
                 if given.get(name) is not None:
                     yield (name,), "requires `hazard`, the table of return periods"
             return
-        for name in (*SIZES, "spectrum", "SLC", "SLD"):
+        for name in (*SIZES, "spectrum", *FURTHER):
             if given.get(name) is not None:
                 yield (name,), "cannot be combined with hazard, from which it is computed: give one of the two"
         for name in ("VN", "CU", "soil"):

@@ -12,7 +12,7 @@ from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.hazard import LONGEST, SHORTEST, return_period
 from rocking_cli.codes.italian.remarks import TEXTS
 from rocking_cli.codes.italian.results import Method, State, Verified
-from rocking_cli.codes.italian.rules import RULES
+from rocking_cli.codes.italian.rules import FURTHER, RULES, STATES
 from rocking_cli.codes.italian.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.core.ties import Tie
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -29,8 +29,9 @@ def _told(key: str, **values: Any) -> Told:
 
 
 def _named(states: Sequence[str]) -> str:
-    """One or two names, as they are listed."""
-    return states[0] if len(states) == 1 else _told("and", one=states[0], other=states[1])
+    """One or more names, as they are listed."""
+    *before, last = states
+    return _told("and", one=", ".join(before), other=last) if before else last
 
 
 def of_site(ground: Ground, found: Collection[Verified]) -> list[str]:
@@ -40,7 +41,7 @@ def of_site(ground: Ground, found: Collection[Verified]) -> list[str]:
     long = max(periods, default=0.0)
     if long > LONG:
         said.append(_told("long", T=long, most=LONG))
-    missing = [state for state in ("SLC", "SLD") if ground.spectrum(state) is None]
+    missing = [state for state in FURTHER if ground.spectrum(state) is None]
     if missing:
         said.append(_told("missing", states=_named(missing)))
     crushes = any(each.chain.mechanism.crushing is not None for each in found)
@@ -48,7 +49,7 @@ def of_site(ground: Ground, found: Collection[Verified]) -> list[str]:
         said.append(_told("confidence", FC=ground.site.FC, least=LEAST_CONFIDENT))
     loads = [load for each in found for load in each.chain.mechanism.loads or [] if load.mass is not None]
     if any(load.seat is None for load in loads):
-        said.append(_told("seats"))
+        said.append(_told("seats", limited=_named([f"d_{rule.state}" for rule in RULES])))
     return said
 
 
@@ -71,13 +72,14 @@ def _of_spectrum(ground: Ground) -> list[str]:
 def _of_modes(ground: Ground) -> list[str]:
     """Of a floor whose T1 and xi1 are the same at several limit states."""
     floor = ground.site.floor
-    same = [state for state in ("SLD", "SLC") if floor is not None and getattr(floor, state) is None]
+    same = [state for state in FURTHER if floor is not None and getattr(floor, state) is None]
     if floor is None or not same:
         return []
     values = {"T1": floor.T1, "xi1": floor.xi1}
     if "SLD" in same:
         return [_told("same_mode", **values)]
-    return [_told("same_mode_SLC", **values)] if ground.spectrum("SLC") is not None else []
+    given = [state for state in same if ground.spectrum(state) is not None]
+    return [_told("same_mode_further", **values, states=_named(given))] if given else []
 
 
 def _of_lives(ground: Ground) -> list[str]:
@@ -85,7 +87,7 @@ def _of_lives(ground: Ground) -> list[str]:
     if ground.hazard is None or site.VN is None or site.CU is None:
         return []
     said: list[str] = []
-    for state in ("SLD", "SLV", "SLC"):
+    for state in STATES:
         TR = return_period(site.VN * site.CU, state)
         if not SHORTEST <= TR <= LONGEST:
             bound = SHORTEST if TR < SHORTEST else LONGEST

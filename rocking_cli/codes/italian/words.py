@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rocking_cli.codes.italian.results import Dynamic, Verified
+from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.dynamics.holding import NOT_CHECKED
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
@@ -16,15 +17,13 @@ def verdict(found: Verified, first: str, where: str) -> str:
 
     `where` names the direction.
     """
-    said = _verdict_at(found, first, "")
+    said = _verdict_at(found, first)
     return f"{where}: the site does not give {first}." if said is None else f"{where}, {said}"
 
 
-def _verdict_at(found: Verified, state: str, suffix: str) -> str | None:
-    """State whether a direction passes at a limit state; None if the site does not give it.
-
-    `suffix` ends the names of the methods of this limit state.
-    """
+def _verdict_at(found: Verified, state: str) -> str | None:
+    """State whether a direction passes at a limit state; None if the site does not give it."""
+    damage, nonlinear = OF_STATE[state]
     at, counts = found.states[state], found.methods[found.governing[state]]
     if at.demand is None or at.ratio is None or counts.a_g is None or counts.demand is None or counts.zeta is None:
         return None
@@ -34,8 +33,8 @@ def _verdict_at(found: Verified, state: str, suffix: str) -> str | None:
         f"{at.T:.3g} s"
     )
     capacity = f"Capacity a_g = {counts.a_g:.4g} g, demand {counts.demand:.4g} g: zeta_E = {counts.zeta:.3g}."
-    if found.governing[state] == f"damage{suffix}":
-        by_displacement = found.methods[f"nonlinear{suffix}"].a_g or 0.0
+    if found.governing[state] == damage:
+        by_displacement = found.methods[nonlinear].a_g or 0.0
         return (
             f"{outcome} The damage method governs: the structure does not start to rock below a_g = {counts.a_g:.4g} "
             f"g, while its capacity by displacement alone is {by_displacement:.4g} g; {held}. {capacity}"
@@ -76,7 +75,7 @@ def differences(found: Verified, first: str) -> Iterator[str]:
 def beyond_first(found: Verified, first: str) -> Iterator[str]:
     """State whether the direction passes at the other limit states that the site gives."""
     for name in found.states:
-        said = _verdict_at(found, name, f"_{name}") if name != first else None
+        said = _verdict_at(found, name) if name != first else None
         if said is not None:
             yield said
     damage = found.methods.get("SLD")

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet import dynamic, site, summary, texts_en, texts_it
 from rocking_cli.codes.italian.sheet.steps import of_direction
 from rocking_cli.codes.italian.site import ItalianSite
@@ -42,8 +43,7 @@ SPELLED = {
     "a0*": "a_[0]^[*]",
     "d0*": "d_[0]^[*]",
     "a*": "a^[*]",
-    "d_SLV": "d_[SLV]",
-    "d_SLC": "d_[SLC]",
+    **{f"d_{rule.state}": f"d_[{rule.state}]" for rule in RULES},
     "xi1^-1/2 eta(xi)": "ξ_[1]^[−1/2] η(ξ)",
     "xi1": "ξ_[1]",
     "S_Z": "S_[Z]",

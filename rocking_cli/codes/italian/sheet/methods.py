@@ -9,7 +9,7 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum, Spectrum
 from rocking_cli.codes.italian.ground import Ground
 from rocking_cli.codes.italian.results import Method, Verified
-from rocking_cli.codes.italian.rules import RULES, Rule
+from rocking_cli.codes.italian.rules import OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.codes.italian.sheet.states import LINE
@@ -17,15 +17,18 @@ from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Item, Part, Sentence, Steps
 from rocking_cli.views.sheet.language import Language
 
-STATE = {
-    "damage": "SLV",
-    "damage_SLC": "SLC",
-    "linear": "SLV",
-    "nonlinear": "SLV",
-    "nonlinear_SLC": "SLC",
-    "SLD": "SLD",
-}
-RULE = {"nonlinear": RULES[0], "nonlinear_SLC": RULES[1]}
+STATE = {key: state for state, pair in OF_STATE.items() for key in pair} | {"SLD": "SLD"}
+RULE = {OF_STATE[rule.state][1]: rule for rule in RULES}
+
+
+def title(say: Language, key: str) -> str:
+    """What a method is called: by a text of its own, or by that of its kind at any limit state."""
+    own = f"method_{key}"
+    return say.say(own) if own in say.texts else say.say(f"method_{_kind(key)}_at", state=STATE[key])
+
+
+def _kind(key: str) -> str:
+    return key.removesuffix(f"_{STATE[key]}")
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class Methods:
                 heading = self.say.say("linear_at", state=self.ground.state_of_activation)
                 yield Part(f"{key}-{name}", heading, list(self._linear(method)))
                 continue
-            heading = self.say.say(f"method_{name}")
+            heading = title(self.say, name)
             yield Part(f"{key}-{name}", heading, list(self._items(name, method, self._asked(name, "", line=False))))
             if name in RULE:
                 line = self.found.straight_methods[name]
@@ -105,7 +108,7 @@ class Methods:
         """Yield the capacity a_g, its check, zeta_E, and the return period."""
         spectrum = self.ground.spectrum(asked.state)
         assert spectrum is not None and method.a_g is not None  # its state is given
-        symbol = f"a_[g,{name.replace('_SLC', '')}{more}]"
+        symbol = f"a_[g,{_kind(name)}{more}]"
         names = {"symbol": symbol, "what": "a_g_method", "state": asked.state, "asked": "a_[g]", "more": more}
         yield from self._solved(names, spectrum, asked, method.a_g, method.clause)
         yield Steps([self._zeta(method, names)])

@@ -19,7 +19,7 @@ from rocking_cli.codes.italian.hazard import (
     return_period,
     soil_factor,
 )
-from rocking_cli.codes.italian.rules import RULES
+from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
 from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.codes.italian.site import SIZES, Element, Shaking
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -27,7 +27,6 @@ from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
 from rocking_cli.views.sheet.language import Language
 
-STATES = ("SLD", *(rule.state for rule in RULES))
 SYMBOLS = {"ag": ("a_[g]", "g"), "F0": ("F_[0]", ""), "TC": ("T_[C]", "s"), "S": ("S", "")}
 OTHERS = {"VN": ("V_[N]", "years"), "CU": ("C_[U]", ""), "T0": ("T_[0]", "s")}
 OF_FLOOR = {"z": ("z", "m"), "H": ("H", "m"), "n": ("n", "")}
@@ -57,8 +56,8 @@ def _given(say: Language, ground: Ground) -> Grid:
     site = ground.site
     FC, q, *modes = ([each.symbol, each.meaning, say.number(each.value), each.unit] for each in given(say, ground))
     rows = [FC, q]
-    for state, shaking in (("SLV", site), ("SLC", site.SLC), ("SLD", site.SLD)):
-        rows += _sizes(say, state, shaking)
+    for state in (FIRST, *FURTHER):
+        rows += _sizes(say, state, site.shaking(state))
     for key, (symbol, unit) in OTHERS.items():
         value = getattr(site, key)
         if value is not None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.rules import OF_STATE
+from rocking_cli.codes.italian.sheet.methods import title
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
 from rocking_cli.views.sheet.language import Language, plain
 
@@ -48,9 +50,9 @@ def verdict(say: Language, first: str, where: str, each: Verified) -> Sentence:
 def _starts_later(say: Language, first: str, where: str, each: Verified) -> Iterator[Item]:
     """The other limit states at which the damage method governs: their ratio of displacements does not decide."""
     for state in each.states:
-        counts = each.methods[each.governing[state]]
-        if state != first and each.governing[state] == f"damage_{state}" and each.passes(state) is not None:
-            other = each.methods[f"nonlinear_{state}"].a_g or 0.0
+        (damage, nonlinear), counts = OF_STATE[state], each.methods[each.governing[state]]
+        if state != first and each.governing[state] == damage and each.passes(state) is not None:
+            other = each.methods[nonlinear].a_g or 0.0
             why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.demand)
             key = "verdict_passes" if each.passes(state) else "verdict_fails"
             yield Sentence(say.say(key, where=where, state=state, zeta=counts.zeta, why="@").replace("@", why))
@@ -88,9 +90,7 @@ def _methods(say: Language, where: str, each: Verified) -> Grid:
         line = each.straight_methods[key]
         numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.demand, method.zeta)]
         years = [method.lasts or say.number(None)] if known else []
-        rows.append(
-            [say.say(f"method_{key}"), *numbers, *years, say.say("governs") if key in each.governing.values() else ""]
-        )
+        rows.append([title(say, key), *numbers, *years, say.say("governs") if key in each.governing.values() else ""])
     heads = [say.say("method"), f"a_[g] [g], {say.say('exact')}", f"a_[g] [g], {say.say('line')}"]
     heads += [f"{say.say('asked')} [g]", "ζ_[E]", *([say.say("TR_years")] if known else []), ""]
     return Grid(say.say("methods", where=where), heads, rows, range(1, len(heads) - 1))

@@ -174,10 +174,9 @@ TEXTS = {
     "fails": "displacement capacity over demand at {state}: not satisfied, below 1",
     # methods
     "method_damage": "Damage: onset of rocking",
-    "method_damage_SLC": "Damage: onset of rocking, at SLC",
+    "method_damage_at": "Damage: onset of rocking, at {state}",
     "method_linear": "Linear method: behaviour factor q",
-    "method_nonlinear": "Nonlinear method, displacement at SLV",
-    "method_nonlinear_SLC": "Nonlinear method, displacement at SLC",
+    "method_nonlinear_at": "Nonlinear method, displacement at {state}",
     "method_SLD": "Damage, checked at SLD",
     "and_line": "on the straight line",
     "linear_at": "Linear method: q times the onset of rocking, by the ground of {state}",

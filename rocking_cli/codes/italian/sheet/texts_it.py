@@ -182,10 +182,9 @@ TEXTS = {
     "fails": "spostamento ammesso diviso domanda allo {state}: verifica non soddisfatta, minore di 1",
     # methods
     "method_damage": "Attivazione del meccanismo",
-    "method_damage_SLC": "Attivazione del meccanismo, verifica a SLC",
+    "method_damage_at": "Attivazione del meccanismo, verifica a {state}",
     "method_linear": "Metodo lineare: fattore di comportamento q",
-    "method_nonlinear": "Metodo non lineare, verifica a SLV",
-    "method_nonlinear_SLC": "Metodo non lineare, verifica a SLC",
+    "method_nonlinear_at": "Metodo non lineare, verifica a {state}",
     "method_SLD": "Attivazione del meccanismo, verifica a SLD",
     "and_line": "sulla retta",
     "linear_at": "Metodo lineare: q volte l'attivazione del meccanismo, con l'azione dello {state}",
