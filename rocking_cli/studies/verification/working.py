@@ -12,13 +12,6 @@ from unicodedata import name
 Standing = Literal["print", "transcription", "code", "ours", "plain"]
 """Of a formula: of the code, and checked against its print; checked against a transcription of its text only; or not
 yet checked; ours, where the code leaves it open; or plain mechanics and arithmetic."""
-MEANING: dict[Standing, str] = {
-    "print": "a formula of the code, checked against its printed text",
-    "transcription": "a formula of the code, checked against a transcription of its text but not yet against its print",
-    "code": "a formula of the code that has not yet been checked against its text",
-    "ours": "our reading, or our choice where the code leaves it open",
-    "plain": "mechanics or arithmetic, which need no code",
-}
 MINUS = "−"
 MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
 """A subscript or superscript: `d_[0]^[*]` has both."""
@@ -69,7 +62,7 @@ class Working:
     clause : str
         Where in the code.
     standing : {"print", "transcription", "code", "ours", "plain"}
-        How far the formula was checked, see `MEANING`; of a formula of the code its clause decides.
+        How far the formula was checked, see `Standing`; of a formula of the code its clause decides.
     state : str
         The limit state to which it belongs; empty if it belongs to none alone.
     section : str
@@ -124,7 +117,7 @@ class Formula:
     meaning : str
         What it is, in a few words; of a code with a sheet, the key of its texts.
     standing : {"code", "print", "ours", "plain"}
-        How far it was checked, see `MEANING`.
+        How far it was checked, see `Standing`.
     """
 
     symbol: str
