@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 from fragility import EXAMPLES, in_process, write_records
 
-from rocking_cli.studies.fragility import engines
 from rocking_cli.studies.fragility.campaign import prepare, run
 from rocking_cli.studies.fragility.store import Rows, Store
 from rocking_cli.studies.fragility.study import load_study
+from rocking_cli.studies.fragility.workers import threads
 
 ASKED = "limit_states: [uplift, 0.5, overturning]\n"
 METHODS = {
@@ -57,9 +57,9 @@ def beside_runs(folder: Path) -> None:
         place = folder / f"{method}.db"
         with Store.writing(place) as store:
             prepared = prepare(load_study(path), store)
-            with engines.threads() as engine:
+            with threads() as hands:
                 start = time.perf_counter()
-                run(prepared, store, engine)
+                run(prepared, store, hands)
                 runs = time.perf_counter() - start
         fits = min(_fits(place) for _ in range(3))
         count = 3 * 3 * len(prepared.study.definition.fitted_measures)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rocking_cli.studies.fragility import engines
+from rocking_cli.studies.fragility import workers as places
 from rocking_cli.studies.fragility.campaign import prepare, run
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
@@ -66,15 +66,15 @@ def in_process(path: Path, jobs: int | None = None, address: str | None = None) 
     """Runs of a study, and how long they took without what comes before and after them."""
     with tempfile.TemporaryDirectory() as folder, Store.writing(Path(folder) / "study.db") as store:
         prepared = prepare(load_study(path), store)
-        made = engines.cluster(address) if address is not None else engines.threads(jobs)
-        with made as engine:
+        made = places.cluster(address) if address is not None else places.threads(jobs)
+        with made as hands:
             start = time.perf_counter()
-            run(prepared, store, engine)
+            run(prepared, store, hands)
             return prepared.plan.total, time.perf_counter() - start
 
 
 def kernel_alone(path: Path) -> float:
-    """Seconds that the runs take without a store or an engine: units made before, on one thread."""
+    """Seconds that the runs take without a store or workers: units made before, on one thread."""
     with tempfile.TemporaryDirectory() as folder, Store.writing(Path(folder) / "study.db") as store:
         prepared = prepare(load_study(path), store)
         study, plan = prepared.study, prepared.plan

@@ -23,7 +23,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.processing.reading import Reading
-from rocking_cli.studies.fragility import assess, curves, engines, sources, store, store_file, tally, units
+from rocking_cli.studies.fragility import assess, curves, sources, store, store_file, tally, units, workers
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.definition import RecordEntry
 from rocking_cli.studies.fragility.intensity import ALWAYS
@@ -60,10 +60,10 @@ def write(folder, text=STUDY, count=5):
     return path
 
 
-def carry_out(path, place, engine=engines.threads, **options):
-    with Store.writing(place) as kept, engine(**options) as workers:
+def carry_out(path, place, make=workers.threads, **options):
+    with Store.writing(place) as kept, make(**options) as hands:
         prepared = prepare(load_study(path), kept)
-        run(prepared, kept, workers)
+        run(prepared, kept, hands)
     return prepared
 
 
@@ -165,11 +165,11 @@ class TestSameResults:
         monkeypatch.setattr(store, "PATIENCE", 0.0)
         monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: 10)
         place = tmp_path / "other.db"
-        with pytest.raises(StoreError, match="full"), Store.writing(place) as kept, engines.threads(1) as workers:
+        with pytest.raises(StoreError, match="full"), Store.writing(place) as kept, workers.threads(1) as hands:
             prepared = prepare(load_study(whole[0]), kept)
             (pages,) = kept._connection.execute("PRAGMA page_count").fetchone()
             kept._connection.execute(f"PRAGMA max_page_count = {pages + 1}")
-            run(prepared, kept, workers)
+            run(prepared, kept, hands)
         with Store.reading(place) as kept:
             assert 0 < kept.count()[0] < whole[1].plan.total
         carry_out(whole[0], place, jobs=2)
@@ -296,9 +296,9 @@ def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path
 
 
 def test_a_scheduler_that_is_not_there_is_said_so(whole, tmp_path, monkeypatch):
-    monkeypatch.setattr(engines, "PATIENCE", 0.3)
-    with pytest.raises(engines.ClusterError, match="no scheduler answers"):
-        carry_out(whole[0], tmp_path / "x.db", engines.cluster, address="tcp://127.0.0.1:9")
+    monkeypatch.setattr(workers, "PATIENCE", 0.3)
+    with pytest.raises(workers.ClusterError, match="no scheduler answers"):
+        carry_out(whole[0], tmp_path / "x.db", workers.cluster, address="tcp://127.0.0.1:9")
 
 
 class TestChanges:
@@ -429,7 +429,7 @@ class TestChanges:
             carry_out(whole[0], place)
 
     def test_restart_keeps_the_old_runs_until_new_ones_can_begin(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr(engines, "PATIENCE", 0.3)
+        monkeypatch.setattr(workers, "PATIENCE", 0.3)
         place = tmp_path / "study.db"
         place.write_bytes(whole[2].read_bytes())
         command = ["fragility", str(whole[0]), "--store", str(place), "--restart", "--scheduler", "tcp://127.0.0.1:9"]
@@ -555,11 +555,11 @@ def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, m
     monkeypatch.setattr(store_file, "WAITING", 0.2)
     monkeypatch.setattr(store, "PATIENCE", 0.0)
     place = tmp_path / "study.db"
-    with Store.writing(place) as kept, engines.threads(1) as workers:
+    with Store.writing(place) as kept, workers.threads(1) as hands:
         prepared = prepare(load_study(whole[0]), kept)
         with Store.reading(place) as reader:
             assert reader.count() == (0, 0)
-            run(prepared, kept, workers)
+            run(prepared, kept, hands)
             assert reader.count()[0] > 0
 
 
@@ -736,12 +736,12 @@ def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, m
     monkeypatch.setattr(sources, "KEPT", 1)
     (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
     path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))
-    with Store.writing(tmp_path / "study.db") as kept, engines.threads(1) as workers:
+    with Store.writing(tmp_path / "study.db") as kept, workers.threads(1) as hands:
         prepared = prepare(load_study(path), kept)
         prepared = replace(prepared)
         (tmp_path / "accel.csv").write_text("t,accel_g\n0,0\n0.01,1\n", encoding="utf-8")
         with pytest.raises(InputError, match="has changed while the study ran"):
-            run(prepared, kept, workers)
+            run(prepared, kept, hands)
 
 
 def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):

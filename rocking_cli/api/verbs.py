@@ -960,7 +960,7 @@ def fragility(
     The runs are those of `respond`, Eq. 8 or 16 of DeJong and Dimitrakopoulos (2014); docs/fragility.md explains how
     the curves are fitted.
     """
-    from rocking_cli.studies.fragility import assess, campaign, engines, table
+    from rocking_cli.studies.fragility import assess, campaign, table, workers
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.hazard import HazardCurve
     from rocking_cli.studies.fragility.intensity import label
@@ -978,8 +978,8 @@ def fragility(
     asked = load_study(study)
     with Store.writing(place, anew=False, say=lambda text: None) as kept:
         prepared = campaign.prepare(asked, kept, rank_measures=rank_measures)
-        with engines.threads(threads) as engine:
-            campaign.run(prepared, kept, engine)
+        with workers.threads(threads) as hands:
+            campaign.run(prepared, kept, hands)
     with Store.reading(place) as kept:
         plan, definition = kept.plan(), Definition.model_validate(kept.fact("definition"))
         points = kept.fact("hazard")

@@ -16,9 +16,9 @@ from rocking_cli.errors import INCOMPLETE
 
 if TYPE_CHECKING:
     from rocking_cli.studies.fragility.campaign import Prepared
-    from rocking_cli.studies.fragility.engines import Engine
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.study import Study
+    from rocking_cli.studies.fragility.workers import Workers
 
 NAMED = 10  # bad records or samples named one by one
 
@@ -38,11 +38,11 @@ class Running:
                 "--jobs applies to this machine only: on a cluster, the number of workers is set there."
             )
 
-    def engine(self) -> AbstractContextManager[Engine]:
-        """Return the engine of the runs."""
-        from rocking_cli.studies.fragility import engines
+    def workers(self) -> AbstractContextManager[Workers]:
+        """Return what carries out the runs."""
+        from rocking_cli.studies.fragility import workers
 
-        return engines.cluster(self.scheduler) if self.scheduler is not None else engines.threads(self.jobs)
+        return workers.cluster(self.scheduler) if self.scheduler is not None else workers.threads(self.jobs)
 
 
 @click.command(
@@ -144,7 +144,7 @@ def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measu
 
     with ExitStack() as stack:
         # The old store gives way only when there is somebody to run the study anew.
-        engine = stack.enter_context(running.engine()) if running.restart else None
+        workers = stack.enter_context(running.workers()) if running.restart else None
         say = terminal.note if running.restart else terminal.warning
         store = stack.enter_context(Store.writing(place, anew=running.restart, say=say))
         with terminal.progress(steps(study, rank_measures=rank_measures), "records and structures") as examined:
@@ -154,10 +154,10 @@ def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measu
             return
         if running.scheduler is None:
             waiting.compile_first()
-        engine = engine or stack.enter_context(running.engine())
+        workers = workers or stack.enter_context(running.workers())
         done, failed = prepared.finished, prepared.failed
         with terminal.progress(prepared.plan.total, "runs", done=done, failed=failed) as advance:
-            run(prepared, store, engine, advance)
+            run(prepared, store, workers, advance)
 
 
 def _report(prepared: Prepared) -> None:

@@ -18,7 +18,6 @@ from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.displacements import FACT, asked_for
-from rocking_cli.studies.fragility.engines import Engine
 from rocking_cli.studies.fragility.intensity import PGA, PGV
 from rocking_cli.studies.fragility.measuring import complete
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
@@ -27,6 +26,7 @@ from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
 from rocking_cli.studies.fragility.units import carry_out, unit_size, units
+from rocking_cli.studies.fragility.workers import Workers
 
 Progress = Callable[[int, int], None]
 """Called with how many runs have finished since the last call, and how many of these failed."""
@@ -189,7 +189,7 @@ def _of_one_kind(one: Plan, other: Plan) -> bool:
     )
 
 
-def run(prepared: Prepared, store: Store, engine: Engine, progress: Progress | None = None) -> None:
+def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress | None = None) -> None:
     """Run what the store does not hold yet, and put it there.
 
     Parameters
@@ -198,16 +198,16 @@ def run(prepared: Prepared, store: Store, engine: Engine, progress: Progress | N
         See `prepare`.
     store : Store
         Open to write.
-    engine : Engine
+    workers : Workers
         Where to run it: results do not depend on it.
     progress : callable, optional
         See `Progress`.
     """
     study, plan, given = prepared.study, prepared.plan, prepared.study.definition
-    size = unit_size(plan.total - prepared.finished, engine.workers)
+    size = unit_size(plan.total - prepared.finished, workers.count)
     checked = SLIDING in given.limit_states
     to_do = units(plan, study.samples, prepared.motions, given.model, store.finished, size, checked=checked)
-    for rows in engine.map(carry_out, to_do):
+    for rows in workers.map(carry_out, to_do):
         store.add(rows)
         if progress is not None:
             progress(len(rows), rows.failed)

@@ -17,7 +17,7 @@ from itertools import count
 from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem, Refused
-from rocking_cli.studies.fragility.engines import GOES_ON
+from rocking_cli.studies.fragility.workers import GOES_ON
 
 MARK = 0x526F636B  # "Rock", in the header of the file
 VERSION = 5  # of the tables of a store whose runs say until when they are known

@@ -27,21 +27,21 @@ PATIENCE = 10.0  # s for an answer of the scheduler
 
 
 @dataclass(frozen=True)
-class Engine:
+class Workers:
     """Something that runs functions, so many at a time.
 
     Parameters
     ----------
     executor : concurrent.futures.Executor
         Takes them.
-    workers : int
+    count : int
         How many it runs at a time.
     still_there : callable
         Called where nothing has been finished for a while; raises if nothing will be.
     """
 
     executor: Executor
-    workers: int
+    count: int
     still_there: Callable[[], None] = lambda: None
 
     def map(self, function: Callable[[A], B], items: Iterable[A]) -> Iterator[B]:
@@ -50,7 +50,7 @@ class Engine:
         try:
             for item in items:
                 on_the_way.add(self.executor.submit(function, item))
-                while len(on_the_way) >= AHEAD * self.workers:
+                while len(on_the_way) >= AHEAD * self.count:
                     on_the_way = yield from self._finished(on_the_way)
             while on_the_way:
                 on_the_way = yield from self._finished(on_the_way)
@@ -68,7 +68,7 @@ class Engine:
 
 
 @contextmanager
-def threads(jobs: int | None = None) -> Iterator[Engine]:
+def threads(jobs: int | None = None) -> Iterator[Workers]:
     """The processors of this machine: the history kernel leaves the interpreter to the others.
 
     Parameters
@@ -78,7 +78,7 @@ def threads(jobs: int | None = None) -> Iterator[Engine]:
     """
     workers = jobs or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as executor:
-        yield Engine(executor, workers)
+        yield Workers(executor, workers)
 
 
 class ClusterError(RockingError):
@@ -88,7 +88,7 @@ class ClusterError(RockingError):
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Engine]:
+def cluster(address: str) -> Iterator[Workers]:
     """The workers of a dask.distributed cluster.
 
     Parameters
@@ -117,7 +117,7 @@ def cluster(address: str) -> Iterator[Engine]:
                     if not client.nthreads():
                         raise ClusterError(f"the cluster at {address} has no workers left: {GOES_ON}")
 
-                yield Engine(client.get_executor(pure=False, retries=TRIES), workers, still_there)
+                yield Workers(client.get_executor(pure=False, retries=TRIES), workers, still_there)
     except (CancelledError, OSError, distributed.KilledWorker) as error:
         reason = str(error) or "its scheduler does not answer any more"
         raise ClusterError(f"the cluster at {address} was lost ({reason}): {GOES_ON}") from error
