@@ -16,7 +16,7 @@ import numpy as np
 
 import rocking_cli as rk
 from rocking_cli import Direction, Mechanism
-from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.structure import Structure
 
 REPEATS = 5
 STOREYS = 3
@@ -91,7 +91,7 @@ def tables() -> None:
     print("| structure | bodies | ms | over the frame |\n| --- | --- | --- | --- |")
     base = 0.0
     for name, make in (("asymmetric_frame", frame), ("linkage", portals)):
-        passed = seconds(make, lambda structure: Prepared(structure).model("nonlinear"))
+        passed = seconds(make, lambda structure: Structure(structure).model("nonlinear"))
         base = base or passed
         print(f"| {name} | {len(make().bodies())} | {1e3 * passed:.0f} | {passed / base:.1f} |", flush=True)
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from rocking_cli import Runs, load_structure, respond_many
 from rocking_cli.dynamics.model import linear_model
-from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.structure import Structure
 from rocking_cli.studies.overturning import overturning_map
 from rocking_cli.studies.under_pulses import Shaken, linear_block, outcomes, parse_shape, shaken
 
@@ -44,7 +44,7 @@ def seconds(work: Callable[[], object], repeats: int = 5) -> tuple[float, float]
 def maps() -> None:
     structures: list[Shaken] = [linear_block(0.9)]
     for name in ("block", "frame"):
-        structures.append(shaken(Prepared(load_structure(EXAMPLES / f"{name}.yaml")), "nonlinear", SINE))
+        structures.append(shaken(Structure(load_structure(EXAMPLES / f"{name}.yaml")), "nonlinear", SINE))
     print(f"\nMaps of {POINTS} x {POINTS} full sines, omega and a from 0.5 to 10, on {os.cpu_count()} processors\n")
     print("| structure | model | s | of processors s | us a point |\n| --- | --- | --- | --- | --- |")
     for each in structures:

@@ -63,7 +63,7 @@ _HOME = {
     "processing.floor": ["Floor"],
     "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],
     "processing.oscillator": ["ResponseSpectrum"],
-    "structure": ["load_structure"],
+    "structure_file": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}
 

@@ -77,7 +77,7 @@ from rocking_cli.processing.intensity import RelativeMeasure as RelativeMeasure
 from rocking_cli.processing.intensity import RunMeasure as RunMeasure
 from rocking_cli.processing.intensity import parse_measure as parse_measure
 from rocking_cli.processing.oscillator import ResponseSpectrum as ResponseSpectrum
-from rocking_cli.structure import load_structure as load_structure
+from rocking_cli.structure_file import load_structure as load_structure
 
 __version__: str
 mechanisms: Registry

@@ -1,173 +1,154 @@
-"""Read a structure from its YAML file, with every problem placed at file:line:column."""
+"""A structure: what is derived from its mechanism, its equivalent blocks and its models, each once and kept."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from difflib import get_close_matches
-from functools import cached_property, partial
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from pydantic import ValidationError
 
-from rocking_cli.core import Mechanism
-from rocking_cli.core.registry import Registry
-from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.dotted import copied, put, words
-from rocking_cli.io.field_problems import (
-    fields_at,
-    is_plural,
-    lists_models,
-    names_at,
-    of_arguments,
-    problems,
-    types_at,
-    unit_at,
-)
-from rocking_cli.io.yaml_file import Document, Place, parse, read_text
-from rocking_cli.text import cut, did_you_mean, one_line
-
-HINT = "`rocking new block` prints a template"
+from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
+from rocking_cli.core.advice import uplift_error
+from rocking_cli.core.statics import STRAIGHT
+from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
+from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 
 
-def load_structure(path: str | Path, registry: Registry | None = None) -> Mechanism:
-    """Read a structure from a YAML file.
+def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
+    """A structure with another restitution of every impact: the rebound of one that rocks to one side only.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file: a mapping with `mechanism` and that mechanism's fields.
-    registry : Registry, optional
-        Registry of mechanisms; by default that of all installed ones.
-
-    Returns
-    -------
-    Mechanism
-        Structure, named after the file if it does not give a name.
-
-    Raises
-    ------
-    InputError
-        With every problem of the file: its place, its field and a remedy.
-    MechanismError
-        If the mechanism's plugin cannot be used.
+    Raises `InputError` if it cannot have it.
     """
-    name = one_line(Path(path).stem).strip() or "structure"
-    return parse_structure(read_text(Path(path), "structure"), str(path), name, registry)
+    field = "restitution" if mechanism.rocks_both_ways else "rebound"
+    try:
+        return mechanism.model_copy(update={field: eta})
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        reason = first["ctx"]["reason"] if first["type"] == "geometry" else f"{first['msg']}, got {eta:g}"
+        name = mechanism.name or mechanism.mechanism
+        raise InputError(Problem(f"{name}: {reason[0].lower()}{reason[1:]}", field=field)) from None
 
 
-def parse_structure(text: str, file: str, default_name: str, registry: Registry | None = None) -> Mechanism:
-    """Read a structure from YAML text; errors name it `file`. Raises as `load_structure`."""
-    document = parse(text, file, "structure", HINT)
-    return of_document(document, default_name, Path(file).parent, registry)
-
-
-def of_document(document: Document, default_name: str, folder: Path, registry: Registry | None = None) -> Mechanism:
-    """Make a structure from a document that was read; it names files in `folder`. Raises as `load_structure`."""
-    cls = _mechanism(document, registry if registry is not None else Registry())
-    fields = {key: value for key, value in document.data.items() if key != "mechanism"}
-    if cls is not None:
-        try:
-            mechanism = cls.from_fields({**fields, "name": fields.get("name", default_name) or default_name}, folder)
-        except ValidationError as error:
-            lister = f"`rocking mechanisms {cls.mechanism}` lists the fields"
-            found = error.errors(include_url=False)
-            document.problems += problems(document, cls, found, owner=cls.mechanism, lister=lister)
-    document.check()
-    return mechanism
-
-
-@dataclass(frozen=True)
-class Varied:
-    """A structure with one numeric field that varies.
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A structure, and all that is derived from its mechanism, computed when first requested.
 
     Parameters
     ----------
     mechanism : Mechanism
-        The structure.
-    field : str
-        Path of the field, with dots, and entries of lists by name or number: `ties.bar.prestress`.
-    folder : Path, optional
-        Folder of the files that its fields name; by default the current one.
-
-    Raises
-    ------
-    InputError
-        If the structure does not have the field, or the field is not numeric.
+        What it is, with what hangs on it.
+    file : str, optional
+        Where it stands, for errors of its fields that show only when they are used.
     """
 
     mechanism: Mechanism
-    field: str
-    folder: Path | None = None
+    file: str | None = None
+    _models: dict[ModelName, Model] = field(default_factory=dict, repr=False)
 
-    def __post_init__(self) -> None:
-        cls, path = type(self.mechanism), words(self.field)
-        place = put(copied(self._data), path, 1.0, is_list=partial(lists_models, cls), grow=False)
-        found: Place = ()
-        for k, part in enumerate(place):
-            if isinstance(part, str):
-                named = names_at(cls, found)
-                known = list(self._entries(found) if named else fields_at(cls, found))
-                if part not in known:
-                    within = ".".join(path[:k]) or cls.mechanism
-                    message = f"{within} has no {cut(part)}" if named else f"{cut(part)} is not a field of {within}"
-                    message, hint = message if k else f"is not a field of {within}", did_you_mean(part, known)
-                    raise InputError(Problem(message, field=self.field, hint=hint))
-            found = (*found, part)
-        if float not in types_at(cls, place) or (isinstance(place[-1], str) and is_plural(cls, place)):
-            raise InputError(Problem("is not a numeric field, so it cannot be varied", field=self.field))
-        object.__setattr__(self, "_place", place)
+    @property
+    def name(self) -> str:
+        """What to call it."""
+        return self.mechanism.name or self.mechanism.mechanism
 
     @cached_property
-    def _data(self) -> dict[str, Any]:
-        return self.mechanism.model_dump(by_alias=True, exclude_unset=True)
+    def equivalence(self) -> Equivalence:
+        """Its equivalent blocks. Raises `MechanismError`, naming it, if it has none."""
+        with self._named():
+            return equivalent_block(self.mechanism, self.statics)
 
-    def _entries(self, place: Place) -> list[str]:
-        """Return the names that the user chose at a place."""
-        here: Any = self._data
-        for part in place:
-            here = (here or {}).get(part) if isinstance(part, str) else here[part]
-        return list(here or {})
+    @cached_property
+    def statics(self) -> tuple[Statics, Statics]:
+        """Its moments in both directions, also where no block is equivalent. Raises `MechanismError`, naming it."""
+        with self._named():
+            return both_statics(self.mechanism)
 
-    @property
-    def unit(self) -> str:
-        """Unit of the field; empty if it is dimensionless."""
-        return unit_at(type(self.mechanism), self._place)  # type: ignore[attr-defined]
-
-    @property
-    def value(self) -> float | None:
-        """Current value of the field; None if it is not given."""
-        here: Any = self._data
-        for part in self._place:  # type: ignore[attr-defined]
-            here = here.get(part) if isinstance(here, dict) else here[part]
-            if here is None:
-                return None
-        return float(here) if isinstance(here, int | float) else None
-
-    def at(self, value: float) -> Mechanism:
-        """Return the structure with another value of the field. Raises `InputError` if it cannot be built."""
-        data, cls = copied(self._data), type(self.mechanism)
-        put(data, words(self.field), value, is_list=partial(lists_models, cls), grow=False)
+    @cached_property
+    def why_no_block(self) -> str | None:
+        """Why no single block is equivalent to it, as a sentence; None if there is one in each direction."""
         try:
-            return cls.from_fields(data, self.folder)
-        except ValidationError as error:
-            raise InputError(*of_arguments(cls, error.errors(include_url=False), cls.mechanism)) from None
-
-
-def _mechanism(document: Document, registry: Registry) -> type[Mechanism] | None:
-    """Return the class of the mechanism in the file; None, with a problem added, if it does not exist."""
-    data = document.data
-    if "mechanism" not in data:
-        known = ", ".join(registry)
-        near = get_close_matches("mechanism", list(data), n=1)
-        hint = (
-            f"did you mean mechanism instead of {near[0]}?" if near else f"add a line `mechanism: NAME`; known: {known}"
-        )
-        document.problems.append(document.problem("is missing", document.values[()], "mechanism", hint))
+            self.equivalence  # noqa: B018 - it is kept
+        except NoEquivalentBlock as error:
+            return f"{error}"
         return None
-    name, mark = data["mechanism"], document.values[("mechanism",)]
-    if not isinstance(name, str) or name not in registry:
-        guess = did_you_mean(str(name), list(registry))
-        document.problems.append(document.problem(f"unknown mechanism {cut(repr(name))}", mark, "mechanism", guess))
+
+    @cached_property
+    def misleading(self) -> str | None:
+        """Why its linear models mislead though there is a block, as a sentence; None if they do not, or there is none.
+
+        Only for structures that something is attached to: for a bare one, the error is given with each kappa.
+        """
+        if self.why_no_block is not None or not self.mechanism.bends:
+            return None
+        far = max(each.departure for each in self.statics)
+        off = uplift_error(self.equivalence)
+        if far > STRAIGHT:
+            return (
+                f"the linear models mislead: the restoring moment leaves the straight line to phi_cr by {far:.2g} of "
+                "its value at rest"
+            )
+        if abs(off) > STRAIGHT:
+            return (
+                "the linear models mislead: the uplift acceleration of the linearised mechanism is "
+                f"{1 + off:.3g} times its own"
+            )
         return None
-    return registry[name]
+
+    @property
+    def default_models(self) -> tuple[ModelName, ...]:
+        """The models to follow where nobody asks for some: the linear ones only where they do not mislead."""
+        return MODELS if self.why_no_block is None and self.misleading is None else ("nonlinear",)
+
+    @cached_property
+    def etas(self) -> tuple[float, float]:
+        """Restitution of an impact that ends positive and negative motion; the rebound where it rocks to one side."""
+        with self._named():
+            return self.mechanism.eta(self.mechanism.sides[0]), self.mechanism.eta(self.mechanism.sides[1])
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter [rad/s], of two different directions the larger; without a block, how fast it moves."""
+        if self.why_no_block is None:
+            return max(self.equivalence.positive.p, self.equivalence.negative.p)
+        return self.model("nonlinear").p
+
+    @property
+    def growth(self) -> float:
+        """How fast a tilt near the critical one grows [1/s]; 0 where none is critical."""
+        return self.p if self.why_no_block is None else 0.0
+
+    @property
+    def uplift(self) -> tuple[float, float]:
+        """The ground acceleration that lifts it to the positive and the negative direction [standard gravity]."""
+        unit = self.mechanism.gravity / STANDARD_GRAVITY
+        return self.statics[0].lambda_ * unit, self.statics[1].lambda_ * unit
+
+    def model(self, name: ModelName) -> Model:
+        """One of its models. Raises `InputError` or `MechanismError` if it cannot be built."""
+        if name not in self._models:
+            statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
+            with self._named():
+                self._models[name] = build(self.mechanism, statics, equivalence, name)
+        return self._models[name]
+
+    def models(self, names: Sequence[ModelName] = MODELS) -> list[Model]:
+        """Some of its models."""
+        return [self.model(name) for name in names]
+
+    def with_eta(self, eta: float) -> Structure:
+        """The same structure with another restitution of every impact. Raises `InputError` if it cannot have it."""
+        return Structure(with_restitution(self.mechanism, eta), self.file)
+
+    @contextmanager
+    def _named(self) -> Iterator[None]:
+        """Have errors of the mechanics begin with the name of the structure, and those of its fields with its file."""
+        try:
+            yield
+        except MechanismError as error:
+            raise of_structure(error, self.name) from error
+        except InputError as error:
+            if self.file is None:
+                raise
+            raise InputError(*(replace(each, file=each.file or self.file) for each in error.problems)) from None

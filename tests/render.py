@@ -28,7 +28,7 @@ from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
-from rocking_cli.structure import load_structure
+from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.fragility.assess import Bivariate
 from rocking_cli.studies.fragility.curves import Observations, fit_curve, fit_surface
 from rocking_cli.studies.margin import FACTORS, Margin

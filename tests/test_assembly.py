@@ -563,7 +563,7 @@ def test_a_tie_may_leave_no_critical_rotation():
     [("blocks.left.density", "kg/m3"), ("blocks.lintel.polygon.2.1", "m"), ("friction_of.left and lintel", "")],
 )
 def test_what_is_in_mappings_can_vary(field, unit):
-    from rocking_cli.structure import Varied
+    from rocking_cli.structure_file import Varied
 
     portal = assembly({**PORTAL, "left": {**PORTAL["left"], "density": 2100.0}}, friction_of={"left and lintel": 0.9})
     varied = Varied(portal, field)

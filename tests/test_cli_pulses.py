@@ -18,7 +18,7 @@ from rocking_cli.excitation.pulses import PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.pulse_fit import draw_pulses
-from rocking_cli.structure import load_structure
+from rocking_cli.structure_file import load_structure
 from tests.test_cli import ACCEL, FRAME, run, run_json
 
 SINE = "sine:0.3g:0.8s"

@@ -33,7 +33,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.tables import tabulate
 from rocking_cli.errors import MechanismError, PluginError
 from rocking_cli.plugins.errors import own_traceback
-from rocking_cli.structure import load_structure, parse_structure
+from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.testing import CHECKS, MechanismContract, contract
 from rocking_cli.views.template import template
 from tests.conftest import EXAMPLES

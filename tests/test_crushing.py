@@ -12,9 +12,9 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.spanning_wall import SpanningWall
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError
-from rocking_cli.structure import parse_structure
+from rocking_cli.structure import Structure
+from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.picture import picture
 from rocking_cli.testing import contract
 from rocking_cli.views.equiv import view
@@ -122,7 +122,7 @@ def test_it_keeps_the_contract(structure):
 def test_it_is_said():
     found = facade()
     assert "inwards by crushing at 1 MPa" in " ".join(picture(found).sketch.notes)
-    shown = view(Prepared(found))
+    shown = view(Structure(found))
     assert shown.data["directions"]["positive"]["inwards_foot"] == pytest.approx(0.0432)
     assert any("Pivots moved inwards by crushing at 1 MPa" in part for part in shown.parts if isinstance(part, str))
 

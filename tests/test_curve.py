@@ -13,9 +13,9 @@ from mechanisms._capacity import MonotoneCubic
 from mechanisms.block import Block
 from mechanisms.curve import Curve
 from rocking_cli.core import Direction, NoEquivalentBlock, equivalent_block
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError
-from rocking_cli.structure import load_structure, parse_structure
+from rocking_cli.structure import Structure
+from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.testing import contract
 
 POSITIVE, NEGATIVE = Direction
@@ -90,12 +90,12 @@ def test_a_curve_that_rises_has_no_equivalent_block():
     found = Curve(points=[[0.0, 0.1], [0.1, 0.15], [0.5, 0.0]], **STRAIGHT)
     with pytest.raises(NoEquivalentBlock, match=r"does not fall all the way from rest$"):
         equivalent_block(found)
-    assert Prepared(found).statics[0].phi_cr == pytest.approx(0.25)
+    assert Structure(found).statics[0].phi_cr == pytest.approx(0.25)
 
 
 def test_linear_models_mislead_where_it_is_far_from_straight():
     steep = Curve(points=[[0.0, 0.3], [0.02, 0.1], [0.5, 0.0]], **STRAIGHT)
-    assert "the linear models mislead" in Prepared(steep).misleading
+    assert "the linear models mislead" in Structure(steep).misleading
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.errors import InputError
-from rocking_cli.structure import Varied
+from rocking_cli.structure_file import Varied
 from rocking_cli.studies.design import Aim, Span, design
 from rocking_cli.studies.metrics import METRICS, Metric, Shaking
 from rocking_cli.studies.neighbours import Around, neighbours
@@ -155,9 +155,9 @@ class TestShares:
         assert found.monotone
         shaking = Shaking([rk.parse_pulse(self.SINE).sampled()], (1,), Around(20))
         metric, varied = METRICS["overturned"].value, Varied(rk.load_structure(BLOCK), "width")
-        from rocking_cli.dynamics.prepared import Prepared
+        from rocking_cli.structure import Structure
 
-        at, below = (metric(Prepared(varied.at(found.value - off)), shaking) for off in (0.0, 2e-3))
+        at, below = (metric(Structure(varied.at(found.value - off)), shaking) for off in (0.0, 2e-3))
         assert at <= 0.5 < below
 
     def test_the_worse_of_motions_and_polarities_counts(self):

@@ -30,7 +30,7 @@ from rocking_cli.plotting import dimensions, style
 from rocking_cli.plotting.labels import Labels, mathematics
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_structure
-from rocking_cli.structure import load_structure
+from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.picture import ASSUMED, NODES, picture
 from rocking_cli.testing import MechanismContract
 from tests.conftest import EXAMPLES

@@ -240,10 +240,10 @@ class TestAllAround:
 
     def test_a_structure_that_mirrors_itself_does_so_after_half_a_turn(self, quake):
         from rocking_cli import Block
-        from rocking_cli.dynamics.prepared import Prepared
+        from rocking_cli.structure import Structure
 
         other = replace(quake, acceleration=np.roll(quake.acceleration, 50))
-        found = all_around(Prepared(Block(width=0.7, height=2.8)), ["nonlinear"], (quake, other), 1.0)
+        found = all_around(Structure(Block(width=0.7, height=2.8)), ["nonlinear"], (quake, other), 1.0)
         peaks = found.outcomes["nonlinear"].peak_ratio
         assert peaks[: peaks.size // 2] == pytest.approx(peaks[peaks.size // 2 :], nan_ok=True)
 

@@ -25,7 +25,7 @@ from rocking_cli.codes.italian.sheet.build import SHEET, parts
 from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.io.yaml_file import parse
-from rocking_cli.structure import parse_structure
+from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.verification.check import site_in
 from rocking_cli.studies.verification.control import control_at
 from rocking_cli.studies.verification.working import Formula, as_written, in_plain, put

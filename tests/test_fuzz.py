@@ -21,7 +21,7 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import InputError, MechanismError, RockingError
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import read_record
-from rocking_cli.structure import parse_structure
+from rocking_cli.structure_file import parse_structure
 from tests import hostile
 
 INPUTS = int(os.environ.get("ROCKING_FUZZ", "0"))

@@ -10,7 +10,6 @@ from scipy.integrate import simpson
 from scipy.signal import lsim
 
 from rocking_cli import equivalent_block, load_structure
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, PluginError
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import GroundMotion
@@ -24,6 +23,7 @@ from rocking_cli.processing.intensity import (
     parse_measures,
     power_of,
 )
+from rocking_cli.structure import Structure
 from rocking_cli.studies.strength import intensities, reference_of
 from tests.conftest import EXAMPLES
 
@@ -130,7 +130,7 @@ class TestDefinitions:
         assert found == [pytest.approx(0.5 + 1 + 0.5 + 1 + 0.5), pytest.approx(2.0), 0.0]
 
     def test_relative_ones(self):
-        ready = Prepared(load_structure(EXAMPLES / "frame.yaml").model_copy(update={"gravity": 3.7}))
+        ready = Structure(load_structure(EXAMPLES / "frame.yaml").model_copy(update={"gravity": 3.7}))
         both = equivalent_block(ready.mechanism)
         block = min((both.positive, both.negative), key=lambda each: each.lambda_)
         names = ("PGA/(g lambda)", "p PGV/(g lambda)", "PGV/v_imp")

@@ -16,10 +16,10 @@ from rocking_cli import Registry, build_models, equivalent_block, load_structure
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.structure import Structure
 from rocking_cli.studies.equivalent import equivalent
 from rocking_cli.studies.neighbours import Around, neighbours
 from rocking_cli.studies.sizes import Sizes
@@ -231,7 +231,7 @@ def test_a_restitution_for_all_that_a_structure_cannot_have_is_refused(eta):
     most = min(frame.greatest_restitution(direction) for direction in Direction)
     assert most < 0.999
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
-        Prepared(frame).with_eta(eta)
+        Structure(frame).with_eta(eta)
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
         equivalent([frame], parse_pulse("sine:0.5g:1s"), eta=eta)
     asked = ("overturning", EXAMPLES / "frame.yaml", "--eta", eta, "--points", 3)
@@ -302,7 +302,7 @@ def test_a_rebound_of_nothing_stays_where_it_hits():
     history = follow(model, None, release=0.4)
     assert history.impact_count == 1 and history.at_rest
     shape = parse_shape("sine")
-    structure = pulsed_model(Prepared(still), "nonlinear", shape)
+    structure = pulsed_model(Structure(still), "nonlinear", shape)
     pulses = outcomes(structure, shape, np.array([0.8]), np.array([4.0]))
     assert not pulses.failed.any() and pulses.peak_ratio[0] > 0
 

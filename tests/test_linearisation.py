@@ -22,7 +22,7 @@ from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plotting.linearisation import draw_linearisation
-from rocking_cli.structure import load_structure
+from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.linearisation import linearisation, velocity_ratios
 from rocking_cli.studies.trust import preferred, trust
 from tests.conftest import EXAMPLES

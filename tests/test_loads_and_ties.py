@@ -13,7 +13,7 @@ from rocking_cli.core import Direction, NoEquivalentBlock
 from rocking_cli.core.equivalence import both_statics, impulse_velocity
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.structure import Structure
 from tests.oracle import simulate
 from tests.test_walls_oracle import G, printed
 from tests.twins import Twin, shaking, twin
@@ -96,12 +96,12 @@ def test_a_straight_tie_to_the_top_is_another_thing():
 
 def test_linear_models_of_a_structure_whose_moment_is_not_straight_are_asked_for():
     tie = {"name": "t", "from": {"ground": [0.0, 0.0]}, "to": {"at": [0.0, 0.0]}, "stiffness": 49 * MG / 5}
-    tied = Prepared(made("block", **TALL, ties=[tie]))
+    tied = Structure(made("block", **TALL, ties=[tie]))
     block = tied.equivalence.positive
     assert printed(block.lambda_, ".20") and printed(block.lambda_lin, ".99")
     assert tied.misleading is not None and tied.default_models == ("nonlinear",)
     tie["stiffness"] = 50.001 * MG / 5
-    assert Prepared(made("block", **TALL, ties=[tie])).why_no_block is not None
+    assert Structure(made("block", **TALL, ties=[tie])).why_no_block is not None
 
 
 # Section 3 and 10.

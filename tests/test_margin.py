@@ -15,7 +15,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.margin import draw_margins
-from rocking_cli.structure import load_structure, parse_structure
+from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
 from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
 from rocking_cli.studies.neighbours import Around

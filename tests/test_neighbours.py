@@ -20,7 +20,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.excitation.records import read_record
-from rocking_cli.structure import load_structure, parse_structure
+from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies.neighbours import (
     Around,
     Draws,

@@ -20,13 +20,13 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.model import build_models
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
-from rocking_cli.structure import load_structure
+from rocking_cli.structure import Structure
+from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.boundaries import boundaries
 from rocking_cli.studies.overturning import SCAN, Region, compare, overturning_map
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest
@@ -47,7 +47,7 @@ def plane():
 
 @pytest.fixture(scope="module")
 def curves():
-    structures = [pulsed_model(Prepared(load_structure(file)), "linear2", SINE) for file in FILES]
+    structures = [pulsed_model(Structure(load_structure(file)), "linear2", SINE) for file in FILES]
     return compare(structures, SINE, np.linspace(0.3, 3, 12), 3.0)
 
 
@@ -96,7 +96,7 @@ class TestMap:
         ],
     )
     def test_a_nonlinear_point_is_the_history_of_respond(self, mechanism, omega, a, missing):
-        structure = pulsed_model(Prepared(mechanism), "nonlinear", SINE)
+        structure = pulsed_model(Structure(mechanism), "nonlinear", SINE)
         found = overturning_map(structure, SINE, np.array(omega), np.array(a))
         for row, ag in enumerate(found.accelerations * STANDARD_GRAVITY):
             for column, period in enumerate(found.periods):
@@ -125,7 +125,7 @@ class TestMap:
 
     def test_both_polarities_give_the_worse(self):
         ricker = parse_shape("ricker")
-        structure = pulsed_model(Prepared(load_structure(FRAME)), "linear2", ricker, (1, -1))
+        structure = pulsed_model(Structure(load_structure(FRAME)), "linear2", ricker, (1, -1))
         omega, a = np.linspace(1, 6, 20), np.linspace(0.9, 6, 20)
         one, other, both = (
             overturning_map(structure, ricker, omega, a, polarities=each).outcome for each in ((1,), (-1,), (1, -1))
@@ -140,15 +140,15 @@ class TestMap:
 
     def test_uplift_is_at_a_of_one_in_the_weaker_direction(self):
         frame = load_structure(FRAME)
-        structure = pulsed_model(Prepared(frame), "nonlinear", SINE)
+        structure = pulsed_model(Structure(frame), "nonlinear", SINE)
         assert structure.lambda_ == min(frame.uplift(direction) for direction in Direction)
         found = overturning_map(structure, SINE, np.array([4.0]), np.array([0.999, 1.001]))
         assert found.outcome.peak_ratio[0, 0] == 0 and found.outcome.peak_ratio[1, 0] > 0
 
     def test_kappa1_measures_by_the_lambda_of_the_linearised_mechanism(self):
         block = equivalent_block(BLOCK).positive
-        assert pulsed_model(Prepared(BLOCK), "linear1", SINE).lambda_ == block.lambda_lin
-        assert pulsed_model(Prepared(BLOCK), "linear2", SINE).lambda_ == block.lambda_ != block.lambda_lin
+        assert pulsed_model(Structure(BLOCK), "linear1", SINE).lambda_ == block.lambda_lin
+        assert pulsed_model(Structure(BLOCK), "linear2", SINE).lambda_ == block.lambda_ != block.lambda_lin
 
     @pytest.mark.parametrize(
         ("omega", "a", "complaint"),
@@ -163,7 +163,7 @@ class TestMap:
         with pytest.raises(InputError, match="eta must be in"):
             linear_block(eta)
         with pytest.raises(InputError, match="eta must be in"):
-            pulsed_model(Prepared(BLOCK), "linear2", SINE, eta=eta)
+            pulsed_model(Structure(BLOCK), "linear2", SINE, eta=eta)
 
 
 class TestOnlyPeaks:
@@ -256,7 +256,7 @@ class TestBoundaries:
     def test_other_shapes_and_models_have_that_of_uplift(self):
         assert [each.name for each in boundaries(parse_shape("ricker"), 0.9)] == ["uplift"]
         found = overturning_map(
-            pulsed_model(Prepared(BLOCK), "nonlinear", SINE), SINE, np.array([5.0, 6.0]), np.array([0.5, 2.0])
+            pulsed_model(Structure(BLOCK), "nonlinear", SINE), SINE, np.array([5.0, 6.0]), np.array([0.5, 2.0])
         )
         assert [each.name for each in found.boundaries] == ["uplift"]
 
@@ -294,7 +294,7 @@ class TestCompare:
 
     def test_equal_least_amplitudes_are_a_tie(self):
         one, other, heavy = (
-            pulsed_model(Prepared(Block(width=0.7 * k, height=2.8)), "linear2", SINE) for k in (1.0, 1.0, 1.5)
+            pulsed_model(Structure(Block(width=0.7 * k, height=2.8)), "linear2", SINE) for k in (1.0, 1.0, 1.5)
         )
         found = compare([one, heavy, other], SINE, np.array([0.5, 0.8]), 4.0)
         assert found.firsts.tolist() == [[True, True], [False, False], [True, True]]
@@ -303,14 +303,14 @@ class TestCompare:
 
     def test_a_similar_block_overturns_at_the_same_amplitude_of_a_longer_pulse(self):
         small, large = (
-            pulsed_model(Prepared(Block(width=0.7 * k, height=2.8 * k)), "nonlinear", SINE) for k in (1.0, 4.0)
+            pulsed_model(Structure(Block(width=0.7 * k, height=2.8 * k)), "nonlinear", SINE) for k in (1.0, 4.0)
         )
         one = compare([small], SINE, np.array([0.5, 0.8]), 4.0)
         other = compare([large], SINE, np.array([1.0, 1.6]), 4.0)
         np.testing.assert_allclose(one.least, other.least, rtol=1e-6)
 
     def test_too_small_amplitudes_overturn_nothing(self):
-        found = compare([pulsed_model(Prepared(BLOCK), "linear2", SINE)], SINE, np.array([1.0]), 0.2)
+        found = compare([pulsed_model(Structure(BLOCK), "linear2", SINE)], SINE, np.array([1.0]), 0.2)
         assert np.isnan(found.least).all() and found.firsts.tolist() == [[False]]
 
 
@@ -412,7 +412,7 @@ class TestCommand:
         assert "only one of the FILEs" in run("overturning", "--compare", FILES[0], "no.yaml", code=2).stderr
 
     def test_pulses_beyond_sense_are_refused_with_the_numbers(self):
-        structure = pulsed_model(Prepared(BLOCK), "linear2", SINE)
+        structure = pulsed_model(Structure(BLOCK), "linear2", SINE)
         for omega, a in ((1e-7, 2.0), (1e7, 2.0), (1.0, 1e7)):
             with pytest.raises(InputError, match="it must be"):
                 overturning_map(structure, SINE, np.array([omega]), np.array([a]))
@@ -504,7 +504,7 @@ class TestPictures:
 
     def test_one_of_a_structure_has_units(self):
         found = overturning_map(
-            pulsed_model(Prepared(BLOCK), "linear2", SINE), SINE, np.linspace(1, 8, 20), np.linspace(0.5, 9, 20)
+            pulsed_model(Structure(BLOCK), "linear2", SINE), SINE, np.linspace(1, 8, 20), np.linspace(0.5, 9, 20)
         )
         (axes,) = draw_map(found, "a block", dimensionless=False).axes
         assert "[s]" in axes.get_xlabel() and "[g]" in axes.get_ylabel()
@@ -512,7 +512,7 @@ class TestPictures:
         assert low < found.periods.min() and high > found.periods.max()
 
     def test_curves_differ_by_dash_and_mark(self):
-        structures = [pulsed_model(Prepared(load_structure(file)), "linear2", SINE) for file in FILES]
+        structures = [pulsed_model(Structure(load_structure(file)), "linear2", SINE) for file in FILES]
         found = compare(structures, SINE, np.linspace(0.4, 3, 9), 3.0)
         (axes,) = draw_comparison(found, "sine").axes
         looks = {(line.get_linestyle(), line.get_marker(), line.get_color()) for line in axes.get_lines()}

@@ -21,7 +21,7 @@ from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
 from rocking_cli.report.page import symbols
-from rocking_cli.structure import load_structure
+from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.neighbours import Around
 from rocking_cli.views.parameters import values
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS

@@ -11,9 +11,9 @@ import sympy as sp
 from mechanisms.spanning_wall import SpanningWall
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError
-from rocking_cli.structure import parse_structure
+from rocking_cli.structure import Structure
+from rocking_cli.structure_file import parse_structure
 from rocking_cli.testing import contract
 from rocking_cli.views.equiv import view
 from tests.test_lagrange import Piece, agrees, point, t, turned
@@ -127,7 +127,7 @@ def test_an_eccentric_load_cuts_it_into_three():
         xi = 1 / (1 + sqrt(k / 2))
         assert found.extras(direction)[0].value == pytest.approx(xi)
         assert found.uplift(direction) == pytest.approx(2 * T / (xi * H) * (2 + k * xi / (1 - xi)), rel=1e-12)
-    data = view(Prepared(found)).data["directions"]
+    data = view(Structure(found)).data["directions"]
     assert data["positive"]["hinge"] < data["negative"]["hinge"]
 
 

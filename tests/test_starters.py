@@ -11,7 +11,7 @@ from rocking_cli.core import both_statics
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import build_model
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.structure import load_structure, parse_structure
+from rocking_cli.structure_file import load_structure, parse_structure
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 

@@ -14,7 +14,6 @@ from matplotlib.patches import Rectangle
 from mechanisms.block import Block
 from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.sampled_pulse import COARSEST, _alike, sampled_history
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE, parse_pulse
@@ -27,7 +26,8 @@ from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
 from rocking_cli.plotting.spectrum import draw_spectra
-from rocking_cli.structure import load_structure
+from rocking_cli.structure import Structure
+from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import under_pulses
 from rocking_cli.studies.equivalent import equivalent, judge
 from rocking_cli.studies.film import Film
@@ -45,7 +45,7 @@ FILE = EXAMPLES / "masonry" / "portal.yaml"
 PORTAL = load_structure(FILE)
 ACCEL = EXAMPLES / "accel.csv"
 RECORD = read_record(ACCEL).scaled(2.0)  # under which the outcome of the portal is unknown
-SHAKEN = pulsed_model(Prepared(PORTAL), "nonlinear", SINE)
+SHAKEN = pulsed_model(Structure(PORTAL), "nonlinear", SINE)
 
 
 def nonlinear(mechanism, motion):
@@ -67,7 +67,7 @@ def plane():
 
 @pytest.fixture(scope="module")
 def curves():
-    both = [SHAKEN, pulsed_model(Prepared(Block(width=0.7, height=2.8, name="block")), "nonlinear", SINE)]
+    both = [SHAKEN, pulsed_model(Structure(Block(width=0.7, height=2.8, name="block")), "nonlinear", SINE)]
     return compare(both, SINE, np.array([0.3, 0.7, 2.0]), 2.6)
 
 
@@ -92,7 +92,7 @@ class TestMap:
             assert plane.outcome.known_to[row, column] == pytest.approx(alone.known_to, nan_ok=True)
 
     def test_what_is_known_does_not_depend_on_where_knowledge_ends(self, plane):
-        looser = pulsed_model(Prepared(PORTAL.model_copy(update={"opening": 0.5})), "nonlinear", SINE)
+        looser = pulsed_model(Structure(PORTAL.model_copy(update={"opening": 0.5})), "nonlinear", SINE)
         other = overturning_map(looser, SINE, plane.omega, plane.a)
         known = ~plane.outcome.unknown
         assert other.outcome.unknown.sum() < plane.outcome.unknown.sum()
@@ -147,7 +147,7 @@ class TestMap:
             (facade, "nonlinear", "joints of this mechanism are not checked", None),
             (PORTAL, "linear2", NO_JOINTS, 0.0),
         ):
-            shaken = pulsed_model(Prepared(mechanism), model, SINE)
+            shaken = pulsed_model(Structure(mechanism), model, SINE)
             found = map_view(
                 overturning_map(shaken, SINE, np.array([3.0]), np.array([1.5, 2])), mechanism, dimensionless=True
             )

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.api.answer import Answer
-from rocking_cli.api.verbs import Motion, Structure, _models, _motion, _structure
+from rocking_cli.api.verbs import Motion, StructureLike, _models, _motion, _structure
 from rocking_cli.dynamics.history import RTOL
-from rocking_cli.dynamics.release import Release
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.steps import Step, parse_steps, process
 from rocking_cli.studies.azimuths import Around
+from rocking_cli.studies.release import Release
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMo
 
 
 def respond_around(
-    structure: Structure,
+    structure: StructureLike,
     one: Motion,
     other: Motion,
     *,

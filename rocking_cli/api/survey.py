@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.api.answer import Answer
-from rocking_cli.api.verbs import Motion, Structure, _each, _motion, _structure
+from rocking_cli.api.verbs import Motion, StructureLike, _each, _motion, _structure
 from rocking_cli.api.verification import _site
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ Table = str | Path | Mapping[str, Sequence[Any]]
 
 
 def survey(
-    structures: Table | Sequence[Structure],
+    structures: Table | Sequence[StructureLike],
     motions: Motion | Sequence[Motion] = (),
     *,
     scale: float = 1.0,
@@ -96,7 +96,7 @@ def _entries(given: Any) -> Sequence[Entry]:
 
 
 def design(
-    structure: Structure,
+    structure: StructureLike,
     vary: str | tuple[str, float, float],
     until: str,
     motions: Motion | Sequence[Motion] = (),
@@ -151,7 +151,7 @@ def design(
     >>> round(rk.design(rk.Block(width=0.5, height=2.0), "width=0.2m:0.8m", "lambda >= 0.2").value, 9)
     0.4
     """
-    from rocking_cli.structure import Varied
+    from rocking_cli.structure_file import Varied
     from rocking_cli.studies.design import Aim, Span
     from rocking_cli.studies.design import design as study
     from rocking_cli.studies.metrics import Shaking

@@ -17,8 +17,6 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
-from rocking_cli.dynamics.prepared import Prepared
-from rocking_cli.dynamics.release import Release
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures
@@ -26,7 +24,9 @@ from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.io.json_text import json_text
-from rocking_cli.structure import load_structure
+from rocking_cli.structure import Structure
+from rocking_cli.structure_file import load_structure
+from rocking_cli.studies.release import Release
 from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.picture import Picture
     from rocking_cli.studies.spectrum import Spectrum
 
-Structure = Mechanism | str | Path
+StructureLike = Mechanism | str | Path
 """Mechanism, or its YAML file."""
 Motion = GroundMotion | Pulse | str | Path
 """Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
@@ -61,15 +61,15 @@ def _with_gaps(values: NDArray[np.bool_], missing: NDArray[np.bool_]) -> Any:
     return found.tolist()
 
 
-def _structure(given: Structure) -> Prepared:
+def _structure(given: StructureLike) -> Structure:
     if isinstance(given, Mechanism):
-        return Prepared(given if given.name else given.model_copy(update={"name": given.mechanism}))
+        return Structure(given if given.name else given.model_copy(update={"name": given.mechanism}))
     if not isinstance(given, str | Path):
         hint = "make one, such as rk.Block(width=0.7, height=2.8)"
         raise InputError(
             Problem(f"must be a mechanism or a YAML file, got {_kind(given)}", field="structure", hint=hint)
         )
-    return Prepared(load_structure(given), str(given))
+    return Structure(load_structure(given), str(given))
 
 
 def _motion(given: Motion) -> GroundMotion:
@@ -113,7 +113,7 @@ def _models(given: str | Sequence[str] | None) -> tuple[ModelName, ...]:
     return chosen  # type: ignore[return-value]
 
 
-def equiv(structure: Structure) -> Answer[Equivalence | None]:
+def equiv(structure: StructureLike) -> Answer[Equivalence | None]:
     """Compute the equivalent single rocking block of a structure, in both directions.
 
     Parameters
@@ -155,7 +155,7 @@ def equiv(structure: Structure) -> Answer[Equivalence | None]:
     return Answer("equivalent block", found, views.view(ready), columns, figure)
 
 
-def draw(structure: Structure, *, at: float | None = None) -> Answer[Picture]:
+def draw(structure: StructureLike, *, at: float | None = None) -> Answer[Picture]:
     """Draw a structure at rest with its dimensions, and displaced in both directions.
 
     Parameters
@@ -200,7 +200,7 @@ def draw(structure: Structure, *, at: float | None = None) -> Answer[Picture]:
     return Answer("drawing", found, view(found), columns, figure)
 
 
-def collapse(structure: Structure) -> MappingAnswer[Direction, CollapseMechanism]:
+def collapse(structure: StructureLike) -> MappingAnswer[Direction, CollapseMechanism]:
     """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
 
     Parameters
@@ -342,7 +342,7 @@ def response_spectrum(
 
 
 def respond(
-    structure: Structure,
+    structure: StructureLike,
     motion: Motion | None = None,
     *,
     models: str | Sequence[str] | None = None,
@@ -433,7 +433,7 @@ def _history_columns(found: Mapping[ModelName, History], shaking: GroundMotion |
 def _history_figure(
     found: Mapping[ModelName, History],
     shaking: GroundMotion | None,
-    ready: Prepared,
+    ready: Structure,
     title: str,
     contacts: Mapping[int, Contact],
 ) -> Figure:
@@ -446,7 +446,7 @@ def _history_figure(
 
 
 def respond_each(
-    structures: Structure | Sequence[Structure],
+    structures: StructureLike | Sequence[StructureLike],
     motions: Motion | Sequence[Motion],
     *,
     models: str | Sequence[str] | None = None,
@@ -540,7 +540,7 @@ def respond_each(
 
 
 def spectrum(
-    structures: Structure | Sequence[Structure] = (),
+    structures: StructureLike | Sequence[StructureLike] = (),
     motions: Motion | Sequence[Motion] = (),
     *,
     slenderness: Sequence[float] = (),
@@ -612,7 +612,7 @@ def spectrum(
 
 
 def overturning_map(
-    structure: Structure | None = None,
+    structure: StructureLike | None = None,
     *,
     shape: str = "sine",
     model: ModelName = "linear2",
@@ -697,7 +697,7 @@ def overturning_map(
 
 
 def overturning_curves(
-    structures: Sequence[Structure],
+    structures: Sequence[StructureLike],
     *,
     shape: str = "sine",
     model: ModelName = "nonlinear",
@@ -759,7 +759,7 @@ def overturning_curves(
 
 
 def margin(
-    structure: Structure, motions: Motion | Sequence[Motion], *, polarities: Sequence[int] = (1, -1)
+    structure: StructureLike, motions: Motion | Sequence[Motion], *, polarities: Sequence[int] = (1, -1)
 ) -> MappingAnswer[str, Margin]:
     """Compute the scale factors on motions that uplift a structure, and that overturn it.
 
@@ -820,7 +820,7 @@ def margin(
 
 
 def linearisation(
-    structure: Structure, *, at: Sequence[float] = (0.5,), a: Sequence[float] = (2.0,)
+    structure: StructureLike, *, at: Sequence[float] = (0.5,), a: Sequence[float] = (2.0,)
 ) -> Answer[list[Linearisation]]:
     """Compute the errors of the equivalent block of a structure; see `rocking error`.
 
@@ -875,7 +875,7 @@ def linearisation(
 
 
 def equivalent(
-    structures: Sequence[Structure], pulse: Pulse | str, *, polarity: int = 1
+    structures: Sequence[StructureLike], pulse: Pulse | str, *, polarity: int = 1
 ) -> Answer[EquivalentResponses]:
     """Find the pulses to which structures are equally vulnerable; the given pulse is for the first.
 
@@ -1013,7 +1013,7 @@ def fragility(
 
 
 def write_report(
-    structure: Structure,
+    structure: StructureLike,
     motions: Motion | Sequence[Motion] = (),
     file: str | Path = "report.html",
     *,

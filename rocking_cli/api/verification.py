@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.api.answer import Answer
-from rocking_cli.api.verbs import Motion, Structure, _motion, _structure
+from rocking_cli.api.verbs import Motion, StructureLike, _motion, _structure
 from rocking_cli.errors import InputError
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def verify(
-    structure: Structure,
+    structure: StructureLike,
     site: Mapping[str, Any] | str | Path,
     *,
     control: tuple[float, float] | tuple[float, float, str] | None = None,

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.dynamics.model import ModelName
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.processing.listed import Listed
+    from rocking_cli.structure import Structure
 
 COMMANDLINE = ParameterSource.COMMANDLINE
 
@@ -38,7 +38,7 @@ def check(asked: GroundMotions, history: History, count: int, *, impacts: bool, 
 
 
 def respond(
-    structure: Prepared,
+    structure: Structure,
     models: Sequence[ModelName],
     record: Listed,
     asked: GroundMotions,

@@ -110,7 +110,7 @@ def command(
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
-    from rocking_cli.structure import Varied
+    from rocking_cli.structure_file import Varied
     from rocking_cli.views.design import columns, view
 
     check_table(output.out)

@@ -33,16 +33,16 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
     if as_json and as_csv:
         raise click.UsageError("--json and --csv cannot be combined: choose one.")
     from rocking_cli.cli import structures
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.errors import INCOMPLETE, MechanismError
     from rocking_cli.io.tables import write_csv
+    from rocking_cli.structure import Structure
     from rocking_cli.views import equiv
 
     mechanisms, _, bad = structures.load_each(files)
     found = []
     for mechanism in mechanisms:
         try:
-            structure = Prepared(mechanism)
+            structure = Structure(mechanism)
             structure.statics, structure.why_no_block  # noqa: B018 - derived here, and kept
             found.append(structure)
         except MechanismError as error:

@@ -85,8 +85,8 @@ def command(
             "others."
         )
     from rocking_cli.cli import structures, waiting
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.io.files import keep_apart
+    from rocking_cli.structure import Structure
     from rocking_cli.studies.equivalent import equivalent, judge
     from rocking_cli.views.equivalent import table, title, view
 
@@ -105,7 +105,7 @@ def command(
         return draw_equivalent(found, title(found))
 
     for each, file in zip(mechanisms, good, strict=True):
-        structures.warn_misleading(Prepared(each, file), "linear")
+        structures.warn_misleading(Structure(each, file), "linear")
     output.write(lambda: [table(found)], draw)
     verdict = terminal.as_typed(" ".join(judge(found)))
     terminal.show(view(found, verdict), as_json=output.as_json)

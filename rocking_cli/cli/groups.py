@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.dynamics.model import ModelName
-    from rocking_cli.dynamics.release import Release
     from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.excitation.records.sensor import Gain, Quantity
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing import reading as processing
     from rocking_cli.processing.floor import Floor
     from rocking_cli.studies.neighbours import Around
+    from rocking_cli.studies.release import Release
 
 SPELLED = {"quantity": "from", "other": "with"}  # options by the names of their parameters
 

@@ -14,7 +14,7 @@ from rocking_cli.cli import complete, defaults, options
 from rocking_cli.cli.defaults import from_default
 
 if TYPE_CHECKING:
-    from rocking_cli.dynamics.prepared import Prepared
+    from rocking_cli.structure import Structure
     from rocking_cli.studies.assessment import File, TitleBlock
     from rocking_cli.views.sheet.language import Language
 
@@ -108,7 +108,7 @@ sheet: options.Decorator = options.in_order(
 """The options of a calculation sheet: `sheet`, `language` and those of its head."""
 
 
-def file_of(structure: Prepared, given: str | None) -> File:
+def file_of(structure: Structure, given: str | None) -> File:
     """Return the file of a structure, with its content."""
     from rocking_cli.cli import structures
     from rocking_cli.excitation.records.opening import original

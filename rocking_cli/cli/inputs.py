@@ -11,14 +11,14 @@ from rocking_cli.excitation.scaled import Scaled
 
 if TYPE_CHECKING:
     from rocking_cli.cli.groups import GroundMotions, Vertical
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.reading import Reading
+    from rocking_cli.structure import Structure
 
 
-def structure(files: Sequence[str], records: Sequence[str]) -> Prepared:
+def structure(files: Sequence[str], records: Sequence[str]) -> Structure:
     """Return the single structure of a command, prepared."""
     import click
 

@@ -50,7 +50,7 @@ def check(name: str, file: str | None, registry: Registry, as_json: bool) -> Non
 
 
 def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
-    from rocking_cli.structure import load_structure
+    from rocking_cli.structure_file import load_structure
     from rocking_cli.testing import contract, verdict
 
     found: list[Mechanism] = []
@@ -73,7 +73,7 @@ def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
 
 
 def _first(name: str, registry: Registry) -> Mechanism:
-    from rocking_cli.structure import parse_structure
+    from rocking_cli.structure_file import parse_structure
     from rocking_cli.views.template import template
 
     return parse_structure(template(registry[name]), f"rocking new {name}", name, registry)

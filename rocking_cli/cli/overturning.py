@@ -114,8 +114,8 @@ def command(
     """
     _check(files, compare, pulses.model, plane)
     from rocking_cli.cli import structures
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.io.files import keep_apart
+    from rocking_cli.structure import Structure
     from rocking_cli.studies.under_pulses import linear_block, parse_shape, pulsed_model
 
     keep_apart([("--out", output.out), ("--plot", output.plot)], files)
@@ -125,7 +125,7 @@ def command(
     if compare and len(loaded) < 2:
         raise InputError("only one of the FILEs can be used: --compare needs at least two")
     mechanisms = structures.told_apart(loaded, good)
-    ready = [Prepared(each, file) for each, file in zip(mechanisms, good, strict=True)]
+    ready = [Structure(each, file) for each, file in zip(mechanisms, good, strict=True)]
     subjects = [pulsed_model(each, cast("ModelName", model), shape, pulses.signs, pulses.eta) for each in ready]
     for each in ready:
         structures.warn_misleading(each, model)

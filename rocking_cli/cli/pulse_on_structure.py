@@ -5,8 +5,8 @@ from __future__ import annotations
 from rocking_cli.cli import structures, terminal
 from rocking_cli.cli.groups import SizedPulse
 from rocking_cli.cli.waiting import compile_first
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.structure import Structure
 from rocking_cli.studies.pulse_on_structure import Answer, answers, closed_forms, sampled_histories
 from rocking_cli.views.pulse_on_structure import view
 
@@ -19,7 +19,7 @@ def run(file: str | None, given: SizedPulse, *, as_json: bool) -> None:
     terminal.show(view(structure, pulse, found, closed_forms(structure, pulse)), as_json=as_json)
 
 
-def _answers(structure: Prepared, pulse: Pulse, polarity: int) -> dict[str, Answer]:
+def _answers(structure: Structure, pulse: Pulse, polarity: int) -> dict[str, Answer]:
     """Return the responses of the models; warn of those that do not converge with the sampling."""
     compile_first()
     sampled = sampled_histories(structure, pulse, polarity)

@@ -221,8 +221,8 @@ class Tilt(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic 
         """Return the `Release` of a text, or fail naming the option and a valid example."""
         if not isinstance(value, str):
             return value
-        from rocking_cli.dynamics.release import Release
         from rocking_cli.errors import InputError
+        from rocking_cli.studies.release import Release
 
         try:
             return Release.of(value)

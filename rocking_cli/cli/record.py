@@ -18,12 +18,12 @@ from rocking_cli.cli.quantities import PERIOD, Range, Share
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
 
 if TYPE_CHECKING:
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.pulse_fit import PulseFit
     from rocking_cli.processing.intensity import Measure
     from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.oscillator import ResponseSpectrum
+    from rocking_cli.structure import Structure
     from rocking_cli.views.record import Examined
 
 PATIENCE = 1.0  # s without a word
@@ -49,7 +49,7 @@ class More:
             parse_measures(self.measures)
 
     @property
-    def prepared(self) -> Prepared | None:
+    def prepared(self) -> Structure | None:
         """Structure of --structure, prepared."""
         if self.structure is None:
             return None
@@ -252,7 +252,7 @@ class _Asked:
         Options for reading and scaling.
     more : More
         Additional results.
-    structure : Prepared or None
+    structure : Structure or None
         Structure for checking the sampling interval and for relative measures.
     plot : Path or None
         File of the plot.
@@ -261,7 +261,7 @@ class _Asked:
     reading: Reading
     scaling: Scaling
     more: More
-    structure: Prepared | None
+    structure: Structure | None
     plot: Path | None
 
     def of(self, record: Listed, clean: Sequence[Path | None]) -> list[Examined]:

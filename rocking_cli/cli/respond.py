@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from rocking_cli.dynamics import history as dynamics
     from rocking_cli.dynamics.model import ModelName
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.pulse_fit import PulseFit
     from rocking_cli.io.tables import Columns
+    from rocking_cli.structure import Structure
     from rocking_cli.studies.response import Answer, Question
     from rocking_cli.views.view import Table
 
@@ -228,7 +228,7 @@ def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -
         raise click.UsageError("--with-pulse cannot be combined with --polarity both: run one polarity at a time.")
 
 
-def _names(structure: Prepared, history: History) -> tuple[ModelName, ...]:
+def _names(structure: Structure, history: History) -> tuple[ModelName, ...]:
     """Return the models to run: those given, or else those that do not mislead, with a note on the others."""
     if not history.by_default:
         return history.names
@@ -242,7 +242,7 @@ class _Job:
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         The structure.
     names : tuple of str
         Names of the models to run.
@@ -256,7 +256,7 @@ class _Job:
 
     def __init__(
         self,
-        structure: Prepared,
+        structure: Structure,
         names: tuple[ModelName, ...],
         asked: Question,
         polarity: str,
@@ -318,7 +318,7 @@ def _say_which_pulse(fit: PulseFit | None) -> None:
 
 
 def _write(
-    found: Answer, out: Path | None, plot: Path | None, title: str, structure: Prepared, *, contact: bool
+    found: Answer, out: Path | None, plot: Path | None, title: str, structure: Structure, *, contact: bool
 ) -> None:  # fmt: skip
     """Write the time histories and their plot to the requested files.
 

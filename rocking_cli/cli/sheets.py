@@ -19,8 +19,8 @@ from rocking_cli.views.sheet.language import Language
 
 if TYPE_CHECKING:
     from rocking_cli.cli.heads import SheetAsked
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.structure import Structure
     from rocking_cli.studies.verification.results import Verification
     from rocking_cli.studies.verification.site_file import SiteFile
 
@@ -44,7 +44,7 @@ def _is_docx(path: Path | None) -> bool:
     return path is not None and path.suffix.lower() == ".docx"
 
 
-def made(structure: Prepared, given: str | None, site: Path, motions: Sequence[Scaled]) -> Made:
+def made(structure: Structure, given: str | None, site: Path, motions: Sequence[Scaled]) -> Made:
     """Return the inputs of a sheet: the structure, its file as given, the site, and the ground motions."""
     return Made(
         heads.file_of(structure, given),
@@ -81,7 +81,7 @@ def site_of_report(path: Path, *, motions: bool) -> SiteFile:
 
 
 def of_report(
-    structure: Prepared, site: SiteFile, given: str | None, motions: Sequence[Scaled], signs: Sequence[int],
+    structure: Structure, site: SiteFile, given: str | None, motions: Sequence[Scaled], signs: Sequence[int],
     title: TitleBlock, *, state: str | None = None, on_floor: bool = False,
 ) -> VerifiedReport:  # fmt: skip
     """Return the verification in a report, with time histories under its ground motions."""

@@ -15,11 +15,11 @@ from rocking_cli.core.size import doubts as odd
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.yaml_file import decoded
-from rocking_cli.structure import load_structure, parse_structure
+from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
-    from rocking_cli.dynamics.prepared import Prepared
+    from rocking_cli.structure import Structure
 
 HERE = "rocking.yaml"
 DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
@@ -58,7 +58,7 @@ def warn(mechanism: Mechanism) -> None:
         terminal.warning(doubt)
 
 
-def warn_misleading(structure: Prepared, model: str) -> None:
+def warn_misleading(structure: Structure, model: str) -> None:
     """Warn if a requested linear model misleads for this structure."""
     if model != "nonlinear" and structure.misleading is not None:
         terminal.warning(f"{structure.name}: {structure.misleading}")
@@ -98,11 +98,11 @@ def place(file: str | None) -> str | None:
     return name_of(file) if file is not None else HERE if Path(HERE).exists() else None
 
 
-def prepared(files: Sequence[str]) -> Prepared:
+def prepared(files: Sequence[str]) -> Structure:
     """Return the single structure of a file or of none, as `load`, prepared."""
-    from rocking_cli.dynamics.prepared import Prepared
+    from rocking_cli.structure import Structure
 
-    return Prepared(load(files)[0], place(files[0] if files else None))
+    return Structure(load(files)[0], place(files[0] if files else None))
 
 
 def stem(file: str | None) -> str:

@@ -14,9 +14,9 @@ from rocking_cli.cli.help import Command
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
-    from rocking_cli.dynamics.prepared import Prepared
     from rocking_cli.excitation.scaled import Scaled
     from rocking_cli.processing.listed import Listed
+    from rocking_cli.structure import Structure
     from rocking_cli.studies.assessment import TitleBlock
     from rocking_cli.studies.verification.results import Verification
     from rocking_cli.studies.verification.site_file import SiteFile
@@ -148,7 +148,7 @@ def _title(ctx: click.Context, asked: SheetAsked, site: SiteFile) -> TitleBlock 
 
 def _histories(
     found: Verification,
-    structure: Prepared,
+    structure: Structure,
     site: SiteFile,
     asked: GroundMotions,
     paths: list[Listed],

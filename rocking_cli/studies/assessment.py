@@ -15,7 +15,6 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.verdict import CLOSE, disagree, governs
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
@@ -25,6 +24,7 @@ from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.records.opening import name_of, original
 from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import Contact, Contacts
 from rocking_cli.studies.linearisation import Linearisation, compare
 from rocking_cli.studies.margin import LEVELS, Margin, margin
@@ -202,7 +202,7 @@ class Assessment:
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         The structure.
     file : File
         Where it was read.
@@ -222,7 +222,7 @@ class Assessment:
         Of the software.
     """
 
-    structure: Prepared
+    structure: Structure
     file: File
     picture: Picture
     curves: tuple[Linearisation, ...]
@@ -250,7 +250,7 @@ class Assessment:
 
 
 def gather(
-    structure: Prepared,
+    structure: Structure,
     file: File,
     given: Sequence[Scaled],
     polarities: Sequence[int],
@@ -263,7 +263,7 @@ def gather(
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         The structure.
     file : File
         Where it was read.
@@ -307,7 +307,7 @@ def gather(
     )
 
 
-def _error_of_block(structure: Prepared) -> tuple[Sequence[Linearisation], Sequence[Linearisation], str]:
+def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequence[Linearisation], str]:
     """The error of the equivalent block over its range and at some places, and what it means."""
     if structure.why_no_block is not None:
         why = structure.why_no_block.removeprefix(f"{structure.name}: ")
@@ -339,7 +339,7 @@ def _plugin(mechanism: Mechanism) -> str:
     return registry.package_of(mechanism.mechanism) if mechanism.mechanism in registry else "not installed as a plugin"
 
 
-def _result(structure: Prepared, given: Scaled, polarities: Sequence[int], around: Around) -> MotionResult:
+def _result(structure: Structure, given: Scaled, polarities: Sequence[int], around: Around) -> MotionResult:
     ground = given.motion.of_ground
     found = [] if given.pulse is not None else doubts(ground, measure(ground))
     doubtful = [*found, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
@@ -386,7 +386,7 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
     return tuple(sorted(fits, key=lambda fit: -fit.captured))
 
 
-def _alone(structure: Prepared, fit: PulseFit, polarities: Sequence[int]) -> tuple[float, bool]:
+def _alone(structure: Structure, fit: PulseFit, polarities: Sequence[int]) -> tuple[float, bool]:
     """The largest peak ratio under a pulse, NaN if it overturns, and whether the outcome is unknown."""
     if structure.why_no_block is not None:  # by what nothing is measured here
         alone, model = fit.pulse.sampled(), structure.model("nonlinear")
@@ -406,7 +406,7 @@ def _shape(pulse: Pulse) -> Pulse:
     return replace(pulse, amplitude=1.0, period=1.0)
 
 
-def _maps(structure: Prepared, results: Sequence[MotionResult]) -> list[PulseMap]:
+def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMap]:
     """A map for each shape among the best pulses; of the sine if there is none."""
     if structure.why_no_block is not None or min(structure.etas) <= 0:
         return []  # pulses have nothing to be measured by, or no history of it can be computed
@@ -419,7 +419,7 @@ def _maps(structure: Prepared, results: Sequence[MotionResult]) -> list[PulseMap
     return [PulseMap(_map(structure, shape, each), tuple(each)) for shape, each in marks.items()]
 
 
-def _map(structure: Prepared, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
+def _map(structure: Structure, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
     under = pulsed_model(structure, "nonlinear", shape, (1, -1))
     periods, tops = _axes(under, [fit.pulse for _, fit in marks])
     omega = under.period(np.linspace(*periods, POINTS))

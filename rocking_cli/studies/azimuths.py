@@ -12,10 +12,10 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import Outcomes
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.components import turned
+from rocking_cli.structure import Structure
 
 Reals = NDArray[np.float64]
 STEP = 2  # degrees
@@ -50,7 +50,7 @@ class Around:
 
 
 def all_around(
-    structure: Prepared,
+    structure: Structure,
     models: Sequence[ModelName],
     pair: tuple[GroundMotion, GroundMotion],
     scale: float,
@@ -62,7 +62,7 @@ def all_around(
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         The structure.
     models : sequence of str
         Those to follow.

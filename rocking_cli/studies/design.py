@@ -11,10 +11,10 @@ from math import inf, isfinite, isnan, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
-from rocking_cli.structure import Varied
+from rocking_cli.structure import Structure
+from rocking_cli.structure_file import Varied
 from rocking_cli.studies.metrics import Metric, Shaking, metric, taken_otherwise
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
@@ -311,7 +311,7 @@ def _taken_otherwise(varied: Varied, span: tuple[float, float], aim: Aim, shakin
     said: dict[str, None] = {}
     for value in span:
         try:
-            said |= dict.fromkeys(taken_otherwise(Prepared(varied.at(value)), shaking.site))
+            said |= dict.fromkeys(taken_otherwise(Structure(varied.at(value)), shaking.site))
         except (InputError, MechanismError):  # its reason is among those of `not_built`
             continue
     return list(said)
@@ -320,7 +320,7 @@ def _taken_otherwise(varied: Varied, span: tuple[float, float], aim: Aim, shakin
 def _at(varied: Varied, value: float, aim: Aim, shaking: Shaking | None) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
     try:
-        structure = Prepared(varied.at(value))
+        structure = Structure(varied.at(value))
         found, near = aim.metric.at(structure, shaking)
     except InputError as error:
         return nan, None, "; ".join(str(Problem(each.message, field=each.field)) for each in error.problems)

@@ -17,11 +17,11 @@ from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.holding import why_unknown
 from rocking_cli.dynamics.model import ModelName, build_model, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.prepared import with_restitution
 from rocking_cli.dynamics.verdict import CLOSE
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.structure import with_restitution
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
 
 Reals = NDArray[np.float64]

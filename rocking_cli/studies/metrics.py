@@ -7,11 +7,11 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from math import nan
 
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import leave_out
+from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 from rocking_cli.studies.verification.check import verify
 from rocking_cli.studies.verification.code import Number
@@ -41,7 +41,7 @@ class Shaking:
     around: Around = field(default_factory=Around)
     site: SiteFile | None = None
 
-    def each(self, structure: Prepared) -> list[Neighbours]:
+    def each(self, structure: Structure) -> list[Neighbours]:
         """The neighbours of every motion, both ways where a structure and the polarities differ."""
         model = structure.model("nonlinear")
         signs = self.polarities[:1] if model.symmetric else self.polarities
@@ -75,7 +75,7 @@ class Metric:
     name: str
     unit: str
     meaning: str
-    of_structure: Callable[[Prepared, Shaking | None], float] | None = None
+    of_structure: Callable[[Structure, Shaking | None], float] | None = None
     of_neighbours: Callable[[Neighbours], float] | None = None
     sited: bool = False
     codes: Sequence[str] = ()
@@ -85,11 +85,11 @@ class Metric:
         """Whether it needs ground motions."""
         return self.of_neighbours is not None
 
-    def value(self, structure: Prepared, shaking: Shaking | None) -> float:
+    def value(self, structure: Structure, shaking: Shaking | None) -> float:
         """Return the metric of a structure."""
         return self.at(structure, shaking)[0]
 
-    def at(self, structure: Prepared, shaking: Shaking | None) -> tuple[float, Neighbours | None]:
+    def at(self, structure: Structure, shaking: Shaking | None) -> tuple[float, Neighbours | None]:
         """Return the metric of a structure, and the neighbours of the motion that governs if it needs motions."""
         of = self.of_neighbours
         if of is None:
@@ -100,25 +100,25 @@ class Metric:
         return of(worst), worst
 
 
-def _lambda(structure: Prepared, shaking: Shaking | None) -> float:
+def _lambda(structure: Structure, shaking: Shaking | None) -> float:
     return min(side.lambda_ for side in structure.statics)
 
 
-def _phi_cr(structure: Prepared, shaking: Shaking | None) -> float:
+def _phi_cr(structure: Structure, shaking: Shaking | None) -> float:
     found = [side.phi_cr for side in structure.statics]
     return min((each for each in found if each is not None), default=nan) if None not in found else nan
 
 
-def _p(structure: Prepared, shaking: Shaking | None) -> float:
+def _p(structure: Structure, shaking: Shaking | None) -> float:
     return structure.p if structure.why_no_block is None else nan
 
 
-def _ratio(structure: Prepared, shaking: Shaking | None) -> float:
+def _ratio(structure: Structure, shaking: Shaking | None) -> float:
     assert shaking is not None and shaking.site is not None
     return verify(structure, shaking.site).ratio
 
 
-def taken_otherwise(structure: Prepared, site: SiteFile) -> Sequence[str]:
+def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[str]:
     """Return what a verification takes otherwise than the structure gives it, such as ties by their force at rest."""
     return verify(structure, site).taken_otherwise
 
@@ -152,7 +152,7 @@ def _of_codes(name: str) -> Metric | None:
     if not own:
         return None
 
-    def value(structure: Prepared, shaking: Shaking | None) -> float:
+    def value(structure: Structure, shaking: Shaking | None) -> float:
         if one.of_structure is not None:
             structure.statics  # noqa: B018 - what does not stand is refused with its name
             with _blamed(first, name):

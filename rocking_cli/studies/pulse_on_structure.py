@@ -10,10 +10,10 @@ from rocking_cli.core import EquivalentBlock, Mechanism
 from rocking_cli.dynamics.exact import ExactResponse, exact_response
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.pulse_response import ClosedForm, closed_form
 from rocking_cli.dynamics.sampled_pulse import SampledHistory, sampled_history
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.structure import Structure
 
 KAPPAS: dict[ModelName, Literal[1, 2]] = {"linear1": 1, "linear2": 2}
 
@@ -22,7 +22,7 @@ Answer = ExactResponse | SampledHistory
 """Of a linear model, exactly; or by the history under the sampled pulse."""
 
 
-def sampled_histories(structure: Prepared, pulse: Pulse, polarity: int) -> dict[ModelName, SampledHistory]:
+def sampled_histories(structure: Structure, pulse: Pulse, polarity: int) -> dict[ModelName, SampledHistory]:
     """Follow the models that have no exact answer: the nonlinear one, and all if the pulse has no segments.
 
     Neither have they where a structure rocks to one side only.
@@ -33,13 +33,13 @@ def sampled_histories(structure: Prepared, pulse: Pulse, polarity: int) -> dict[
 
 
 def answers(
-    structure: Prepared, pulse: Pulse, polarity: int, sampled: Mapping[ModelName, SampledHistory]
+    structure: Structure, pulse: Pulse, polarity: int, sampled: Mapping[ModelName, SampledHistory]
 ) -> dict[str, Answer]:
     """What the models say, the linear ones exactly unless they were sampled.
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         What the pulse shakes.
     pulse : Pulse
         Any.
@@ -61,7 +61,7 @@ def outcome(answer: Answer) -> ExactResponse | History:
     return answer.history if isinstance(answer, SampledHistory) else answer
 
 
-def closed_forms(structure: Prepared, pulse: Pulse) -> dict[str, ClosedForm]:
+def closed_forms(structure: Structure, pulse: Pulse) -> dict[str, ClosedForm]:
     """Eqs. 41-42 with each kappa; none if the pulse is no full sine, the directions differ, or there is one only."""
     if pulse.name != "sine" or not structure.equivalence.symmetric or not structure.mechanism.rocks_both_ways:
         return {}

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import Model, ModelName
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import Contact, Contacts
 from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
 
@@ -92,7 +92,7 @@ def histories(
     return {model.name: follow(model, motion, release=release or 0.0, tail=tail, rtol=rtol) for model in models}
 
 
-def answer(structure: Prepared, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Answer:
+def answer(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Answer:
     """Follow models of a structure under a motion, or freely from a release."""
     models = structure.models(names)
     contacts = Contacts(structure.mechanism)

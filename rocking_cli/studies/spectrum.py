@@ -14,9 +14,9 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
-from rocking_cli.dynamics.prepared import Prepared, with_restitution
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.sizes import Sizes
 from rocking_cli.studies.under_pulses import Integers, Progress, PulsedModel, Reals, parse_shape, pulsed_model, uplift
 
@@ -97,7 +97,7 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, f
         If the structure does not stand, or its restitution is not known.
     """
     # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
-    found = pulsed_model(Prepared(mechanism, file), model, parse_shape("sine"), eta=eta)
+    found = pulsed_model(Structure(mechanism, file), model, parse_shape("sine"), eta=eta)
     given = mechanism if eta is None else with_restitution(mechanism, eta)
     sizes = Sizes(given, model, found.direction)
     own = None if sizes.are_alike() else sizes

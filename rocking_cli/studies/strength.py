@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import nan
 
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import Measure, Reference, RunMeasure
+from rocking_cli.structure import Structure
 
 
-def reference_of(structure: Prepared) -> Reference:
+def reference_of(structure: Structure) -> Reference:
     """What measures relative to a structure refer to: the direction that uplifts first."""
     gravity = structure.mechanism.gravity
     if structure.why_no_block is not None:

@@ -19,7 +19,7 @@ from rocking_cli.io.dotted import closed, copied, put, replace_at, words
 from rocking_cli.io.field_problems import lists_models, types_at
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Sheet, read_sheet
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
-from rocking_cli.structure import HINT, of_document
+from rocking_cli.structure_file import HINT, of_document
 from rocking_cli.text import cut, did_you_mean, one_line
 
 BASE, MECHANISM = "file", "mechanism"

@@ -16,10 +16,10 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.processes import in_processes
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.structure import Structure
 from rocking_cli.studies.verification.check import of_each, verify
 from rocking_cli.studies.verification.site_file import SiteFile
 
@@ -283,14 +283,14 @@ def _part(
     opening: float | None,
 ) -> list[Surveyed | Bad | None]:
     """What is found of some structures."""
-    ready: dict[int, Prepared] = {}
+    ready: dict[int, Structure] = {}
     models: dict[int, Model] = {}
     found: list[Surveyed | Bad | None] = [None] * len(places)
     for k, place in enumerate(places):
         entry = entries[place]
         try:
             made = entry.make()
-            ready[k] = Prepared(made if opening is None else made.model_copy(update={"opening": opening}))
+            ready[k] = Structure(made if opening is None else made.model_copy(update={"opening": opening}))
             found[k] = _alone(place, entry, ready[k], site)
             if _may_lift(ready[k], motions):
                 models[k] = ready[k].model("nonlinear")
@@ -318,7 +318,7 @@ def _placed(error: RockingError, entry: Entry) -> RockingError:
     )
 
 
-def _alone(place: int, entry: Entry, structure: Prepared, site: SiteFile | None) -> Surveyed:
+def _alone(place: int, entry: Entry, structure: Structure, site: SiteFile | None) -> Surveyed:
     """A structure without ground motions."""
     mechanism, sides = structure.mechanism, structure.statics
     k = int(sides[1].lambda_ < sides[0].lambda_ * (1 - 1e-9))
@@ -345,13 +345,13 @@ def _alone(place: int, entry: Entry, structure: Prepared, site: SiteFile | None)
     )
 
 
-def _may_lift(structure: Prepared, motions: Sequence[GroundMotion]) -> bool:
+def _may_lift(structure: Structure, motions: Sequence[GroundMotion]) -> bool:
     """Whether any of the motions could lift a structure: where none can, its equation of motion is not needed."""
     least = min(structure.uplift)
     return any(each.vertical is not None or each.pga_g >= least * (1 - 1e-9) for each in motions)
 
 
-def _over(structure: Prepared) -> str:
+def _over(structure: Structure) -> str:
     return "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
 
 

@@ -15,9 +15,9 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.model import Model, ModelName, linear_model
 from rocking_cli.dynamics.outcome import Outcomes
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
+from rocking_cli.structure import Structure
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -128,13 +128,13 @@ def check_eta(eta: float) -> None:
 
 
 def pulsed_model(
-    structure: Prepared, model: ModelName, shape: Pulse, polarities: Sequence[int] = (1,), eta: float | None = None
+    structure: Structure, model: ModelName, shape: Pulse, polarities: Sequence[int] = (1,), eta: float | None = None
 ) -> PulsedModel:
     """Prepare a structure for pulses.
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         The structure.
     model : {"nonlinear", "linear1", "linear2"}
         Its equation of motion.

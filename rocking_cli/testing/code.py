@@ -17,10 +17,10 @@ from typing import ClassVar
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
+from rocking_cli.structure import Structure
 from rocking_cli.studies.verification.check import site_in, verify
 from rocking_cli.studies.verification.code import Code
 from rocking_cli.studies.verification.installed import codes
@@ -57,7 +57,7 @@ class CodeContract:
     @property
     def found(self) -> Verification:
         """The verification of the structure at the site."""
-        return verify(Prepared(self.structure), _read(self.site_text))
+        return verify(Structure(self.structure), _read(self.site_text))
 
     def test_its_starter_is_a_site_of_this_code(self) -> None:
         """The site file that `rocking new site` prints works as it is."""

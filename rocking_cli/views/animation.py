@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from rocking_cli.dynamics.holding import why_unknown
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.names import UNKNOWN, percent
+from rocking_cli.structure import Structure
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.views.response import ending, known_data, neighbours_data, not_checked
@@ -16,7 +16,7 @@ from rocking_cli.views.view import ABSENT, Table, View, heading
 
 
 def view(
-    structure: Prepared,
+    structure: Structure,
     film: Film,
     near: Neighbours | None,
     file: Mapping[str, float | int | str | None],
@@ -49,7 +49,7 @@ def row(film: Film, near: Neighbours | None) -> list[str]:
     return [film.motion.name, fate, *neighbours_cells(near)[:2]]
 
 
-def several(structure: Prepared, film: Film, rows: Sequence[Sequence[str]]) -> View:
+def several(structure: Structure, film: Film, rows: Sequence[Sequence[str]]) -> View:
     """Show what became of several motions, of which `film` is one, by their rows."""
     heads = ["under", film.history.model, "neighbours\noverturn", "are\nunknown"]
     if all(each[-1] in (ABSENT, percent(0)) for each in rows):

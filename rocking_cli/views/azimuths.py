@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from rocking_cli import names
 from rocking_cli.dynamics.holding import NOT_CHECKED
 from rocking_cli.dynamics.outcome import Outcomes
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
+from rocking_cli.structure import Structure
 from rocking_cli.studies.azimuths import Around, sectors
 from rocking_cli.views.view import ABSENT, Table, View, heading
 
 Flags = NDArray[np.bool_]
 
 
-def view(structure: Prepared, found: Around, doubts: Iterable[str] = ()) -> View:
+def view(structure: Structure, found: Around, doubts: Iterable[str] = ()) -> View:
     """What a pair of components does in all directions."""
     one, other = found.names
     unknown = any(each.unknown.any() for each in found.outcomes.values())
@@ -80,7 +80,7 @@ def _cells(found: Around, each: Outcomes, *, unknown: bool) -> list[str]:
     return [*(percent(float(flag.mean())) for flag in flags), *peak]
 
 
-def _data(structure: Prepared, found: Around) -> dict[str, Any]:
+def _data(structure: Structure, found: Around) -> dict[str, Any]:
     mechanism = structure.mechanism
     return {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},

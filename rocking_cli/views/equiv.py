@@ -10,15 +10,15 @@ from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one
 from rocking_cli.core.advice import preferred_kappa
 from rocking_cli.core.equivalence import AGREEMENT, alike
 from rocking_cli.core.restitution import why_none
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.structure import Structure
 from rocking_cli.views.hung import hung_data, hung_in_words
 from rocking_cli.views.parameters import PARAMETERS, values
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.view import Table, View, heading, number
 
 
-def view(structure: Prepared) -> View:
+def view(structure: Structure) -> View:
     """The parameters of both directions, in one column where they agree, and which kappa to prefer."""
     mechanism, sides = structure.mechanism, sides_of(structure)
     data = {
@@ -88,7 +88,7 @@ class Side(NamedTuple):
     eta: float
 
 
-def sides_of(structure: Prepared) -> list[Side]:
+def sides_of(structure: Structure) -> list[Side]:
     """The directions that a structure can rock in."""
     sides = []
     for direction in structure.mechanism.directions:
@@ -101,7 +101,7 @@ def sides_of(structure: Prepared) -> list[Side]:
     return sides
 
 
-def is_symmetric(structure: Prepared) -> bool:
+def is_symmetric(structure: Structure) -> bool:
     """Return whether one column is enough for both directions."""
     if structure.why_no_block is None:
         return structure.equivalence.symmetric
@@ -153,7 +153,7 @@ def sentence(side: Side) -> str:
     )
 
 
-def table(found: Sequence[Prepared]) -> dict[str, list[Any]]:
+def table(found: Sequence[Structure]) -> dict[str, list[Any]]:
     """The columns of several structures, a row for each direction."""
     rows: list[list[Any]] = []
     for structure in found:
@@ -167,7 +167,7 @@ def table(found: Sequence[Prepared]) -> dict[str, list[Any]]:
     return {name: [row[k] for row in rows] for k, name in enumerate(names)}
 
 
-def warnings(structure: Prepared) -> Iterator[str]:
+def warnings(structure: Structure) -> Iterator[str]:
     """What to be careful about in the parameters."""
     mechanism, one = structure.mechanism, is_symmetric(structure)
     if not mechanism.rocks_both_ways:

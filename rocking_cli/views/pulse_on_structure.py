@@ -13,12 +13,12 @@ from rocking_cli.dynamics.exact import ExactResponse
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.holding import NO_JOINTS, joints_in_words
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
 from rocking_cli.dynamics.sampled_pulse import SampledHistory
 from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
+from rocking_cli.structure import Structure
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
 from rocking_cli.views.response import known_data, not_checked, pulse_data
@@ -27,13 +27,13 @@ from rocking_cli.views.view import Table, View, heading, in_degrees, number
 
 
 def view(
-    structure: Prepared, pulse: Pulse, answers: Mapping[int, Mapping[str, Answer]], closed: Mapping[str, ClosedForm]
+    structure: Structure, pulse: Pulse, answers: Mapping[int, Mapping[str, Answer]], closed: Mapping[str, ClosedForm]
 ) -> View:
     """What the models of a structure say of a pulse.
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         What the pulse shakes.
     pulse : Pulse
         As it is given.

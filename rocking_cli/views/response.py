@@ -14,12 +14,12 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.holding import unchecked, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.verdict import SENSE, agreements, governs, verdict
 from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import Contact
 from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
@@ -256,7 +256,7 @@ def _impacts(history: History, etas: tuple[float, float], most: int) -> list[tup
 
 def view(
     found: Answer,
-    structure: Prepared,
+    structure: Structure,
     asked: Question,
     polarity: str,
     title: str,
@@ -270,7 +270,7 @@ def view(
     ----------
     found : Answer
         What became of the structure.
-    structure : Prepared
+    structure : Structure
         The structure.
     asked : Question
         What was asked.

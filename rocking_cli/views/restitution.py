@@ -6,8 +6,8 @@ from typing import Any
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.restitution import restitution_in_words
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.dynamics.verdict import SENSE
+from rocking_cli.structure import Structure
 
 ELASTIC = 0.97  # a restitution from kinematics above which tests found less
 
@@ -22,7 +22,7 @@ def restitution_source(mechanism: Mechanism) -> str:
     return "missing" if mechanism.rebound_from_impacts() is None else "impacts"
 
 
-def restitution_data(structure: Prepared) -> dict[str, Any]:
+def restitution_data(structure: Structure) -> dict[str, Any]:
     """The restitution that the histories used, and where it comes from."""
     source = restitution_source(structure.mechanism)
     if not structure.mechanism.rocks_both_ways:
@@ -31,7 +31,7 @@ def restitution_data(structure: Prepared) -> dict[str, Any]:
     return {"positive_to_negative": positive, "negative_to_positive": negative, "source": source}
 
 
-def restitution_used(structure: Prepared) -> str:
+def restitution_used(structure: Structure) -> str:
     """Return a sentence on the restitution that the histories used."""
     source = restitution_source(structure.mechanism)
     if not structure.mechanism.rocks_both_ways:

@@ -9,9 +9,9 @@ from rocking_cli import names
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.holding import NOT_CHECKED, why_unknown
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import peaks_over, percent
+from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import Contact
 from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
 from rocking_cli.studies.response import Answer, Histories
@@ -26,13 +26,13 @@ class Several:
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         What is shaken.
     models : tuple of str
         The models simulated.
     """
 
-    def __init__(self, structure: Prepared, models: Sequence[ModelName]) -> None:
+    def __init__(self, structure: Structure, models: Sequence[ModelName]) -> None:
         self._title = heading(structure.mechanism)
         self._free = [side.phi_cr is None for side in structure.statics]
         self._restitution = restitution_used(structure)

@@ -14,7 +14,7 @@ from rocking_cli.codes.italian.results import Verification, Verified
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR
 from rocking_cli.codes.italian.site import ItalianSite, of_each
 from rocking_cli.core import Mechanism
-from rocking_cli.dynamics.prepared import Prepared
+from rocking_cli.structure import Structure
 from rocking_cli.studies.verification.code import Code, Number
 from rocking_cli.studies.verification.control import Control
 from rocking_cli.studies.verification.motions import Histories
@@ -48,7 +48,7 @@ class Italian(Code):
         return method.verify(mechanism, site, control)
 
     def with_histories(
-        self, found: Verification, structure: Prepared, site: ItalianSite, asked: Histories
+        self, found: Verification, structure: Structure, site: ItalianSite, asked: Histories
     ) -> Verification:
         """Return a verification with time histories on the capacity curve."""
         from rocking_cli.codes.italian import dynamic

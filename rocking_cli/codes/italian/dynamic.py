@@ -17,9 +17,9 @@ from rocking_cli.codes.italian.site import ItalianSite, floor_at
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import Model
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import Structure
 from rocking_cli.studies.verification.motions import Histories, where_it_stands
 from rocking_cli.text import did_you_mean
 
@@ -69,9 +69,9 @@ def peaks(
     return found
 
 
-def with_histories(found: Verification, structure: Prepared, site: ItalianSite, asked: Histories) -> Verification:
+def with_histories(found: Verification, structure: Structure, site: ItalianSite, asked: Histories) -> Verification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
-    taken = structure if found.mechanism is structure.mechanism else Prepared(found.mechanism, structure.file)
+    taken = structure if found.mechanism is structure.mechanism else Structure(found.mechanism, structure.file)
     model = taken.model("nonlinear")
     curves = {direction: each.exact for direction, each in found.directions.items()}
     state = _state_of_records(found, asked.state)

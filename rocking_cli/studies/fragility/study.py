@@ -23,7 +23,7 @@ from rocking_cli.processing.entry import Entry, as_written
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import is_list
 from rocking_cli.processing.record_list import read_list
-from rocking_cli.structure import load_structure
+from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.fragility.definition import (
     SLIDING,
     Common,

@@ -14,9 +14,9 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model, ModelName, build_model
 from rocking_cli.dynamics.outcome import Outcomes
-from rocking_cli.dynamics.prepared import with_restitution
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import with_restitution
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.sources import KeptMotions

@@ -8,7 +8,7 @@ from typing import Any
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import Problem, RockingError
 from rocking_cli.io.yaml_file import Document, Place
-from rocking_cli.structure import load_structure
+from rocking_cli.structure_file import load_structure
 from rocking_cli.units import UnitError, read, split
 
 PURE = ("dispersion",)  # what a distribution is given by and has no unit

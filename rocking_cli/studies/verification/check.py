@@ -6,10 +6,10 @@ from dataclasses import replace
 from numbers import Real
 from pathlib import Path
 
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.io.yaml_file import Document
 from rocking_cli.plugins.errors import blame
+from rocking_cli.structure import Structure
 from rocking_cli.studies.verification import site_file
 from rocking_cli.studies.verification.code import Code
 from rocking_cli.studies.verification.control import Control
@@ -54,7 +54,7 @@ def refuse(site: SiteFile, *, control: bool = False, motions: bool = False) -> N
 
 
 def verify(
-    structure: Prepared,
+    structure: Structure,
     site: SiteFile,
     control: Control | None = None,
 ) -> Verification:
@@ -62,7 +62,7 @@ def verify(
 
     Parameters
     ----------
-    structure : Prepared
+    structure : Structure
         The structure.
     site : SiteFile
         The site.
@@ -109,14 +109,14 @@ def _is_whole(each: Verified) -> bool:
     return each.governs in each.methods and isinstance(each.ratio, Real | None) and each.passed in (None, True, False)
 
 
-def with_histories(found: Verification, structure: Prepared, site: SiteFile, asked: Histories) -> Verification:
+def with_histories(found: Verification, structure: Structure, site: SiteFile, asked: Histories) -> Verification:
     """Return a verification with time histories under a set of records.
 
     Parameters
     ----------
     found : Verification
         The verification by the static methods.
-    structure : Prepared
+    structure : Structure
         The structure.
     site : SiteFile
         The site.

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.plugins.errors import guard
+from rocking_cli.structure import Structure
 from rocking_cli.studies.verification.control import Control
 from rocking_cli.studies.verification.motions import Histories
 from rocking_cli.studies.verification.results import Verification, Verified
@@ -106,7 +106,7 @@ class Code(ABC):
         """Return the answer of `verify` from what was found in each direction; `more` are fields of `Verification`."""
         return Verification(mechanism, self.key, self.name, self.edition, directions, **more)
 
-    def with_histories(self, found: Any, structure: Prepared, site: Any, asked: Histories) -> Verification:
+    def with_histories(self, found: Any, structure: Structure, site: Any, asked: Histories) -> Verification:
         """Return a verification with time histories; only a code that overrides this method takes ground motions.
 
         Parameters are those of `rocking_cli.studies.verification.check.with_histories`.

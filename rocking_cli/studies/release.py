@@ -7,8 +7,8 @@ from math import pi
 from typing import Self
 
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.prepared import Prepared
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.structure import Structure
 from rocking_cli.units import UnitError, read, split
 
 EXAMPLE = "give a fraction of phi_cr such as 0.5, or an angle such as 0.05rad"
@@ -53,7 +53,7 @@ class Release:
             raise InputError(Problem(f"{text!r} is not an angle between 0 and half a turn", field="release"))
         return cls(text, angle, is_angle=True)
 
-    def ratio(self, structure: Prepared) -> float:
+    def ratio(self, structure: Structure) -> float:
         """The fraction of what rotations of a structure are over: phi_cr, or the limit where there is none.
 
         Raises
