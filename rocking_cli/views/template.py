@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import yaml
 from pydantic import BaseModel
 
+from rocking_cli.io.json_text import json_text
 from rocking_cli.studies.verification.code import Code
 from rocking_cli.studies.verification.site_file import Site
 from rocking_cli.views.mechanisms import fields
@@ -124,7 +124,7 @@ def _yaml(value: Any) -> str:
         return f"[{', '.join(_yaml(item) for item in value)}]"
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key}: {_yaml(item)}' for key, item in value.items())}}}"
-    return json.dumps(value) if isinstance(value, str) and _must_be_quoted(value) else str(value)
+    return json_text(value) if isinstance(value, str) and _must_be_quoted(value) else str(value)
 
 
 def _must_be_quoted(text: str) -> bool:
