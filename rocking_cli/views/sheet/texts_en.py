@@ -11,7 +11,6 @@ CAUTIONS: dict[str, str] = {}
 PICTURES: dict[str, str] = {}
 TEXTS = {
     # head
-    "lang": "en",
     "title": "Calculation sheet: {name}",
     "project": "Project",
     "place": "Place",

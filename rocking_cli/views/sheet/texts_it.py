@@ -36,7 +36,6 @@ PICTURES = {
 }
 TEXTS = {
     # head
-    "lang": "it",
     "title": "Relazione di calcolo: {name}",
     "project": "Progetto",
     "place": "Luogo",

@@ -213,7 +213,6 @@ TEXTS = {
     "without_FC": "without FC",
     "overturns": "overturns",
     "past": "past d_[0]^[*]",
-    "mean_of": "mean of the peak displacements, {which}",
     "holds": "{which}, {state}: satisfied. The mean peak displacement, {mean:.6g} m, is within {allowed:.6g} m.",
     "holds_not": "{which}, {state}: not satisfied. The mean peak displacement, {mean:.6g} m, exceeds {allowed:.6g} m.",
     "past_d0": "{which}: not satisfied. d_[0]^[*] is exceeded under {names}.",

@@ -221,7 +221,6 @@ TEXTS = {
     "without_FC": "senza FC",
     "overturns": "ribaltamento",
     "past": "oltre d_[0]^[*]",
-    "mean_of": "media degli spostamenti massimi, {which}",
     "holds": "{which}, {state}: la media di {mean:.6g} m è entro {allowed:.6g} m: verifica soddisfatta.",
     "holds_not": "{which}, {state}: la media di {mean:.6g} m supera {allowed:.6g} m: verifica non soddisfatta.",
     "past_d0": "{which}: verifica non soddisfatta, superano d_[0]^[*]: {names}.",
