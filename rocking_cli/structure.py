@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -15,6 +17,10 @@ from rocking_cli.core.statics import STRAIGHT
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.io.dotted import copied, put, words
+from rocking_cli.io.field_problems import fields_at, is_plural, lists_models, names_at, of_arguments, types_at, unit_at
+from rocking_cli.io.yaml_file import Place
+from rocking_cli.text import cut, did_you_mean
 
 
 def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
@@ -140,6 +146,62 @@ class Structure:
     def with_eta(self, eta: float) -> Structure:
         """The same structure with another restitution of every impact. Raises `InputError` if it cannot have it."""
         return Structure(with_restitution(self.mechanism, eta), self.file)
+
+    def unit_of(self, field: str) -> str:
+        """Unit of a numeric field, empty if it is dimensionless. Raises `InputError` if it has no such field.
+
+        A field is named by its path, with dots, and entries of lists by name or number: `ties.bar.prestress`.
+        """
+        return unit_at(type(self.mechanism), self._place_of(field))
+
+    def value_of(self, field: str) -> float | None:
+        """Value of a numeric field; None if it is not given. Raises as `unit_of`."""
+        here: Any = self._data
+        for part in self._place_of(field):
+            here = here.get(part) if isinstance(here, dict) else here[part]
+            if here is None:
+                return None
+        return float(here) if isinstance(here, int | float) else None
+
+    def varied(self, field: str, value: float) -> Structure:
+        """The same structure with another value of a field. Raises `InputError` if it cannot be built."""
+        data, cls = copied(self._data), type(self.mechanism)
+        put(data, words(field), value, is_list=partial(lists_models, cls), grow=False)
+        folder = Path(self.file).parent if self.file is not None else None
+        try:
+            return Structure(cls.from_fields(data, folder))
+        except ValidationError as error:
+            raise InputError(*of_arguments(cls, error.errors(include_url=False), cls.mechanism)) from None
+
+    @cached_property
+    def _data(self) -> dict[str, Any]:
+        return self.mechanism.model_dump(by_alias=True, exclude_unset=True)
+
+    def _place_of(self, field: str) -> Place:
+        """Where a numeric field is in the data. Raises `InputError` if it is not there, or not numeric."""
+        cls, path = type(self.mechanism), words(field)
+        place = put(copied(self._data), path, 1.0, is_list=partial(lists_models, cls), grow=False)
+        found: Place = ()
+        for k, part in enumerate(place):
+            if isinstance(part, str):
+                named = names_at(cls, found)
+                known = list(self._entries(found) if named else fields_at(cls, found))
+                if part not in known:
+                    within = ".".join(path[:k]) or cls.mechanism
+                    message = f"{within} has no {cut(part)}" if named else f"{cut(part)} is not a field of {within}"
+                    message, hint = message if k else f"is not a field of {within}", did_you_mean(part, known)
+                    raise InputError(Problem(message, field=field, hint=hint))
+            found = (*found, part)
+        if float not in types_at(cls, place) or (isinstance(place[-1], str) and is_plural(cls, place)):
+            raise InputError(Problem("is not a numeric field, so it cannot be varied", field=field))
+        return place
+
+    def _entries(self, place: Place) -> list[str]:
+        """Return the names that the user chose at a place."""
+        here: Any = self._data
+        for part in place:
+            here = (here or {}).get(part) if isinstance(part, str) else here[part]
+        return list(here or {})
 
     @contextmanager
     def _named(self) -> Iterator[None]:

@@ -2,29 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from difflib import get_close_matches
-from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.dotted import copied, put, words
 from rocking_cli.io.field_problems import (
-    fields_at,
-    is_plural,
-    lists_models,
-    names_at,
-    of_arguments,
     problems,
-    types_at,
-    unit_at,
 )
-from rocking_cli.io.yaml_file import Document, Place, parse, read_text
+from rocking_cli.io.yaml_file import Document, parse, read_text
 from rocking_cli.text import cut, did_you_mean, one_line
 
 HINT = "`rocking new block` prints a template"
@@ -75,83 +63,6 @@ def of_document(document: Document, default_name: str, folder: Path, registry: R
             document.problems += problems(document, cls, found, owner=cls.mechanism, lister=lister)
     document.check()
     return mechanism
-
-
-@dataclass(frozen=True)
-class Varied:
-    """A structure with one numeric field that varies.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-        The structure.
-    field : str
-        Path of the field, with dots, and entries of lists by name or number: `ties.bar.prestress`.
-    folder : Path, optional
-        Folder of the files that its fields name; by default the current one.
-
-    Raises
-    ------
-    InputError
-        If the structure does not have the field, or the field is not numeric.
-    """
-
-    mechanism: Mechanism
-    field: str
-    folder: Path | None = None
-
-    def __post_init__(self) -> None:
-        cls, path = type(self.mechanism), words(self.field)
-        place = put(copied(self._data), path, 1.0, is_list=partial(lists_models, cls), grow=False)
-        found: Place = ()
-        for k, part in enumerate(place):
-            if isinstance(part, str):
-                named = names_at(cls, found)
-                known = list(self._entries(found) if named else fields_at(cls, found))
-                if part not in known:
-                    within = ".".join(path[:k]) or cls.mechanism
-                    message = f"{within} has no {cut(part)}" if named else f"{cut(part)} is not a field of {within}"
-                    message, hint = message if k else f"is not a field of {within}", did_you_mean(part, known)
-                    raise InputError(Problem(message, field=self.field, hint=hint))
-            found = (*found, part)
-        if float not in types_at(cls, place) or (isinstance(place[-1], str) and is_plural(cls, place)):
-            raise InputError(Problem("is not a numeric field, so it cannot be varied", field=self.field))
-        object.__setattr__(self, "_place", place)
-
-    @cached_property
-    def _data(self) -> dict[str, Any]:
-        return self.mechanism.model_dump(by_alias=True, exclude_unset=True)
-
-    def _entries(self, place: Place) -> list[str]:
-        """Return the names that the user chose at a place."""
-        here: Any = self._data
-        for part in place:
-            here = (here or {}).get(part) if isinstance(part, str) else here[part]
-        return list(here or {})
-
-    @property
-    def unit(self) -> str:
-        """Unit of the field; empty if it is dimensionless."""
-        return unit_at(type(self.mechanism), self._place)  # type: ignore[attr-defined]
-
-    @property
-    def value(self) -> float | None:
-        """Current value of the field; None if it is not given."""
-        here: Any = self._data
-        for part in self._place:  # type: ignore[attr-defined]
-            here = here.get(part) if isinstance(here, dict) else here[part]
-            if here is None:
-                return None
-        return float(here) if isinstance(here, int | float) else None
-
-    def at(self, value: float) -> Mechanism:
-        """Return the structure with another value of the field. Raises `InputError` if it cannot be built."""
-        data, cls = copied(self._data), type(self.mechanism)
-        put(data, words(self.field), value, is_list=partial(lists_models, cls), grow=False)
-        try:
-            return cls.from_fields(data, self.folder)
-        except ValidationError as error:
-            raise InputError(*of_arguments(cls, error.errors(include_url=False), cls.mechanism)) from None
 
 
 def _mechanism(document: Document, registry: Registry) -> type[Mechanism] | None:

@@ -563,18 +563,18 @@ def test_a_tie_may_leave_no_critical_rotation():
     [("blocks.left.density", "kg/m3"), ("blocks.lintel.polygon.2.1", "m"), ("friction_of.left and lintel", "")],
 )
 def test_what_is_in_mappings_can_vary(field, unit):
-    from rocking_cli.structure_file import Varied
+    from rocking_cli.structure import Structure
 
     portal = assembly({**PORTAL, "left": {**PORTAL["left"], "density": 2100.0}}, friction_of={"left and lintel": 0.9})
-    varied = Varied(portal, field)
-    assert varied.unit == unit
-    assert varied.at(varied.value) == portal
+    varied = Structure(portal)
+    assert varied.unit_of(field) == unit
+    assert varied.varied(field, varied.value_of(field)).mechanism == portal
     with pytest.raises(InputError, match=r"blocks\.lft\.density: blocks has no lft\n  did you mean left"):
-        Varied(portal, "blocks.lft.density")
+        Structure(portal).unit_of("blocks.lft.density")
     with pytest.raises(InputError, match="is not a numeric field, so it cannot be varied"):
-        Varied(portal, "friction_of")
+        Structure(portal).unit_of("friction_of")
     with pytest.raises(InputError, match=r"volume is not a field of blocks\.left"):
-        Varied(portal, "blocks.left.volume")
+        Structure(portal).unit_of("blocks.left.volume")
 
 
 def test_every_command_takes_both(tmp_path):

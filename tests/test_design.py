@@ -11,7 +11,7 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.errors import InputError
-from rocking_cli.structure_file import Varied
+from rocking_cli.structure import Structure
 from rocking_cli.studies.design import Aim, Span, design
 from rocking_cli.studies.metrics import METRICS, Metric, Shaking
 from rocking_cli.studies.neighbours import Around, neighbours
@@ -37,7 +37,7 @@ def of(metric, values=(0.0, 1.0), points=11, until="m >= 0.5"):
 
     made = Metric("m", "", "a test", lambda structure, shaking: metric(structure.mechanism.width))
     with patch.dict(METRICS, {"m": made}):
-        return design(Varied(rk.Block(width=1.0, height=2.0), "width"), values, Aim.parse(until), points=points)
+        return design(Structure(rk.Block(width=1.0, height=2.0)), "width", values, Aim.parse(until), points=points)
 
 
 class TestClosedForms:
@@ -154,10 +154,9 @@ class TestShares:
         found = rk.design(BLOCK, "width=0.5:1.2", "overturned <= 50%", self.SINE, neighbours=20, points=8)
         assert found.monotone
         shaking = Shaking([rk.parse_pulse(self.SINE).sampled()], (1,), Around(20))
-        metric, varied = METRICS["overturned"].value, Varied(rk.load_structure(BLOCK), "width")
-        from rocking_cli.structure import Structure
+        metric, block = METRICS["overturned"].value, Structure(rk.load_structure(BLOCK))
 
-        at, below = (metric(Structure(varied.at(found.value - off)), shaking) for off in (0.0, 2e-3))
+        at, below = (metric(block.varied("width", found.value - off), shaking) for off in (0.0, 2e-3))
         assert at <= 0.5 < below
 
     def test_the_worse_of_motions_and_polarities_counts(self):
@@ -221,12 +220,12 @@ class TestWritten:
     )  # fmt: skip
     def test_fields(self, field, said):
         with pytest.raises(InputError, match=said.replace("?", r"\?")):
-            Varied(tied(), field)
+            Structure(tied()).unit_of(field)
 
     def test_what_varies_and_what_stays(self):
-        varied = Varied(tied(), "ties.tendon.path.1.at.0")
-        changed = varied.at(0.1)
-        assert (varied.value, varied.unit) == (0.0, "m")
+        whole, field = Structure(tied()), "ties.tendon.path.1.at.0"
+        changed = whole.varied(field, 0.1).mechanism
+        assert (whole.value_of(field), whole.unit_of(field)) == (0.0, "m")
         assert changed.ties[0].path[1].at == [0.1, 0.0] and changed.width == 1.0
         assert tied().ties[0].path[1].at == [0.0, 0.0]
 

@@ -151,7 +151,6 @@ def design(
     >>> round(rk.design(rk.Block(width=0.5, height=2.0), "width=0.2m:0.8m", "lambda >= 0.2").value, 9)
     0.4
     """
-    from rocking_cli.structure_file import Varied
     from rocking_cli.studies.design import Aim, Span
     from rocking_cli.studies.design import design as study
     from rocking_cli.studies.metrics import Shaking
@@ -160,11 +159,10 @@ def design(
 
     ready = _structure(structure)
     span = Span.parse(vary) if isinstance(vary, str) else Span(vary[0], repr(float(vary[1])), repr(float(vary[2])))
-    varied = Varied(ready.mechanism, span.field, Path(ready.file).parent if ready.file is not None else None)
     shaken = [_motion(each).scaled(scale) for each in _each(motions)]
     where = _site(site) if site is not None else None
     shaking = Shaking(shaken, polarities, Around(neighbours), where) if shaken or where is not None else None
-    found = study(varied, span.in_unit(varied.unit), Aim.parse(until), shaking, points=points)
+    found = study(ready, span.field, span.in_unit(ready.unit_of(span.field)), Aim.parse(until), shaking, points=points)
 
     def figure() -> Figure:
         from rocking_cli.plotting.design import draw_design

@@ -15,6 +15,7 @@ from rocking_cli.cli.quantities import Parsed
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
+    from rocking_cli.structure import Structure
     from rocking_cli.studies.design import Aim, Design, Span
     from rocking_cli.studies.metrics import Shaking
 
@@ -110,17 +111,14 @@ def command(
     from rocking_cli.cli import structures
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
-    from rocking_cli.structure_file import Varied
     from rocking_cli.views.design import columns, view
 
     check_table(output.out)
     paths, bad = motion_files.find(asked.records)
     keep_apart([("--out", output.out), ("--plot", output.plot)], [file, *(str(each.path) for each in paths)])
     structure = structures.prepared([file] if file else [])
-    folder = Path(file).parent if file is not None and file != options.STANDARD_OUTPUT else None
-    varied = Varied(structure.mechanism, vary.field, folder)
-    span = vary.in_unit(varied.unit)
-    _warn_of_sizes(varied, span)
+    span = vary.in_unit(structure.unit_of(vary.field))
+    _warn_of_sizes(structure, vary.field, span)
     shaking = None
     if asked:
         chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, structure.growth)
@@ -133,25 +131,25 @@ def command(
         from rocking_cli.studies.verification.check import read_site
 
         shaking = Conditions([], site=read_site(Path(site)))
-    found = _design(varied, span, until, shaking, points)
+    found = _design(structure, vary.field, span, until, shaking, points)
     output.write(lambda: [columns(found)], lambda: _draw(found))
     terminal.show(view(found, shaking), as_json=output.as_json)
     if bad:
         ctx.exit(INCOMPLETE)
 
 
-def _warn_of_sizes(varied: Any, span: tuple[float, float]) -> None:
+def _warn_of_sizes(structure: Structure, field: str, span: tuple[float, float]) -> None:
     """Warn where a range looks as if it were given in another unit."""
     from rocking_cli.core.size import doubtful_size
     from rocking_cli.errors import RockingError
 
     for value in span:
         try:
-            doubt = doubtful_size(varied.at(value))
+            doubt = doubtful_size(structure.varied(field, value).mechanism)
         except RockingError:  # the scan says which values cannot be built
             continue
-        if doubt is not None and doubt != doubtful_size(varied.mechanism):
-            at = f"{varied.field} = {value:g} {varied.unit}".strip()
+        if doubt is not None and doubt != doubtful_size(structure.mechanism):
+            at = f"{field} = {value:g} {structure.unit_of(field)}".strip()
             terminal.warning(f"at {at}: {doubt}")
 
 
@@ -163,11 +161,13 @@ def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Shaking:
     return Shaking([each.motion.scaled(each.factor) for each in chosen], asked.signs, near.around)
 
 
-def _design(varied: Any, span: tuple[float, float], until: Aim, shaking: Shaking | None, points: int) -> Design:
+def _design(
+    structure: Structure, field: str, span: tuple[float, float], until: Aim, shaking: Shaking | None, points: int
+) -> Design:
     from rocking_cli.studies.design import design
 
     with terminal.progress(points, "values") as advance:
-        return design(varied, span, until, shaking, points=points, progress=advance)
+        return design(structure, field, span, until, shaking, points=points, progress=advance)
 
 
 def _draw(found: Design) -> Any:

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import Varied
 from rocking_cli.studies.metrics import Metric, Shaking, metric, taken_otherwise
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
@@ -210,7 +209,8 @@ class Design:
 
 
 def design(
-    varied: Varied,
+    structure: Structure,
+    field: str,
     span: tuple[float, float],
     aim: Aim,
     shaking: Shaking | None = None,
@@ -222,8 +222,10 @@ def design(
 
     Parameters
     ----------
-    varied : Varied
-        The structure, and which of its numbers varies.
+    structure : Structure
+        The structure.
+    field : str
+        Which of its numbers varies, see `Structure.unit_of`.
     span : (float, float)
         From where to where, in the unit of the field.
     aim : Aim
@@ -259,12 +261,12 @@ def design(
         raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
 
     def metric(value: float) -> float:
-        return _at(varied, value, aim, shaking)[0]
+        return _at(structure, field, value, aim, shaking)[0]
 
     values = np.linspace(*span, points)
     found, reasons, behind = np.full(points, nan), dict[int, str](), list[Neighbours | None]()
     for k, value in enumerate(values.tolist()):
-        found[k], near, reason = _at(varied, value, aim, shaking)
+        found[k], near, reason = _at(structure, field, value, aim, shaking)
         behind.append(near)
         if reason is not None:
             reasons[k] = reason
@@ -285,11 +287,10 @@ def design(
     holds = _ranges(values, met, edge)
     whole = all(met)
     value = None if whole or not holds else holds[-1][0] if met[-1] else holds[0][1] if met[0] else None
-    name = varied.mechanism.name or varied.mechanism.mechanism
     return Design(
-        name, varied.field, varied.unit, aim, varied.value, values, found, holds, monotone, value,
-        _not_built(values, reasons), behind, varied.mechanism.own_caution(),
-        _taken_otherwise(varied, span, aim, shaking),
+        structure.name, field, structure.unit_of(field), aim, structure.value_of(field), values, found, holds, monotone,
+        value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
+        _taken_otherwise(structure, field, span, aim, shaking),
     )  # fmt: skip
 
 
@@ -304,24 +305,27 @@ def _check_site(metric: Metric, shaking: Shaking | None) -> None:
         raise InputError(Problem(message, hint="every code has a `ratio`"))
 
 
-def _taken_otherwise(varied: Varied, span: tuple[float, float], aim: Aim, shaking: Shaking | None) -> Sequence[str]:
+def _taken_otherwise(
+    structure: Structure, field: str, span: tuple[float, float], aim: Aim, shaking: Shaking | None
+) -> Sequence[str]:
     """What a code takes otherwise than the structure gives it at the ends of the range, each sentence once."""
     if not aim.metric.sited or shaking is None or shaking.site is None:
         return []
     said: dict[str, None] = {}
     for value in span:
         try:
-            said |= dict.fromkeys(taken_otherwise(Structure(varied.at(value)), shaking.site))
+            said |= dict.fromkeys(taken_otherwise(structure.varied(field, value), shaking.site))
         except (InputError, MechanismError):  # its reason is among those of `not_built`
             continue
     return list(said)
 
 
-def _at(varied: Varied, value: float, aim: Aim, shaking: Shaking | None) -> tuple[float, Neighbours | None, str | None]:
+def _at(
+    structure: Structure, field: str, value: float, aim: Aim, shaking: Shaking | None
+) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
     try:
-        structure = Structure(varied.at(value))
-        found, near = aim.metric.at(structure, shaking)
+        found, near = aim.metric.at(structure.varied(field, value), shaking)
     except InputError as error:
         return nan, None, "; ".join(str(Problem(each.message, field=each.field)) for each in error.problems)
     except (MechanismError, SolverError) as error:
