@@ -465,6 +465,25 @@ class TestWorkings:
         assert said.count("factor must be a number, or usual") == 1
 
 
+class TestDirections:
+    def found(self, *capacities):
+        directions = {
+            direction: Verified(direction, {"m": Method("a method", each, 2.0)}, "m")
+            for direction, each in zip(rk.Direction, capacities, strict=True)
+        }
+        return Demo().found(rk.Block(width=0.7, height=2.8), directions)
+
+    @pytest.mark.parametrize(
+        ("capacities", "governs", "alike"),
+        [((4.0, 3.0), 1, False), ((3.0, 3.0 * (1 - 1e-14)), 0, True), ((-1.0, -1.0), 0, True), ((-1.0, -3.0), 1, False),
+         ((None, None), 0, True), ((None, 3.0), 1, False)],
+    )  # fmt: skip
+    def test_the_smaller_ratio_governs_whatever_its_sign(self, capacities, governs, alike):
+        found = self.found(*capacities)
+        assert (found.governs, found.alike) == (list(rk.Direction)[governs], alike)
+        assert len(found.distinct) == (1 if alike else 2)
+
+
 class TestStarter:
     def test_it_is_made_from_the_fields_and_works_as_it_is(self, demo):
         made = run("new", "site", "--code", "UNI-demo")

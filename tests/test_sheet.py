@@ -71,6 +71,10 @@ CASES = {
         "mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n",
         SITE + SLC + "element: {kind: cantilever, L: 1.2, t: 0.25, w: 18000.0, E: 1.2e+9}\n",
     ),
+    "parapet by the size of the structure": (
+        "mechanism: block\nname: p\nwidth: 0.25\nheight: 1.2\n",
+        SITE + SLC + "element: {kind: cantilever, w: 18000.0, E: 1.2e+9}\n",
+    ),
     "wall with a seat": (
         "mechanism: block\nname: s\nwidth: 1\nheight: 5\nmass: 10000\n"
         "loads: [{name: floor, mass: 100, at: [0, 5], seat: 0.3}]\n",

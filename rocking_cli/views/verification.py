@@ -133,10 +133,9 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
 
 def shown(found: Verification) -> dict[str, Any]:
     """The directions that differ, by what they are called."""
-    each = list(found.directions.values())
-    if len(each) == 2 and each[0].is_like(each[1]):
-        return {"Both directions": each[0]}
-    return {f"{one.direction.label.capitalize()} direction": one for one in each}
+    if len(found.distinct) < len(found.directions):
+        return {"Both directions": found.distinct[0]}
+    return {f"{one.direction.label.capitalize()} direction": one for one in found.distinct}
 
 
 def _which_direction(found: Verification, compared: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf, isclose, isfinite, isnan, nan
+from typing import Any
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.verification.working import Working
@@ -138,14 +139,18 @@ class Verification:
     @property
     def governs(self) -> Direction:
         """The direction that is nearer to failure; the first of those that are alike."""
-        ratios = self._ratios
-        return next(direction for direction, ratio in ratios.items() if ratio <= min(ratios.values()) * (1 + ALIKE))
+        return next(direction for direction, ratio in self._ratios.items() if ratio <= self._least)
 
     @property
     def alike(self) -> bool:
         """Whether no direction is nearer to failure than the other."""
-        ratios = self._ratios.values()
-        return max(ratios) <= min(ratios) * (1 + ALIKE)
+        return max(self._ratios.values()) <= self._least
+
+    @property
+    def distinct(self) -> Sequence[Any]:
+        """What was found in each direction; of two that have the same numbers in the first."""
+        each = list(self.directions.values())
+        return each[:1] if len(each) == 2 and each[0].is_like(each[1]) else each
 
     @property
     def ratio(self) -> float:
@@ -156,6 +161,12 @@ class Verification:
     def compared(self, direction: Direction) -> float | None:
         """Return the ratio by which a direction is compared with the other."""
         return self.directions[direction].ratio
+
+    @property
+    def _least(self) -> float:
+        """The smallest ratio, with what rounding may add to it."""
+        least = min(self._ratios.values())
+        return least + ALIKE * abs(least)
 
     @property
     def _ratios(self) -> dict[Direction, float]:

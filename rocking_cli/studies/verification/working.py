@@ -36,10 +36,6 @@ class Clause(str):
         clause.transcribed = transcribed
         return clause
 
-    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, bool]]:
-        """Keep all of it in copies and in other processes."""
-        return (str(self),), {"transcribed": self.transcribed}
-
 
 @dataclass(frozen=True)
 class Working:
@@ -151,6 +147,20 @@ class Formula:
             How a formula is written with the decimal marks of a language.
         **numbers
             What is in the slots of the numbers: a number, several for a sum, or a text as it is.
+
+        Raises
+        ------
+        KeyError
+            If a slot has no name or number.
+        ValueError
+            If the sequences of a sum differ in length.
+
+        Examples
+        --------
+        >>> ratio = Formula("r_[{state}]", "C/D", "{C}/{D}", "", "4.2", meaning="capacity over demand")
+        >>> line = ratio.working(1.5, {"state": "ULS"}, C=0.3, D=0.2).in_plain()
+        >>> line.symbol, line.formula, line.numbers
+        ('r_ULS', 'C/D', '0.3/0.2')
         """
         names = names or {}
         return Working(

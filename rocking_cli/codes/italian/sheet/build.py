@@ -9,7 +9,7 @@ from rocking_cli.codes.italian.results import Verification, Verified
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet import dynamic, site, summary, texts_en, texts_it
 from rocking_cli.codes.italian.sheet.steps import of_direction
-from rocking_cli.codes.italian.site import ItalianSite
+from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.document import Drawing, Part
 from rocking_cli.views.sheet.language import Language
@@ -17,7 +17,7 @@ from rocking_cli.views.sheet.language import Language
 
 def parts(say: Language, found: Verification, given: ItalianSite) -> Iterator[Part]:
     """Summary, drawing, site, and each direction that has numbers of its own."""
-    shown, ground = _shown(say, found), Ground(given)
+    shown, ground = _shown(say, found), Ground(of_structure(given, found.mechanism))
     yield summary.part(say, found, shown)
     yield Part("drawing", say.say("drawing"), [Drawing(say.say("drawing_label", name=found.mechanism.name))])
     yield site.part(say, ground)
@@ -31,10 +31,9 @@ def parts(say: Language, found: Verification, given: ItalianSite) -> Iterator[Pa
 
 def _shown(say: Language, found: Verification) -> Mapping[str, Verified]:
     """The directions that differ, by what they are called."""
-    each = list(found.directions.values())
-    if len(each) == 2 and each[0].is_like(each[1]):
-        return {say.say("both"): each[0]}
-    return {say.say(one.direction.label): one for one in each}
+    if len(found.distinct) < len(found.directions):
+        return {say.say("both"): found.distinct[0]}
+    return {say.say(one.direction.label): one for one in found.distinct}
 
 
 SPELLED = {

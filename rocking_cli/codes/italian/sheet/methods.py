@@ -39,7 +39,7 @@ class Asked:
     ----------
     state : str
         By whose ground.
-    name, capacity, unit : str, float, str
+    name, capacity : str, float
         What the structure has.
     demand : str
         The demand of the ground, in symbols.
@@ -50,7 +50,6 @@ class Asked:
     state: str
     name: str
     capacity: float
-    unit: str
     demand: str
     at: spectra.At | None = None
 
@@ -85,12 +84,12 @@ class Methods:
             rule: Rule = RULE[name]
             s, states = rule.state, self.found.straight_states if line else self.found.states
             at = spectra.At(f"T_[{s}{more}]", states[s].T, rule.damping)
-            return Asked(s, f"d_[{s}]", states[s].d, "m", f"S_[De](T_[{s}{more}])", at)
+            return Asked(s, f"d_[{s}]", states[s].d, f"S_[De](T_[{s}{more}])", at)
         return self._activation(STATE[name])
 
     def _activation(self, state: str) -> Asked:
         """The onset of rocking, by the ground of a limit state."""
-        return Asked(state, "a_[0]^[*]", self.found.a0, "m/s²", self._peak())
+        return Asked(state, "a_[0]^[*]", self.found.a0, self._peak())
 
     def _peak(self) -> str:
         on_floor = self.ground.site.floor is not None
@@ -146,7 +145,7 @@ class Methods:
         linear = say.step(by_code, method.a_g, q=q, a=start)
         names = {"symbol": "a_[g,linear]", "asked": "a_[g,SLV]", "state": "SLV", "more": ""}
         yield Steps([linear, self._zeta(method, names)])
-        yield from self._lasts(method, Asked("SLV", "a_[g,linear]", method.a_g, "g", "a_[g]"), "")
+        yield from self._lasts(method, Asked("SLV", "a_[g,linear]", method.a_g, "a_[g]"), "")
 
     def _checked(self, spectrum: Spectrum, asked: Asked) -> Iterator[Working]:
         """Yield the steps to the demand under another ground, to be checked against the capacity."""
