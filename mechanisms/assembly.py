@@ -239,7 +239,7 @@ class Assembly(Membered):
 
     @staticmethod
     def _refused(field: tuple[str, ...], reason: str) -> Exception:
-        from rocking_cli.core.attachments import Refused, as_validation_error
+        from rocking_cli.core.hung.attachments import Refused, as_validation_error
 
         return as_validation_error([Refused(field[:-1], field[-1], reason)], Assembly.mechanism)
 

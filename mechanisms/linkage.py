@@ -32,7 +32,7 @@ from rocking_cli.core import (
     of_joints,
 )
 from rocking_cli.core.fields import Name
-from rocking_cli.core.ties import Place, Tie
+from rocking_cli.core.hung.ties import Place, Tie
 from rocking_cli.errors import MechanismError, StructureError
 
 MOST_CRACKS = 2  # in a direction

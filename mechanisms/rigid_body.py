@@ -202,7 +202,7 @@ class RigidBody(SingleBody):
         """Of a polygon the area that its inertia has too: arcs of rounded feet are exact, however they are drawn."""
         if self._way != "polygon":
             return super().volume()
-        return self._given_depth * sum(sign * piece.mass for sign, piece in self._pieces)
+        return self.given_depth * sum(sign * piece.mass for sign, piece in self._pieces)
 
     def _of_parts(self, key: str) -> list[float | None]:
         """Density or depth of every plate among the parts: its own, or that of the body."""

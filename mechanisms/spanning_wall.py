@@ -86,7 +86,7 @@ class SpanningWall(Mechanism):
             raise geometry_error("density", "is missing: with an overburden the wall needs density and depth, or mass")
         if self.hinge == "weakest" and self.crushing is not None:
             raise geometry_error("hinge", "weakest is that of pivots on the faces: with crushing give its height")
-        if self.hinge == "weakest" and self._is_laden:
+        if self.hinge == "weakest" and self.is_laden:
             raise geometry_error("hinge", "weakest knows of the overburden only: with loads or ties give its height")
         for direction in self.directions:
             self._check_stands_alone(direction)
@@ -148,7 +148,7 @@ class SpanningWall(Mechanism):
 
     def volume(self) -> float:
         """Of the wall; its cuts may depend on its weight."""
-        return self.thickness * self.height * self._given_depth
+        return self.thickness * self.height * self.given_depth
 
     def bodies(self) -> Sequence[Body]:
         cuts = self._cuts

@@ -65,7 +65,7 @@ class SymmetricFrame(Mechanism):
 
     def volume(self) -> float:
         """Of columns as deep as `depth`, and of a beam of the same density."""
-        return self._given_depth * self.column_width * self.column_height * self.columns * (1 + self.mass_ratio)
+        return self.given_depth * self.column_width * self.column_height * self.columns * (1 + self.mass_ratio)
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         foot = complex(direction * self.column_width / 2)

@@ -13,7 +13,7 @@ from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from rocking_cli.core import Direction
-from rocking_cli.core.mechanism import DirectionalRestitution
+from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import respond

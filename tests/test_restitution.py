@@ -21,7 +21,7 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.core.mechanism import DirectionalRestitution
+from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.core.restitution import why_none
 from rocking_cli.errors import InputError
 from tests.reference_mechanics import cross, link_rates, polygon_moments, sector_moments

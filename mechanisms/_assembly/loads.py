@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking_cli.core import Attached, Body, Direction, PointMass, Reals, RigidMotion, Spot
-from rocking_cli.core.attached import Follow, Path
-from rocking_cli.core.attachments import followed
+from rocking_cli.core.hung.attached import Follow, Path
+from rocking_cli.core.hung.attachments import followed
 from rocking_cli.core.kinematics import Points
 
 

@@ -1,8 +1,5 @@
 """Pure mechanics: where the bodies of a mechanism are, and what follows from it."""
 
-from rocking_cli.core.attached import Attached as Attached
-from rocking_cli.core.attached import PointMass as PointMass
-from rocking_cli.core.attached import Spot as Spot
 from rocking_cli.core.bodies import Body as Body
 from rocking_cli.core.bodies import annular_sector as annular_sector
 from rocking_cli.core.bodies import box as box
@@ -25,6 +22,9 @@ from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length
 from rocking_cli.core.fields import point as point
 from rocking_cli.core.fields import quantity as quantity
+from rocking_cli.core.hung.attached import Attached as Attached
+from rocking_cli.core.hung.attached import PointMass as PointMass
+from rocking_cli.core.hung.attached import Spot as Spot
 from rocking_cli.core.joints import Joint as Joint
 from rocking_cli.core.kinematics import Direction as Direction
 from rocking_cli.core.kinematics import Reals as Reals

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -46,6 +46,16 @@ class Body:
                 )
         if not abs(self.centroid) < inf:
             raise ValueError(f"the centroid of body {self.name!r} is at {self.centroid:g} m: it must be finite")
+
+    def shapes(self, drawn: Mapping[str, Sequence[Sequence[complex]]]) -> Sequence[Sequence[complex]]:
+        """Its outline, else the polygons that are drawn for it, by its name; none if its shape is not known."""
+        return [self.outline] if self.outline else drawn.get(self.name, ())
+
+
+def area_of(corners: Sequence[complex]) -> float:
+    """Signed area of a polygon [m2]."""
+    z = np.asarray(corners) - corners[0]
+    return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
 
 
 def weighed(bodies: Sequence[Body], factor: float) -> Sequence[Body]:

@@ -2,47 +2,41 @@
 
 from __future__ import annotations
 
-import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from inspect import isfunction
 from math import nan, sqrt
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import ValidationError
 
-from rocking_cli.core import equilibrium
-from rocking_cli.core.attached import Attached, ConstantForce, Follow, PointMass, Spring, springs_of
-from rocking_cli.core.attachments import (
+from rocking_cli.core import checks, equilibrium
+from rocking_cli.core.bodies import Body, area_of, weighed
+from rocking_cli.core.coefficients import Coefficients, coefficients
+from rocking_cli.core.collapse import CollapseMechanism
+from rocking_cli.core.contacts import Contact, Piece, of_joints
+from rocking_cli.core.extras import Extra
+from rocking_cli.core.given import DirectionalRestitution, Given
+from rocking_cli.core.hung.attached import Attached, Follow
+from rocking_cli.core.hung.attachments import (
     Carrier,
     Loc,
     Refused,
     as_validation_error,
     attach,
-    check_stretched,
     far_off,
     followed,
+    interlocked,
 )
-from rocking_cli.core.bodies import Body, weighed
-from rocking_cli.core.coefficients import Coefficients, coefficients
-from rocking_cli.core.collapse import CollapseMechanism
-from rocking_cli.core.contacts import Contact, Piece, of_joints
-from rocking_cli.core.crushing import Crushing, pressing
-from rocking_cli.core.extras import Extra
-from rocking_cli.core.fields import Described, Name, geometry_error, quantity
-from rocking_cli.core.interlock import NAME as INTERLOCK
-from rocking_cli.core.interlock import Interlock
+from rocking_cli.core.hung.everything import Hung
+from rocking_cli.core.hung.interlock import NAME as INTERLOCK
 from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
-from rocking_cli.core.loads import Load
 from rocking_cli.core.restitution import kinematic_restitution
-from rocking_cli.core.sketch import Outline, Sketch
-from rocking_cli.core.strength import Strength
-from rocking_cli.core.ties import Tie
-from rocking_cli.core.uncertainty import Uncertainty
+from rocking_cli.core.sketch import Sketch
 from rocking_cli.errors import FieldError, InputError, Problem
 from rocking_cli.plugins.errors import blame, guard
 
@@ -57,37 +51,9 @@ OF_THE_BARE = (
     "coefficients", "kinetic_inertia", "potential_energy", "uplift", "critical_rotation", "restitution_from_kinematics",
 )  # fmt: skip
 """Those whose overrides are closed forms of the bare mechanism: with loads or ties the general solvers answer."""
-KINEMATIC = "kinematic"
-"""What a file says of a rebound that follows from the shape."""
-NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
-LATER = {"dampers": "a damper", "inerters": "an inerter"}
-"""What structures will have one day, and is refused by name until then."""
-ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
-POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # of a length, by the unit of a field
 
 
-def _is_mass(unit: object) -> bool:
-    return isinstance(unit, str) and re.match(r"(kg|t)\b", unit) is not None
-
-
-def _multiplied(value: Any, factor: float) -> Any:
-    """A number, or every number of a list, times a factor; what is no number stays."""
-    if isinstance(value, (list, tuple)):
-        return type(value)(_multiplied(each, factor) for each in value)
-    return value * factor if isinstance(value, float) else value
-
-
-Eta = Annotated[float, Field(gt=0, le=5)]  # how much it may be at most depends on the structure
-
-
-class DirectionalRestitution(Described):
-    """Coefficients of restitution that differ between the two impacts."""
-
-    positive_to_negative: Eta = Field(description="eta of an impact that ends positive rotation")
-    negative_to_positive: Eta = Field(description="eta of an impact that ends negative rotation")
-
-
-class Mechanism(Described, ABC):
+class Mechanism(Given, ABC):
     """A rocking structure with one degree of freedom.
 
     A plugin subclasses it, declares its geometry as fields made with `quantity`, and says in `bodies`, `motion`
@@ -110,96 +76,6 @@ class Mechanism(Described, ABC):
     starter: ClassVar[tuple[str, ...]] = ()
     """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
 
-    name: Name | None = Field(None, description="what to call the structure")
-    gravity: float = Field(
-        9.80665, gt=0, le=1000, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"}
-    )
-    restitution: Eta | DirectionalRestitution | None = Field(
-        None, description="coefficient of restitution eta; computed from kinematics if omitted"
-    )
-    density: float | None = quantity(
-        "density; with depth it gives the masses", unit="kg/m3", example=1800.0, default=None, gt=0, le=1e6
-    )
-    depth: float | None = quantity("size out of plane", unit="m", example=1.0, default=None, gt=0, le=1e6)
-    mass: float | None = quantity("mass of the whole structure", unit="kg", example=5000.0, default=None, gt=0, le=1e15)
-    one_sided: Literal["positive", "negative"] | None = Field(
-        None,
-        examples=["positive"],
-        description="the only direction it rocks in, such as away from side walls that it leans on",
-    )
-    rebound: float | None = quantity(
-        "rate after an impact on them over that before; of a plain rectangle also `kinematic`",
-        example=0.5,
-        default=None,
-        ge=0,
-        lt=1,
-    )
-    loads: list[Load] | None = Field(
-        None,
-        max_length=1000,
-        examples=[[{"name": "floor", "mass": 1000.0, "at": [0.0, 2.0]}]],
-        description="masses and forces on the structure; `rocking mechanisms loads` lists their fields",
-    )
-    ties: list[Tie] | None = Field(
-        None,
-        max_length=1000,
-        examples=[[{"name": "bar", "from": {"ground": [-3.0, 2.0]}, "to": {"at": [0.0, 2.0]}, "stiffness": 1e6}]],
-        description="ties, tendons and springs; `rocking mechanisms ties` lists their fields",
-    )
-    crushing: Crushing | None = Field(
-        None,
-        examples=[{"strength": 1e6}],
-        description="crushing strength at the pivots, which then move inwards; `rocking mechanisms crushing` lists its "
-        "fields",
-    )
-    interlock: Interlock | None = Field(
-        None,
-        examples=[{"courses": 10, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 2.0}],
-        description="friction of walls that cross it; `rocking mechanisms interlock` lists its fields",
-    )
-    friction: float | None = quantity(
-        "coefficient of friction of its joints, which time histories are checked against",
-        example=0.6,
-        default=None,
-        gt=0,
-        le=10,
-    )
-    uncertainty: Uncertainty | None = Field(
-        None,
-        examples=[{"slenderness": 0.05, "restitution": 0.02}],
-        description="how well it is known; `rocking mechanisms uncertainty` lists its fields",
-    )
-    opening: float = quantity(
-        "largest opening or slip of a joint up to which a time history holds, over the displacement at phi_cr",
-        example=0.005,
-        default=0.005,
-        ge=0,
-        le=1000,
-    )
-    strength: Strength | None = Field(
-        None,
-        examples=[{"stress": 3e6, "width": 0.05}],
-        description="strength of its contacts; `rocking mechanisms strength` lists its fields",
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _not_yet(cls, data: Any) -> Any:
-        for key in LATER:
-            if isinstance(data, dict) and key in data and key not in cls.model_fields:
-                raise geometry_error(key, f"{LATER[key]} is not in this version: leave it out")
-        return data
-
-    @model_validator(mode="before")
-    @classmethod
-    def _rebound_from_impacts(cls, data: Any) -> Any:
-        """Leave `rebound: kinematic` to the theory of impacts, as if it were not given."""
-        if not isinstance(data, dict) or data.get("rebound") != KINEMATIC:
-            return data
-        if data.get("one_sided") is None:
-            raise geometry_error("rebound", NEEDS_A_SIDE)
-        return {**data, "rebound": None}
-
     def __init__(self, /, **fields: Any) -> None:
         try:
             super().__init__(**fields)
@@ -211,37 +87,6 @@ class Mechanism(Described, ABC):
 
     # As pydantic marks its own: files and copies are validated without it, and place their errors themselves.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
-
-    @property
-    def restitution_is_kinematic(self) -> bool:
-        """Whether no restitution is given, so that it follows from the shape."""
-        return (self.restitution if self.rocks_both_ways else self.rebound) is None
-
-    @property
-    def directions(self) -> Sequence[Direction]:
-        """The directions it can rock in."""
-        return list(Direction) if self.one_sided is None else [Direction[self.one_sided.upper()]]
-
-    @property
-    def sides(self) -> tuple[Direction, Direction]:
-        """The directions that stand for positive and negative motion; where there is one only, it does for both."""
-        return self.directions[0], self.directions[-1]
-
-    @property
-    def rocks_both_ways(self) -> bool:
-        """Whether no support keeps it to one side."""
-        return self.one_sided is None
-
-    @property
-    def has_mass(self) -> bool:
-        """Whether the file gives masses. Without them, moments and inertias are per kilogram of the whole structure.
-
-        By default: whether a field is given whose unit is of mass, such as kg or kg/m3. A mechanism that knows its
-        masses otherwise overrides this.
-        """
-        extras = {key: info.json_schema_extra for key, info in type(self).model_fields.items()}
-        of_mass = [key for key, extra in extras.items() if isinstance(extra, dict) and _is_mass(extra.get("unit"))]
-        return any(getattr(self, key) is not None for key in of_mass)
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""
@@ -274,98 +119,25 @@ class Mechanism(Described, ABC):
     def _hold_together(self) -> None:
         """Check the masses, loads and ties against the bodies; raise `ValidationError` of the fields."""
         try:
-            if self.mass is not None and self.density is not None:
-                raise Refused((), "mass", "give mass, or density and depth: one of them")
-            self._check_crushing()
-            self._check_one_sided()
-            self._check_restitution()
+            checks.check_masses(self)
+            if self.crushing is not None:
+                checks.check_crushed(self._inwards, self._at_rest(), self.gravity)
+            checks.check_one_sided(self, self.rebound_from_impacts)
+            checks.check_restitution(self, self.eta, self.greatest_restitution)
             self._mass_factor  # noqa: B018 - a density without a volume is refused here
-            self._check_strength()
-            if not self._is_laden:
-                return
-            if not self.has_mass:
-                key = "loads" if self.loads else "ties" if self.ties else "interlock"
-                raise Refused((), key, "the structure has no masses: give density and depth, or its mass")
-            tied = [thing for _, thing in self._hung if springs_of(thing)]
-            limits = {direction: self.limit(direction) for direction in self.directions} if tied else {}
-            follow = {direction: partial(self.followed, direction=direction) for direction in Direction}
-            for loc, thing in self._hung:
-                check_stretched(loc, thing, follow, limits)
-            self._check_stands()
+            checks.check_strength(self)
+            if self.is_laden:
+                checks.check_weighs(self)
+                self.hung.check_stretched(self.followed, self.limit, self.directions)
+                bare = {
+                    s: coefficients(np.zeros(1), s, self.bodies(), self.motion(np.zeros(1), s)) for s in self.directions
+                }
+                checks.check_stands(self, self.hung, sum(body.mass for body in self.weighed()), self._at_rest(), bare)
         except Refused as error:
             raise as_validation_error([error], self.mechanism) from error
 
-    @model_validator(mode="after")
-    def _crushes_under_a_weight(self) -> Self:
-        if self.crushing is not None and not self.has_mass:
-            raise geometry_error("crushing", "needs the weight of the structure: give density and depth, or its mass")
-        if self.crushing is not None and self.crushing.depth is None and self.depth is None:
-            raise geometry_error(("crushing", "depth"), "is missing: give the length of the pivot out of plane")
-        return self
-
-    def _check_crushing(self) -> None:
-        if self.crushing is None:
-            return
-        if not self._inwards:
-            reason = (
-                "its pivots cannot be moved in this version, only those of single bodies and of walls: leave it out"
-            )
-            raise Refused((), "crushing", reason)
-        for direction in self.directions:
-            if not self.coefficients(np.zeros(1), direction).restoring(self.gravity)[0] > 0:
-                far = max(self._inwards[direction].values())
-                reason = f"the structure cannot stand on what is left: a pivot moves inwards by {far:.4g} m"
-                raise Refused((), "crushing", reason)
-
-    def _check_one_sided(self) -> None:
-        if self.one_sided is None and self.rebound is not None:
-            raise Refused((), "rebound", NEEDS_A_SIDE)
-        if self.one_sided is not None and self.restitution is not None:
-            raise Refused((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
-        asked = "rebound" in self.model_fields_set and self.rebound is None
-        if self.one_sided is not None and asked and self.rebound_from_impacts() is None:
-            why = "only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
-            raise Refused((), "rebound", f"cannot be {KINEMATIC}: {why}")
-
-    def _check_strength(self) -> None:
-        if not isinstance(self.strength, Strength):  # None, or a field of a plugin of that name
-            return
-        if not self.has_mass:
-            raise Refused((), "strength", "the structure has no masses: give density and depth, or its mass")
-        if self.depth is None:
-            raise Refused((), "depth", "is missing: the contacts are as long as the structure is deep")
-
-    def _check_restitution(self) -> None:
-        """Refuse a restitution with which an impact would add energy."""
-        if self.restitution is None:
-            return
-        for direction in Direction:
-            eta, most = self.eta(direction), self.greatest_restitution(direction)
-            if eta > most * (1 + ROUNDING):
-                field = "restitution"
-                if isinstance(self.restitution, DirectionalRestitution):
-                    field = "positive_to_negative" if direction > 0 else "negative_to_positive"
-                reason = f"must be at most {most:.6g}, got {eta:g}: a larger value would add energy at an impact"
-                raise Refused(() if field == "restitution" else ("restitution",), field, reason)
-
-    def _check_stands(self) -> None:
-        """Refuse loads and ties under which the structure does not stand though it stands by itself."""
-        lifted = sum(thing.force.imag for thing in self.attached if isinstance(thing, ConstantForce))
-        borne = sum(thing.mass * thing.weight for thing in self.attached if isinstance(thing, PointMass))
-        weight = self.gravity * (sum(body.mass for body in self.weighed()) + borne)
-        if lifted >= weight:
-            reason = f"forces lift it by {lifted:.4g} N, more than all of its weight, {weight:.4g} N"
-            raise Refused((), "loads", reason)
-        for direction in self.directions:
-            here = self.coefficients(np.zeros(1), direction)
-            own = coefficients(np.zeros(1), direction, self.bodies(), self.motion(np.zeros(1), direction))
-            if own.G[0] > 0 and not here.restoring(self.gravity)[0] > 0:
-                raise Refused(
-                    (),
-                    "loads" if self.loads else "ties",
-                    f"the structure cannot stand under them: at rest they turn it in the {direction.label} direction "
-                    f"with {-here.restoring(self.gravity)[0] * self.gravity:.4g} N m more than its weight holds",
-                )
+    def _at_rest(self) -> Mapping[Direction, Coefficients]:
+        return {direction: self.coefficients(np.zeros(1), direction) for direction in self.directions}
 
     @classmethod
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
@@ -375,39 +147,6 @@ class Mechanism(Described, ABC):
         for name in OF_THE_BARE:
             if isfunction(own := vars(cls).get(name)):
                 setattr(cls, name, _of_the_bare(own))
-
-    def enlarged(self, factor: float) -> Self:
-        """A structure of another size: every field in m, m2, m3 or kg m2 is multiplied, all else stays.
-
-        Parameters
-        ----------
-        factor : float
-            On every length, > 0.
-
-        Returns
-        -------
-        Mechanism
-            Masses and loads that are given as such do not grow with it, so that it need not behave alike; where loads
-            and ties are is multiplied.
-
-        Raises
-        ------
-        pydantic.ValidationError
-            If a field is then out of its bounds.
-        """
-        changed: dict[str, Any] = {}
-        for key, field in type(self).model_fields.items():
-            unit = field.json_schema_extra.get("unit") if isinstance(field.json_schema_extra, dict) else None
-            power, value = POWERS.get(str(unit)), getattr(self, key)
-            if power is not None:
-                changed[key] = _multiplied(value, factor**power)
-            elif isinstance(value, list) and value and hasattr(value[0], "enlarged"):
-                changed[key] = [thing.enlarged(factor) for thing in value]
-            elif isinstance(value, dict) and any(hasattr(thing, "enlarged") for thing in value.values()):
-                changed[key] = {name: thing.enlarged(factor) for name, thing in value.items()}
-            elif hasattr(value, "enlarged"):
-                changed[key] = value.enlarged(factor)
-        return self.model_copy(update=changed)
 
     @abstractmethod
     def bodies(self) -> Sequence[Body]:
@@ -489,7 +228,7 @@ class Mechanism(Described, ABC):
         """Return the weight at rest of some bodies, or of all, with what is attached to them [N]."""
         on = bodies or tuple(body.name for body in self.bodies())
         weight = self.gravity * sum(body.mass for body in self.weighed() if body.name in on)
-        return weight + pressing(self.attached, on, direction, self.followed(np.zeros(1), direction), self.gravity)
+        return weight + self.hung.pressing(on, direction, self.followed(np.zeros(1), direction), self.gravity)
 
     def inwards(self, direction: Direction, joint: str) -> float:
         """How far crushing moves a joint inwards [m], over the whole motion."""
@@ -515,34 +254,16 @@ class Mechanism(Described, ABC):
         moved = self._inwards.get(direction, {}).items()
         return [*self.extras(direction), *(Extra(f"inwards_{key}", u, "m", what.format(key)) for key, u in moved)]
 
-    @property
-    def crushed(self) -> str | None:
-        """That its pivots are moved, as a sentence without a full stop; None if they are not."""
-        if self.crushing is None:
-            return None
-        return (
-            f"pivots moved inwards by crushing at {self.crushing.strength / 1e6:g} MPa under the forces at rest, and "
-            "kept there over the whole motion"
-        )
-
     def volume(self) -> float:
         """The volume that `density` makes the mass of [m3]: by default that of the outlines, `depth` deep."""
-        deep, sketch = self._given_depth, self.sketch()
+        deep, sketch = self.given_depth, self.sketch()
         area = 0.0
         for body in self.bodies():
-            known: Sequence[Outline] = sketch.outlines.get(body.name, ()) if sketch.uniform else ()
-            shapes = [body.outline] if body.outline else known
+            shapes = body.shapes(sketch.outlines if sketch.uniform else {})
             if not shapes:
                 raise Refused((), "density", f"the shape of its {body.name} is not known: give its mass instead")
-            area += sum(abs(_area(shape)) for shape in shapes)
+            area += sum(abs(area_of(shape)) for shape in shapes)
         return area * deep
-
-    @property
-    def _given_depth(self) -> float:
-        """Size out of plane that `density` needs [m]. Raises `Refused` if the file gives none."""
-        if self.depth is None:
-            raise Refused((), "depth", "is missing: density needs the size out of plane")
-        return self.depth
 
     def total_mass(self) -> float | None:
         """The mass of the whole structure by the file [kg]; None where `bodies` have theirs, or there is none."""
@@ -561,25 +282,16 @@ class Mechanism(Described, ABC):
         return weighed(self.bodies(), self._mass_factor)
 
     @cached_property
-    def _hung(self) -> Sequence[tuple[Loc, Attached]]:
-        """Everything attached to the structure, each with its place among the fields."""
-        own: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
-        if not self._is_laden:
-            return own
-        carrier = self._carrier
-        taken = [*(thing.name for _, thing in own), *([INTERLOCK] if self.interlock is not None else [])]
-        found = [*own, *attach(carrier, self.loads or [], self.ties or [], taken)]
+    def hung(self) -> Hung:
+        """What hangs on it: its loads, forces and ties, and what it `carries` itself."""
+        found: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
+        if self.is_laden:
+            taken = [*(thing.name for _, thing in found), *([INTERLOCK] if self.interlock is not None else [])]
+            found += attach(self._carrier, self.loads or [], self.ties or [], taken)
         if self.interlock is not None:
-            density = self.interlock.density or self.density
-            if density is None:
-                raise Refused(
-                    ("interlock",), "density", "is missing: the weight of the crossing walls is their friction"
-                )
-            foot = carrier.foot(self.interlock.body, ("interlock",))
-            top = foot.at + 1j * self.interlock.height
-            carrier.spot(foot.body, top, ("interlock",), "height")
-            found.append((("interlock",), self.interlock.attached(foot, density, self.gravity)))
-        return found
+            friction = interlocked(self.interlock, self._carrier, self.density, self.gravity)
+            found.append((("interlock",), friction))
+        return Hung(found)
 
     @property
     def _carrier(self) -> Carrier:
@@ -590,26 +302,13 @@ class Mechanism(Described, ABC):
         return list(far_off(self._carrier, self.loads)) if self.loads else []
 
     @property
-    def _is_laden(self) -> bool:
-        return bool(self.loads or self.ties or self.interlock)
-
-    @property
     def attached(self) -> Sequence[Attached]:
-        """Everything attached to the structure, as its equation of motion sees it."""
-        return [thing for _, thing in self._hung]
-
-    @property
-    def springs(self) -> Sequence[Spring]:
-        """The elastic ones among its ties."""
-        return [spring for thing in self.attached for spring in springs_of(thing)]
+        """All that hangs on it, as its equation of motion sees it."""
+        return self.hung.things
 
     def slackness(self, phi: Reals, direction: Direction) -> Reals:
         """For each tie that acts in one sense only: what is zero where it goes slack, shape (ties, n)."""
-        springs = [spring for spring in self.springs if spring.only is not None]
-        if not springs:
-            return np.zeros((0, np.size(phi)))
-        follow = self.followed(np.asarray(phi, dtype=np.float64), direction)
-        return np.array([spring.slack_at(spring.elongation(follow)[0]) for spring in springs])
+        return self.hung.slackness(self.followed(np.asarray(phi, dtype=np.float64), direction), np.size(phi))
 
     @property
     def bends(self) -> bool:
@@ -619,12 +318,12 @@ class Mechanism(Described, ABC):
     @property
     def smooth(self) -> bool:
         """Whether no derivative of its restoring moment has corners, as where a tie goes slack."""
-        return all(spring.only is None for spring in self.springs)
+        return not self.hung.one_sided
 
     @property
     def is_bare(self) -> bool:
         """Whether it is the mechanism alone, without masses of the file, loads and ties."""
-        return self.total_mass() is None and not self._hung
+        return self.total_mass() is None and not self.hung.placed
 
     def followed(self, phi: Reals, direction: Direction) -> Follow:
         """The paths of its points over rotations, shape (n,)."""
@@ -633,15 +332,13 @@ class Mechanism(Described, ABC):
     def coefficients(self, phi: Reals, direction: Direction) -> Coefficients:
         """Coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8].
 
-        Includes what is attached to the structure: see `rocking_cli.core.attached`.
+        Includes what is attached to the structure: see `rocking_cli.core.hung.attached`.
         """
         phi = _rotations(phi)
         bodies, motions = self.weighed(), self.motion(phi, direction)
         total = coefficients(phi, direction, bodies, motions)
-        if self._hung:
-            follow = followed(bodies, motions, phi.shape)
-            for thing in self.attached:
-                thing.act(total, direction, follow)
+        if self.hung.placed:
+            self.hung.act(total, direction, followed(bodies, motions, phi.shape))
         return total
 
     def kinetic_inertia(self, phi: Reals, direction: Direction) -> Reals:
@@ -665,10 +362,8 @@ class Mechanism(Described, ABC):
 
     def restitution_from_kinematics(self, direction: Direction) -> float:
         """The eta of an impact that ends motion in `direction`, from the kinematics alone; it may be <= 0."""
-        rest = np.zeros(1)
-        motions = self.motion(rest, direction), self.motion(rest, direction.opposite)
-        masses = [thing for thing in self.attached if isinstance(thing, PointMass)]
-        return kinematic_restitution(self.weighed(), *motions, masses)
+        motions = self.motion(np.zeros(1), direction), self.motion(np.zeros(1), direction.opposite)
+        return kinematic_restitution(self.weighed(), *motions, self.hung.masses)
 
     def greatest_restitution(self, direction: Direction) -> float:
         """The eta of an impact that ends motion in `direction` and keeps all energy.
@@ -677,8 +372,7 @@ class Mechanism(Described, ABC):
         over that before is eta^2 I'(0)/I(0) with I' that of the other direction, so the bound is sqrt(I(0)/I'(0)), 1
         for a symmetric structure.
         """
-        rest = np.zeros(1)
-        before, after = (float(self.kinetic_inertia(rest, s)[0]) for s in (direction, direction.opposite))
+        before, after = (float(self.kinetic_inertia(np.zeros(1), s)[0]) for s in (direction, direction.opposite))
         return sqrt(before / after)
 
     def rebound_from_impacts(self) -> float | None:
@@ -720,12 +414,6 @@ def _of_the_bare(own: Callable[..., Any]) -> Callable[..., Any]:
         return own(self, *args, **named) if self.is_bare else general(self, *args, **named)
 
     return answer
-
-
-def _area(shape: Sequence[complex]) -> float:
-    """Signed area of a polygon [m2]."""
-    z = np.asarray(shape) - shape[0]
-    return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
 
 
 def _failed(cls: type, method: str) -> str:

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.core.attached import PointMass, Spot
 from rocking_cli.core.contacts import Contact
+from rocking_cli.core.hung.attached import PointMass, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion, rotation
 from rocking_cli.core.mechanism import Mechanism
 
@@ -280,7 +280,7 @@ class Pieces:
         return found
 
     def _path(self, spot: Spot) -> object:
-        from rocking_cli.core.attached import Path
+        from rocking_cli.core.hung.attached import Path
 
         return Path(*(self._motions[self._piece(spot)] if self._moves(spot) else self._still).carry(spot.at))
 

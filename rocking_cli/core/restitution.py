@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isclose
 
-from rocking_cli.core.attached import PointMass
 from rocking_cli.core.bodies import Body
+from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.kinematics import RigidMotion
 
 

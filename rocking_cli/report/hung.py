@@ -6,7 +6,9 @@ from collections.abc import Iterator, Mapping
 from math import isnan
 from typing import NamedTuple
 
-from rocking_cli.core.attached import ConstantForce, PointMass, Spot, Spring, SpringBed
+from rocking_cli.core.hung.attached import PointMass, Spot
+from rocking_cli.core.hung.element import Element, Stretched
+from rocking_cli.core.hung.elements import ConstantForce, SpringBed
 from rocking_cli.studies.assessment import Assessment, MotionResult
 from rocking_cli.studies.movements import Movements, Watched, largest
 
@@ -49,11 +51,11 @@ def hung_on(content: Assessment) -> Hung | None:
     watched = Watched(mechanism)
     found = {each.given.motion.name: _worse(watched, each) for each in content.results}
     shown = {name + _until(moved): moved for name, moved in found.items()}
-    things = mechanism.attached
+    hung = mechanism.hung
     return Hung(
-        masses=[_mass(each) for each in things if isinstance(each, PointMass)],
-        forces=[_force(each) for each in things if isinstance(each, ConstantForce)],
-        ties=[_tie(each) for each in things if isinstance(each, Spring | SpringBed)],
+        masses=[_mass(each) for each in hung.masses],
+        forces=[_force(each) for each in hung.elements if isinstance(each, ConstantForce)],
+        ties=[_tie(each) for each in hung.ties],
         moved=[
             [name, point.name, _mm(point.horizontal), _mm(point.vertical)]
             for name, moved in shown.items()
@@ -85,20 +87,19 @@ def _mass(load: PointMass) -> list[str]:
 
 def _force(load: ConstantForce) -> list[str]:
     name = f"{load.name} (friction, against the motion; clockwise)" if load.friction else load.name
-    return [name, *_place(load.spot), _kilo(load.force.real), _kilo(load.force.imag)]
+    return [name, *_place(load.spot), _kilo(load.thrust.real), _kilo(load.thrust.imag)]
 
 
-def _tie(tie: Spring | SpringBed) -> list[str]:
+def _tie(tie: Element) -> list[str]:
     if isinstance(tie, SpringBed):
-        where, stiffness = (
-            f"along a face, {_spot(tie.start)} to {_spot(tie.end)}",
-            tie.modulus * abs(tie.end.at - tie.start.at),
-        )
-        return [tie.name, where, "tension and compression", _kilo(tie.count * stiffness), _kilo(0.0)]
+        where = f"along a face, {_spot(tie.start)} to {_spot(tie.end)}"
+        return [tie.name, where, "tension and compression", _kilo(tie.count * tie.stiffness), _kilo(0.0)]
+    assert isinstance(tie, Stretched)  # there is no other
+    prestress, stiffness = tie.at_rest
     sense = {"tension": "tension only", "compression": "compression only", None: "tension and compression"}[tie.only]
     number = f", {tie.count:g} ties" if tie.count != 1 else ""
     where = ", ".join(_spot(spot) for spot in tie.spots) + number
-    return [tie.name, where, sense, _kilo(tie.stiffness), _kilo(tie.prestress)]
+    return [tie.name, where, sense, _kilo(stiffness), _kilo(prestress)]
 
 
 def _place(spot: Spot) -> tuple[str, str]:

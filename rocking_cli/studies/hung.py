@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism, three_digits
-from rocking_cli.core.attached import TOGETHER, Attached, ConstantForce, PointMass, Spot, Spring, SpringBed
+from rocking_cli.core.hung.attached import PointMass
+from rocking_cli.core.hung.element import TOGETHER, Element, Stretched
+from rocking_cli.core.hung.elements import ConstantForce, SpringBed
 
 Points = NDArray[np.complex128]
 Copies = Mapping[str, Sequence[tuple[int, complex]]]
@@ -82,18 +84,23 @@ class Strand:
         What it is called.
     pieces : tuple of Piece
         From end to end; of a bed, some of its springs.
-    thing : Spring or SpringBed
+    thing : Element
         What it does.
     """
 
     name: str
     pieces: tuple[Piece, ...]
-    thing: Spring | SpringBed
+    thing: Element
 
     @property
     def is_bed(self) -> bool:
         """Whether it is a row of springs along a face."""
         return isinstance(self.thing, SpringBed)
+
+    @property
+    def only(self) -> str | None:
+        """The one sense in which it can act; None if it acts in both."""
+        return self.thing.only if isinstance(self.thing, Stretched) else None
 
     @property
     def ground(self) -> list[End]:
@@ -102,13 +109,12 @@ class Strand:
 
     def slack(self, mechanism: Mechanism, phi: NDArray[np.float64], direction: Direction) -> NDArray[np.bool_]:
         """Mask of the rotations at which the tie is slack, shape (n,)."""
-        if isinstance(self.thing, SpringBed) or self.thing.only is None:
+        if not isinstance(self.thing, Stretched) or self.only is None:
             return np.zeros(phi.shape, bool)
         e, _, _ = self.thing.elongation(mechanism.followed(phi, direction))
-        taut = self.thing.slack_at(e) * (1.0 if self.thing.only == "tension" else -1.0)
-        return np.asarray(
-            taut < -1e-9 * (abs(self.thing.prestress) + self.thing.stiffness * float(np.abs(e).max(initial=0.0)))
-        )
+        taut = self.thing.slack_at(e) * (1.0 if self.only == "tension" else -1.0)
+        force, stiffness = self.thing.at_rest
+        return np.asarray(taut < -1e-9 * (abs(force) + stiffness * float(np.abs(e).max(initial=0.0))))
 
 
 def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
@@ -132,15 +138,13 @@ def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
 def strands(mechanism: Mechanism, copies: Copies, centroids: Sequence[complex]) -> Iterator[Strand]:
     """The ties of a structure; one that each of several bodies has, on each of them."""
     each = _each(mechanism)
-    for tie in mechanism.attached:
-        if not isinstance(tie, Spring | SpringBed):
-            continue
-        first = next(spot.body for spot in _spots(tie) if spot.body is not None)
+    for tie in mechanism.hung.ties:
+        first = next(spot.body for part in tie.stretched for spot in part.spots if spot.body is not None)
         for k, (part, shift) in enumerate(_copies(first, copies, every=each.get(tie.name, False))):
             name = tie.name if k == 0 else ""
             if isinstance(tie, SpringBed):
                 yield Strand(name, tuple(_bed(tie, part, shift, centroids[part])), tie)
-            else:
+            elif isinstance(tie, Stretched):
                 of_body = {body: those[min(k, len(those) - 1)][0] for body, those in copies.items()}
                 yield Strand(name, tuple(_pieces(tie, of_body, shift)), tie)
 
@@ -167,11 +171,7 @@ def _copies(body: str | None, copies: Copies, *, every: bool) -> Sequence[tuple[
     return found if every else found[:1]
 
 
-def _spots(tie: Attached) -> Sequence[Spot]:
-    return [tie.start, tie.end] if isinstance(tie, SpringBed) else tie.spots if isinstance(tie, Spring) else []
-
-
-def _pieces(tie: Spring, of_body: Mapping[str, int], shift: complex) -> Iterator[Piece]:
+def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex) -> Iterator[Piece]:
     for one, other in zip(tie.spots, tie.spots[1:], strict=False):
         parts = [None if spot.body is None else of_body[spot.body] for spot in (one, other)]
         if abs(other.at - one.at) <= TOGETHER * (1 + abs(one.at)):

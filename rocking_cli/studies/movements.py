@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.attached import ConstantForce, PointMass, Spot, Spring, SpringBed
-from rocking_cli.core.interlock import NAME as INTERLOCK
+from rocking_cli.core.hung.attached import PointMass, Spot
+from rocking_cli.core.hung.element import Element, Stretched
+from rocking_cli.core.hung.elements import ConstantForce
+from rocking_cli.core.hung.interlock import NAME as INTERLOCK
 from rocking_cli.dynamics.history import History
 
 Reals = NDArray[np.float64]
@@ -83,9 +85,9 @@ class Watched:
         return dict([top(self.mechanism), *_where_it_bends(self.mechanism), *_hung(self.mechanism)])
 
     @cached_property
-    def ties(self) -> Sequence[Spring | SpringBed]:
+    def ties(self) -> Sequence[Element]:
         """In the order of the file."""
-        return [thing for thing in self.mechanism.attached if isinstance(thing, Spring | SpringBed)]
+        return self.mechanism.hung.ties
 
     @cached_property
     def _limits(self) -> Mapping[Direction, float]:
@@ -148,10 +150,10 @@ class Watched:
         moved = np.concatenate([self._displacement(spot, _way(phi), side) for side, phi in reached.items()])
         return PointPeak(name, spot.at, float(np.abs(moved.real).max()), float(np.abs(moved.imag).max()))
 
-    def _tie(self, tie: Spring | SpringBed, reached: Mapping[Direction, float]) -> TiePeak:
+    def _tie(self, tie: Element, reached: Mapping[Direction, float]) -> TiePeak:
         both = np.concatenate([_strained(self.mechanism, tie, _way(phi), side) for side, phi in reached.items()])
         elongation, force = both.real, both.imag
-        only = tie.only if isinstance(tie, Spring) else None
+        only = tie.only if isinstance(tie, Stretched) else None
         counts = elongation if only == "tension" else -elongation if only == "compression" else np.abs(elongation)
         return TiePeak(tie.name, float(force[np.abs(force).argmax()]), float(elongation[counts.argmax()]))
 
@@ -205,16 +207,9 @@ def _way(phi: float) -> Reals:
     return np.linspace(0.0, phi, BETWEEN)
 
 
-def _strained(
-    mechanism: Mechanism, tie: Spring | SpringBed, phi: Reals, direction: Direction
-) -> NDArray[np.complex128]:
-    """Elongation + i force of a tie; of a bed the opening of its middle, and the resultant."""
-    follow = mechanism.followed(phi, direction)
-    if isinstance(tie, SpringBed):
-        middle = Spot(tie.start.body, (tie.start.at + tie.end.at) / 2)
-        opening = np.abs(follow(middle).z - middle.at)
-        return np.asarray(opening + 1j * tie.modulus * abs(tie.end.at - tie.start.at) * opening)
-    e, _, _ = tie.elongation(follow)
+def _strained(mechanism: Mechanism, tie: Element, phi: Reals, direction: Direction) -> NDArray[np.complex128]:
+    """Elongation + i force of a tie."""
+    e, _, _ = tie.elongation(mechanism.followed(phi, direction))
     return np.asarray(e + 1j * tie.force(e))
 
 
@@ -264,7 +259,7 @@ def _hung(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:
     for thing in mechanism.attached:
         if isinstance(thing, PointMass | ConstantForce):
             yield thing.name, thing.spot
-        elif isinstance(thing, Spring):
+        elif isinstance(thing, Stretched):
             ends = [spot for spot in (thing.spots[0], thing.spots[-1]) if spot.body is not None]
             for k, spot in enumerate(ends):
                 yield (thing.name if len(ends) == 1 else f"{thing.name} {('from', 'to')[k]}"), spot

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Outline, RigidMotion, Sketch, disc
-from rocking_cli.core.attached import Spring
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.size import extent
 from rocking_cli.errors import RockingError, StructureError
@@ -353,7 +352,7 @@ class Picture:
                 {
                     "name": each.name,
                     "bed": each.is_bed,
-                    "only": each.thing.only if isinstance(each.thing, Spring) else None,
+                    "only": each.only,
                     "pieces": [
                         {"kind": piece.kind, "ends": [self._end(end) for end in (piece.start, piece.end)]}
                         for piece in each.pieces
@@ -428,8 +427,8 @@ def _picture(mechanism: Mechanism) -> Picture:
     ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
     if any(part.assumed for part in parts):
         sketch = replace(sketch, notes=[*sketch.notes, ASSUMED])
-    if mechanism.crushed:
-        sketch = replace(sketch, notes=[*sketch.notes, mechanism.crushed])
+    if mechanism.crushing:
+        sketch = replace(sketch, notes=[*sketch.notes, mechanism.crushing.words])
     copies = {body.name: [(k, part.shift) for k, part in enumerate(parts) if part.name == body.name] for body in bodies}
     loads = tuple(carried(mechanism, copies))
     ties = tuple(strands(mechanism, copies, [part.centroid for part in parts]))

@@ -43,10 +43,10 @@ from rocking_cli.core import (
     equivalent_block,
     polygon,
 )
-from rocking_cli.core.attached import Spot
-from rocking_cli.core.attachments import followed
 from rocking_cli.core.coefficients import coefficients, jump
 from rocking_cli.core.equilibrium import NoCriticalRotation
+from rocking_cli.core.hung.attached import Spot
+from rocking_cli.core.hung.attachments import followed
 from rocking_cli.core.reactions import reactions
 from rocking_cli.core.registry import conformance
 from rocking_cli.core.released import Pieces, Undetermined, released

@@ -195,7 +195,7 @@ def doubts(content: Assessment) -> list[str]:
             f"The coefficient of restitution (η = {min(etas):.3g}) was computed for rigid bodies that neither slide "
             "nor bounce. It was not measured, and the response depends on it."
         )
-    if content.mechanism.springs:
+    if content.mechanism.hung.ties:
         said.append(
             "Ties are assumed elastic: they do not yield, break or pull out of their anchorages. Check the largest "
             "tie forces in this report against the capacity of the ties and their anchorages."

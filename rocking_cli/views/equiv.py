@@ -60,7 +60,7 @@ def view(structure: Structure) -> View:
         )
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
-    said += [f"P{mechanism.crushed[1:]}."] if mechanism.crushed else []
+    said += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
     said += [f"Caution: {text}" for text in mechanism.cautions()]
     return View(data, [table, *said])
 

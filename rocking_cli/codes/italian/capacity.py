@@ -11,9 +11,9 @@ import numpy as np
 
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.core import Mechanism
-from rocking_cli.core.attached import PointMass, Spot
 from rocking_cli.core.equilibrium import NoCriticalRotation
-from rocking_cli.core.interlock import NAME as INTERLOCK
+from rocking_cli.core.hung.attached import Spot
+from rocking_cli.core.hung.interlock import NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
 from rocking_cli.studies.verification.control import Control
@@ -70,7 +70,7 @@ class ExactCurve:
         interlock = self.chain.mechanism.interlock
         if interlock is None:
             return None
-        spot = next(thing.spot for thing in self.chain.mechanism.attached if thing.name == INTERLOCK)  # type: ignore[attr-defined]
+        spot = next(each.spot for each in self.chain.mechanism.hung.elements if each.name == INTERLOCK)  # type: ignore[attr-defined]
         phi = self._way(self.chain.mechanism.limit(self.chain.direction))
         over = self._slid(spot, phi) >= interlock.overlap
         if not over.any():
@@ -186,7 +186,7 @@ class ExactCurve:
     def seat(self) -> Seat | None:
         """The load that is the first to be moved off its seat, up to the end of the curve; None if none is."""
         phi, mechanism = np.linspace(0.0, self.end, STEPS + 1), self.chain.mechanism
-        spots = {thing.name: thing.spot for thing in mechanism.attached if isinstance(thing, PointMass)}
+        spots = {mass.name: mass.spot for mass in mechanism.hung.masses}
         lost = []
         for load in mechanism.loads or []:
             if load.seat is None:

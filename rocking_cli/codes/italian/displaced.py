@@ -10,8 +10,10 @@ import numpy as np
 
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Block, Chain
-from rocking_cli.core.attached import ConstantForce, Follow, Spot, Spring, springs_of
 from rocking_cli.core.coefficients import Coefficients
+from rocking_cli.core.hung.attached import Follow, Spot
+from rocking_cli.core.hung.element import Stretched
+from rocking_cli.core.hung.elements import ConstantForce
 
 TURNS = 1e-9  # rad per rad: what turns less goes straight on
 ROUNDING = 1e-9  # of the work of the weights, or of the masses: what is left over is none
@@ -116,13 +118,13 @@ class Displaced:
         """What forces and ties do."""
         torn = self.curve.torn is not None and self.phi > self.curve.torn
         mechanism = self.chain.mechanism
-        things = mechanism.model_copy(update={"interlock": None}).attached if torn else mechanism.attached
+        standing = mechanism.model_copy(update={"interlock": None}) if torn else mechanism
         found: list[Held] = []
-        for thing in things:
-            if isinstance(thing, ConstantForce):
-                found += self._of_force(thing)
+        for each in standing.hung.elements:
+            if isinstance(each, ConstantForce):
+                found += self._of_force(each)
             else:
-                found += [self._of_tie(spring) for spring in springs_of(thing)]
+                found += [self._of_tie(tie) for tie in each.stretched]
         return found
 
     def _of_force(self, thing: ConstantForce) -> list[Held]:
@@ -131,12 +133,12 @@ class Displaced:
         parts = [("x", s * force.real, s * rate.real), ("y", force.imag, rate.imag)]
         return [Held(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
 
-    def _of_tie(self, spring: Spring) -> Held:
-        e, first, _ = spring.elongation(self._follow)
+    def _of_tie(self, tie: Stretched) -> Held:
+        e, first, _ = tie.elongation(self._follow)
         rest = np.zeros(1)
         total = Coefficients(rest, *(np.zeros(1) for _ in range(7)))
-        spring.act(total, self.chain.direction, self._follow)
-        return Held(spring.name, spring.count * float(spring.force(e)[0]), float(first[0]), float(total.Q[0]))
+        tie.act(total, self.chain.direction, self._follow)
+        return Held(tie.name, tie.count * float(tie.force(e)[0]), float(first[0]), float(total.Q[0]))
 
     @cached_property
     def _own(self) -> _Sums:

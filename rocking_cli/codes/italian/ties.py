@@ -11,8 +11,9 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.displaced import Displaced
 from rocking_cli.core import Mechanism
-from rocking_cli.core.attached import ConstantForce, Follow, Spot, Spring
-from rocking_cli.core.ties import Tie
+from rocking_cli.core.hung.attached import Follow, Spot
+from rocking_cli.core.hung.elements import ConstantForce, Spring
+from rocking_cli.core.hung.ties import Tie
 
 STRETCHED = 0.02
 """Elongation of a tie over its length from which the output warns: steel yields at a tenth of it."""
@@ -49,7 +50,7 @@ def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
     lengths = {tie.name: tie.length or tie.span for tie in chain.mechanism.ties or [] if tie.bed is None}
     loads = {load.name for load in chain.mechanism.loads or []}
     found = []
-    for thing in chain.mechanism.attached:
+    for thing in chain.mechanism.hung.elements:
         if isinstance(thing, Spring):
             e = thing.elongation(follow)[0]
             found.append(
@@ -96,7 +97,7 @@ def carried(curve: ExactCurve, d: float) -> dict[str, float]:
     """What each elastic tie carries at a displacement [N], tension positive, by its name; beds are not among them."""
     chain, phi = curve.chain, curve.rotation(d)
     follow = chain.mechanism.followed(np.array([phi]), chain.direction)
-    bars = [each for each in chain.mechanism.attached if isinstance(each, Spring) and each.stiffness > 0]
+    bars = [each for each in chain.mechanism.hung.elements if isinstance(each, Spring) and each.stiffness > 0]
     return {bar.name: float(bar.force(bar.elongation(follow)[0])[0]) for bar in bars}
 
 

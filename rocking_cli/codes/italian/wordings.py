@@ -14,7 +14,7 @@ from rocking_cli.codes.italian.remarks import TEXTS
 from rocking_cli.codes.italian.results import Method, State, Verified
 from rocking_cli.codes.italian.rules import FURTHER, RULES, STATES
 from rocking_cli.codes.italian.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
-from rocking_cli.core.ties import Tie
+from rocking_cli.core.hung.ties import Tie
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.told import Told
 

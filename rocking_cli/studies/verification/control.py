@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.attachments import Carrier, Refused
+from rocking_cli.core.hung.attachments import Carrier, Refused
 from rocking_cli.errors import InputError, Problem
 
 

@@ -17,7 +17,7 @@ from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.codes.italian.sheet.chain import Scale
 from rocking_cli.codes.italian.ties import pulls
-from rocking_cli.core.attached import Spot
+from rocking_cli.core.hung.attached import Spot
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
 from rocking_cli.views.sheet.language import Language

@@ -6,8 +6,9 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from rocking_cli.core.attached import ConstantForce, PointMass, Spot
 from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, point, quantity
+from rocking_cli.core.hung.attached import PointMass, Spot
+from rocking_cli.core.hung.elements import ConstantForce
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Newtons = Annotated[float, Field(ge=-1e12, le=1e12)]

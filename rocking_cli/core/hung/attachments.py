@@ -10,13 +10,15 @@ import numpy as np
 from pydantic import ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from rocking_cli.core.attached import Attached, Follow, Path, Spot, springs_of
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.fields import geometry_error
+from rocking_cli.core.hung.attached import Attached, Follow, Path, Spot
+from rocking_cli.core.hung.element import Element
+from rocking_cli.core.hung.interlock import Interlock
+from rocking_cli.core.hung.loads import Load
+from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
-from rocking_cli.core.loads import Load
 from rocking_cli.core.sketch import Outline, Sketch
-from rocking_cli.core.ties import Tie
 from rocking_cli.text import did_you_mean
 
 OUTSIDE = 1e-6  # of the size of a body: how far outside it a point may be by rounding
@@ -171,6 +173,16 @@ def attach(
         yield loc, tie.attached(spots, max(carrier.count(body, each=tie.each) for body in bodies))
 
 
+def interlocked(interlock: Interlock, carrier: Carrier, density: float | None, gravity: float) -> Attached:
+    """What the equation of motion sees of the walls that cross a structure. Raises `Refused`."""
+    loc, density = ("interlock",), interlock.density or density
+    if density is None:
+        raise Refused(loc, "density", "is missing: the weight of the crossing walls is their friction")
+    foot = carrier.foot(interlock.body, loc)
+    carrier.spot(foot.body, foot.at + 1j * interlock.height, loc, "height")
+    return interlock.attached(foot, density, gravity)
+
+
 def far_off(carrier: Carrier, loads: Sequence[Load]) -> Iterator[str]:
     """Say which loads lie further from their bodies than these are large, a sentence each without a full stop."""
     for load in loads:
@@ -204,19 +216,19 @@ def _spots(carrier: Carrier, tie: Tie, loc: Loc) -> Iterator[Spot]:
             yield carrier.spot(place.body, place.point, where, "at")
 
 
-def check_stretched(loc: Loc, tie: Attached, follow: Mapping[Direction, Callable[[Reals], Follow]], limits: Mapping[
-    Direction, float]) -> None:  # fmt: skip
+def check_stretched(
+    loc: Loc, tie: Element, followed: Callable[[Reals, Direction], Follow], limits: Mapping[Direction, float]
+) -> None:
     """Refuse a tie that no motion ever stretches, or in the one sense in which it can act."""
-    springs = springs_of(tie)
-    for spring in springs:
-        long = max(1.0, *(abs(b.at - a.at) for a, b in pairwise(spring.spots)))
+    for part in tie.stretched:
+        long = max(1.0, *(abs(b.at - a.at) for a, b in pairwise(part.spots)))
         for direction, limit in limits.items():
-            e, _, _ = spring.elongation(follow[direction](np.linspace(0.0, limit, LOOKED_AT)[:-1]))
-            counts = spring.force(e) != 0 if spring.only is not None else np.abs(e) > STRETCHED * long
+            e, _, _ = part.elongation(followed(np.linspace(0.0, limit, LOOKED_AT)[:-1], direction))
+            counts = part.force(e) != 0 if part.only is not None else np.abs(e) > STRETCHED * long
             if (counts & (np.abs(e) > STRETCHED * long)).any():
                 return
-    if springs:
-        sense = f" in {springs[0].only}" if springs[0].only else ""
+    if tie.stretched:
+        sense = f" in {tie.stretched[0].only}" if tie.stretched[0].only else ""
         raise Refused(
             loc, "name", f"nothing stretches {tie.name!r}{sense}: no motion of the structure changes its length"
         )

@@ -7,8 +7,10 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from rocking_cli.core.attached import Spot, Spring, SpringBed
 from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, point, quantity
+from rocking_cli.core.hung.attached import Spot
+from rocking_cli.core.hung.element import Element
+from rocking_cli.core.hung.elements import Spring, SpringBed
 
 LATER = {
     "yield": "a yield force",
@@ -149,12 +151,12 @@ class Tie(Described):
         assert self.area is not None and self.modulus is not None
         return self.area * self.modulus / (self.length or self.span)
 
-    def attached(self, spots: list[Spot], count: float) -> Spring | SpringBed:
+    def attached(self, spots: list[Spot], count: float) -> Element:
         """What the equation of motion sees of `count` such ties over these points; of a bed, the ends of its face."""
         if self.bed is not None:
             assert self.modulus is not None
             return SpringBed(self.name, spots[0], spots[1], self.modulus, count)
-        return Spring(self.name, tuple(spots), self.k, self.prestress, self.only, count)
+        return Spring(self.name, tuple(spots), self.k, self.prestress, only=self.only, count=count)
 
     def enlarged(self, factor: float) -> Tie:
         """The same tie on a structure of another size: where it runs is multiplied, its stiffness and force stay."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from rocking_cli.core.attached import ConstantForce, Spot
 from rocking_cli.core.fields import Described, Name, length, quantity
+from rocking_cli.core.hung.attached import Spot
+from rocking_cli.core.hung.elements import ConstantForce
 
 NAME = "interlock"
 SHARE = 0.4  # of the sliding force of all courses: the code's, for blocks that are laid with care

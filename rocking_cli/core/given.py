@@ -1,0 +1,225 @@
+"""What a file may say of every structure, whatever its mechanism: masses, restitution, loads, ties and supports."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from rocking_cli.core.fields import Described, Name, geometry_error, quantity
+from rocking_cli.core.hung.attachments import Refused
+from rocking_cli.core.hung.crushing import Crushing
+from rocking_cli.core.hung.interlock import Interlock
+from rocking_cli.core.hung.loads import Load
+from rocking_cli.core.hung.ties import Tie
+from rocking_cli.core.kinematics import Direction
+from rocking_cli.core.strength import Strength
+from rocking_cli.core.uncertainty import Uncertainty
+
+KINEMATIC = "kinematic"
+"""What a file says of a rebound that follows from the shape."""
+NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
+LATER = {"dampers": "a damper", "inerters": "an inerter"}
+"""What structures will have one day, and is refused by name until then."""
+POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # of a length, by the unit of a field
+
+
+def _is_mass(unit: object) -> bool:
+    return isinstance(unit, str) and re.match(r"(kg|t)\b", unit) is not None
+
+
+def _multiplied(value: Any, factor: float) -> Any:
+    """A number, or every number of a list, times a factor; what is no number stays."""
+    if isinstance(value, (list, tuple)):
+        return type(value)(_multiplied(each, factor) for each in value)
+    return value * factor if isinstance(value, float) else value
+
+
+Eta = Annotated[float, Field(gt=0, le=5)]  # how much it may be at most depends on the structure
+
+
+class DirectionalRestitution(Described):
+    """Coefficients of restitution that differ between the two impacts."""
+
+    positive_to_negative: Eta = Field(description="eta of an impact that ends positive rotation")
+    negative_to_positive: Eta = Field(description="eta of an impact that ends negative rotation")
+
+
+class Given(Described):
+    """The fields that every structure may have beside those of its mechanism, and what follows from them alone."""
+
+    name: Name | None = Field(None, description="what to call the structure")
+    gravity: float = Field(
+        9.80665, gt=0, le=1000, description="gravitational acceleration", json_schema_extra={"unit": "m/s2"}
+    )
+    restitution: Eta | DirectionalRestitution | None = Field(
+        None, description="coefficient of restitution eta; computed from kinematics if omitted"
+    )
+    density: float | None = quantity(
+        "density; with depth it gives the masses", unit="kg/m3", example=1800.0, default=None, gt=0, le=1e6
+    )
+    depth: float | None = quantity("size out of plane", unit="m", example=1.0, default=None, gt=0, le=1e6)
+    mass: float | None = quantity("mass of the whole structure", unit="kg", example=5000.0, default=None, gt=0, le=1e15)
+    one_sided: Literal["positive", "negative"] | None = Field(
+        None,
+        examples=["positive"],
+        description="the only direction it rocks in, such as away from side walls that it leans on",
+    )
+    rebound: float | None = quantity(
+        "rate after an impact on them over that before; of a plain rectangle also `kinematic`",
+        example=0.5,
+        default=None,
+        ge=0,
+        lt=1,
+    )
+    loads: list[Load] | None = Field(
+        None,
+        max_length=1000,
+        examples=[[{"name": "floor", "mass": 1000.0, "at": [0.0, 2.0]}]],
+        description="masses and forces on the structure; `rocking mechanisms loads` lists their fields",
+    )
+    ties: list[Tie] | None = Field(
+        None,
+        max_length=1000,
+        examples=[[{"name": "bar", "from": {"ground": [-3.0, 2.0]}, "to": {"at": [0.0, 2.0]}, "stiffness": 1e6}]],
+        description="ties, tendons and springs; `rocking mechanisms ties` lists their fields",
+    )
+    crushing: Crushing | None = Field(
+        None,
+        examples=[{"strength": 1e6}],
+        description="crushing strength at the pivots, which then move inwards; `rocking mechanisms crushing` lists its "
+        "fields",
+    )
+    interlock: Interlock | None = Field(
+        None,
+        examples=[{"courses": 10, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 2.0}],
+        description="friction of walls that cross it; `rocking mechanisms interlock` lists its fields",
+    )
+    friction: float | None = quantity(
+        "coefficient of friction of its joints, which time histories are checked against",
+        example=0.6,
+        default=None,
+        gt=0,
+        le=10,
+    )
+    uncertainty: Uncertainty | None = Field(
+        None,
+        examples=[{"slenderness": 0.05, "restitution": 0.02}],
+        description="how well it is known; `rocking mechanisms uncertainty` lists its fields",
+    )
+    opening: float = quantity(
+        "largest opening or slip of a joint up to which a time history holds, over the displacement at phi_cr",
+        example=0.005,
+        default=0.005,
+        ge=0,
+        le=1000,
+    )
+    strength: Strength | None = Field(
+        None,
+        examples=[{"stress": 3e6, "width": 0.05}],
+        description="strength of its contacts; `rocking mechanisms strength` lists its fields",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _not_yet(cls, data: Any) -> Any:
+        for key in LATER:
+            if isinstance(data, dict) and key in data and key not in cls.model_fields:
+                raise geometry_error(key, f"{LATER[key]} is not in this version: leave it out")
+        return data
+
+    @model_validator(mode="before")
+    @classmethod
+    def _rebound_from_impacts(cls, data: Any) -> Any:
+        """Leave `rebound: kinematic` to the theory of impacts, as if it were not given."""
+        if not isinstance(data, dict) or data.get("rebound") != KINEMATIC:
+            return data
+        if data.get("one_sided") is None:
+            raise geometry_error("rebound", NEEDS_A_SIDE)
+        return {**data, "rebound": None}
+
+    @model_validator(mode="after")
+    def _crushes_under_a_weight(self) -> Self:
+        if self.crushing is not None and not self.has_mass:
+            raise geometry_error("crushing", "needs the weight of the structure: give density and depth, or its mass")
+        if self.crushing is not None and self.crushing.depth is None and self.depth is None:
+            raise geometry_error(("crushing", "depth"), "is missing: give the length of the pivot out of plane")
+        return self
+
+    @property
+    def restitution_is_kinematic(self) -> bool:
+        """Whether no restitution is given, so that it follows from the shape."""
+        return (self.restitution if self.rocks_both_ways else self.rebound) is None
+
+    @property
+    def directions(self) -> Sequence[Direction]:
+        """The directions it can rock in."""
+        return list(Direction) if self.one_sided is None else [Direction[self.one_sided.upper()]]
+
+    @property
+    def sides(self) -> tuple[Direction, Direction]:
+        """The directions that stand for positive and negative motion; where there is one only, it does for both."""
+        return self.directions[0], self.directions[-1]
+
+    @property
+    def rocks_both_ways(self) -> bool:
+        """Whether no support keeps it to one side."""
+        return self.one_sided is None
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether the file gives masses. Without them, moments and inertias are per kilogram of the whole structure.
+
+        By default: whether a field is given whose unit is of mass, such as kg or kg/m3. A mechanism that knows its
+        masses otherwise overrides this.
+        """
+        extras = {key: info.json_schema_extra for key, info in type(self).model_fields.items()}
+        of_mass = [key for key, extra in extras.items() if isinstance(extra, dict) and _is_mass(extra.get("unit"))]
+        return any(getattr(self, key) is not None for key in of_mass)
+
+    @property
+    def is_laden(self) -> bool:
+        """Whether loads, ties or crossing walls are given."""
+        return bool(self.loads or self.ties or self.interlock)
+
+    @property
+    def given_depth(self) -> float:
+        """Size out of plane that `density` needs [m]. Raises `Refused` if the file gives none."""
+        if self.depth is None:
+            raise Refused((), "depth", "is missing: density needs the size out of plane")
+        return self.depth
+
+    def enlarged(self, factor: float) -> Self:
+        """A structure of another size: every field in m, m2, m3 or kg m2 is multiplied, all else stays.
+
+        Parameters
+        ----------
+        factor : float
+            On every length, > 0.
+
+        Returns
+        -------
+        Mechanism
+            Masses and loads that are given as such do not grow with it, so that it need not behave alike; where loads
+            and ties are is multiplied.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            If a field is then out of its bounds.
+        """
+        changed: dict[str, Any] = {}
+        for key, field in type(self).model_fields.items():
+            unit = field.json_schema_extra.get("unit") if isinstance(field.json_schema_extra, dict) else None
+            power, value = POWERS.get(str(unit)), getattr(self, key)
+            if power is not None:
+                changed[key] = _multiplied(value, factor**power)
+            elif isinstance(value, list) and value and hasattr(value[0], "enlarged"):
+                changed[key] = [thing.enlarged(factor) for thing in value]
+            elif isinstance(value, dict) and any(hasattr(thing, "enlarged") for thing in value.values()):
+                changed[key] = {name: thing.enlarged(factor) for name, thing in value.items()}
+            elif hasattr(value, "enlarged"):
+                changed[key] = value.enlarged(factor)
+        return self.model_copy(update=changed)

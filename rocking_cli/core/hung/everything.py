@@ -1,0 +1,110 @@
+"""Everything that hangs on a mechanism, and what follows from all of it together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rocking_cli.core.coefficients import Coefficients
+from rocking_cli.core.hung.attached import Attached, Follow, PointMass
+from rocking_cli.core.hung.attachments import Loc, check_stretched
+from rocking_cli.core.hung.element import Element, Question, Stretched, refusal
+from rocking_cli.core.hung.elements import ConstantForce
+from rocking_cli.core.kinematics import Direction, Reals
+
+
+@dataclass(frozen=True, eq=False)
+class Hung:
+    """The loads, forces and ties of a structure, and the friction of walls that cross it.
+
+    Parameters
+    ----------
+    placed : sequence of (tuple, Attached)
+        Each with its place among the fields of the structure.
+    """
+
+    placed: Sequence[tuple[Loc, Attached]]
+
+    @cached_property
+    def things(self) -> Sequence[Attached]:
+        """All of them, as the equation of motion sees them."""
+        return [thing for _, thing in self.placed]
+
+    @cached_property
+    def elements(self) -> Sequence[Element]:
+        """Those whose force follows from their elongation."""
+        return [thing for thing in self.things if isinstance(thing, Element)]
+
+    @property
+    def masses(self) -> Sequence[PointMass]:
+        """The loads that have a mass."""
+        return [thing for thing in self.things if isinstance(thing, PointMass)]
+
+    @property
+    def ties(self) -> Sequence[Element]:
+        """The elements that are stretched: ties and beds of springs."""
+        return [each for each in self.elements if each.stretched]
+
+    @cached_property
+    def one_sided(self) -> Sequence[Stretched]:
+        """The ties that act in one sense only."""
+        return [tie for each in self.elements for tie in each.stretched if tie.only is not None]
+
+    def refuses(self, question: Question) -> str | None:
+        """Why the elements let a question not be answered, in the words of the first that does not; None if all do."""
+        return refusal(self.elements, question)
+
+    def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
+        """Add their shares to coefficients."""
+        for thing in self.things:
+            thing.act(total, direction, follow)
+
+    def slackness(self, follow: Follow, count: int) -> Reals:
+        """For each tie that acts in one sense only: what is zero where it goes slack, shape (ties, count)."""
+        if not self.one_sided:
+            return np.zeros((0, count))
+        return np.array([each.slack_at(each.elongation(follow)[0]) for each in self.one_sided])
+
+    def pressing(self, on: Container[str | None], direction: Direction, follow: Follow, gravity: float) -> float:
+        """The downward force at rest of what hangs on some bodies [N].
+
+        Parameters
+        ----------
+        on : container of str
+            Names of the bodies.
+        direction : Direction
+            Of rocking, which decides where a tie without length at rest points to.
+        follow : callable
+            The paths of points, at rest.
+        gravity : float
+            [m/s2].
+        """
+        weights = (thing.mass * thing.weight for thing in self.masses if thing.spot.body in on)
+        pushes = (push for thing in self.things for push in thing.forces(direction, follow) if push.spot.body in on)
+        return gravity * sum(weights) - sum(float(push.force.imag[0]) for push in pushes)
+
+    @property
+    def carried(self) -> float:
+        """The mass of the loads that counts as weight [kg]."""
+        return sum(thing.mass * thing.weight for thing in self.masses)
+
+    @property
+    def lifting(self) -> float:
+        """The upward part of constant forces [N]."""
+        return sum(each.thrust.imag for each in self.elements if isinstance(each, ConstantForce))
+
+    def check_stretched(
+        self,
+        followed: Callable[[Reals, Direction], Follow],
+        limit: Callable[[Direction], float],
+        directions: Sequence[Direction],
+    ) -> None:
+        """Refuse ties that no motion of a structure stretches, up to its limits."""
+        if self.ties:
+            limits = {direction: limit(direction) for direction in directions}
+            for loc, thing in self.placed:
+                if isinstance(thing, Element):
+                    check_stretched(loc, thing, followed, limits)
