@@ -13,6 +13,7 @@ from pydantic import ValidationError
 
 from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
 from rocking_cli.core.advice import uplift_error
+from rocking_cli.core.hung.element import Question
 from rocking_cli.core.statics import STRAIGHT
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
@@ -88,6 +89,8 @@ class Structure:
         """
         if self.why_no_block is not None or not self.mechanism.bends:
             return None
+        if why := self.refuses("linear models"):
+            return why
         far = max(each.departure for each in self.statics)
         off = uplift_error(self.equivalence)
         if far > STRAIGHT:
@@ -101,6 +104,15 @@ class Structure:
                 f"{1 + off:.3g} times its own"
             )
         return None
+
+    def refuses(self, question: Question) -> str | None:
+        """Why what hangs on it does not let a question be answered, as a sentence; None if it does."""
+        return self.mechanism.hung.refuses(question)
+
+    def ask(self, question: Question) -> None:
+        """Raise `InputError`, naming it, if what hangs on it does not let a question be answered."""
+        with self._named():
+            self.mechanism.hung.ask(question)
 
     @property
     def default_models(self) -> tuple[ModelName, ...]:

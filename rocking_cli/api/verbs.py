@@ -855,7 +855,7 @@ def linearisation(
     from rocking_cli.views import error as views
 
     ready = _structure(structure)
-    curves, found = compare(ready.mechanism, ready.equivalence, at, a)
+    curves, found = compare(ready, at, a)
 
     def columns() -> Columns:
         return {

@@ -66,13 +66,12 @@ def command(
 
     keep_apart([("--plot", plot)], [file])
     structure = structures.prepared([file] if file else [])
-    blocks = structure.equivalence
     try:
-        curves, asked = compare(structure.mechanism, blocks, amplitudes, accelerations)
+        curves, asked = compare(structure, amplitudes, accelerations)
     except MechanismError as error:
         raise of_structure(error, structure.name) from error
     if plot is not None:
         from rocking_cli.plotting.linearisation import draw_linearisation
 
         write_picture(plot, draw_linearisation(curves, asked, heading(structure.mechanism)))
-    terminal.show(view(structure.mechanism, blocks, curves, asked), as_json=as_json)
+    terminal.show(view(structure.mechanism, structure.equivalence, curves, asked), as_json=as_json)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, SerializeAsAny, model_validator
 
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.hung.attachments import Refused
@@ -80,7 +80,7 @@ class Given(Described):
         examples=[[{"name": "floor", "mass": 1000.0, "at": [0.0, 2.0]}]],
         description="masses and forces on the structure; `rocking mechanisms loads` lists their fields",
     )
-    ties: list[Tie] | None = Field(
+    ties: list[SerializeAsAny[Tie]] | None = Field(
         None,
         max_length=1000,
         examples=[[{"name": "bar", "from": {"ground": [-3.0, 2.0]}, "to": {"at": [0.0, 2.0]}, "stiffness": 1e6}]],

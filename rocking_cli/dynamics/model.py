@@ -208,6 +208,7 @@ def build(
     if name == "nonlinear":
         model = _nonlinear(label, mechanism, statics, etas)
     else:
+        mechanism.hung.ask("linear models")
         assert equivalence is not None
         model = linear_model(label, name, (equivalence.positive, equivalence.negative), mechanism.gravity)
         if mechanism.attached:

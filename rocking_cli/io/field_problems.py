@@ -249,9 +249,9 @@ def _held(model: type[BaseModel], place: Place) -> list[tuple[Any, Any]]:
 
 
 def _choices(annotation: Any) -> list[Any]:
-    """Models, mappings and plain types that an annotation allows, also as entries of a list."""
+    """Models with their other kinds, mappings and plain types that an annotation allows, also as entries of a list."""
     if get_origin(annotation) is dict or not get_args(annotation):
-        return [annotation]
+        return [annotation, *(annotation.kinds() if hasattr(annotation, "kinds") else ())]
     return [inner for part in get_args(annotation) for inner in _choices(part)]
 
 

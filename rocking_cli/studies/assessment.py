@@ -312,8 +312,10 @@ def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequ
     if structure.why_no_block is not None:
         why = structure.why_no_block.removeprefix(f"{structure.name}: ")
         return [], [], f"No equivalent block exists here, so there is no error to report: {why}."
+    if (refused := structure.refuses("linear models")) is not None:
+        return [], [], f"The error of the equivalent block is left out: {refused}."
     try:
-        curves, asked = compare(structure.mechanism, structure.equivalence, AMPLITUDES, ACCELERATIONS)
+        curves, asked = compare(structure, AMPLITUDES, ACCELERATIONS)
         return curves, asked, trust(curves, asked)
     except SolverError as error:  # the rest of the report stands without it
         return [], [], f"The error of the equivalent block is left out: {error}."
@@ -388,7 +390,7 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
 
 def _alone(structure: Structure, fit: PulseFit, polarities: Sequence[int]) -> tuple[float, bool]:
     """The largest peak ratio under a pulse, NaN if it overturns, and whether the outcome is unknown."""
-    if structure.why_no_block is not None:  # by what nothing is measured here
+    if structure.why_no_block or structure.refuses("sizes"):  # nothing measures a pulse here
         alone, model = fit.pulse.sampled(), structure.model("nonlinear")
         runs = [follow(model, alone.scaled(polarity * fit.sign)) for polarity in polarities]
         if any(run.overturned for run in runs):
@@ -408,8 +410,8 @@ def _shape(pulse: Pulse) -> Pulse:
 
 def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMap]:
     """A map for each shape among the best pulses; of the sine if there is none."""
-    if structure.why_no_block is not None or min(structure.etas) <= 0:
-        return []  # pulses have nothing to be measured by, or no history of it can be computed
+    if structure.why_no_block or structure.refuses("sizes") or min(structure.etas) <= 0:
+        return []  # nothing measures a pulse here, or no history can be computed
     marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
     for result in results:
         if result.fits:

@@ -190,6 +190,7 @@ def _name(mechanism: Mechanism) -> str:
 
 def _equivalence(mechanism: Mechanism) -> Equivalence:
     try:
+        mechanism.hung.ask("linear models")
         return equivalent_block(mechanism)
     except MechanismError as error:
         raise of_structure(error, _name(mechanism)) from error

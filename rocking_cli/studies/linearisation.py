@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.errors import InputError, SolverError
+from rocking_cli.structure import Structure
 
 Reals = NDArray[np.float64]
 PRECISION = 1e-10  # relative change at which doubling the nodes stops
@@ -145,9 +146,11 @@ def linearisation(
 
 
 def compare(
-    mechanism: Mechanism, equivalence: Equivalence, amplitudes: Sequence[float], accelerations: Sequence[float]
+    structure: Structure, amplitudes: Sequence[float], accelerations: Sequence[float]
 ) -> tuple[list[Linearisation], list[Linearisation]]:
     """Return the curves and the requested values, of one direction if both are alike; see `linearisation`."""
+    structure.ask("linear models")
+    mechanism, equivalence = structure.mechanism, structure.equivalence
     directions = [mechanism.directions[0]] if equivalence.symmetric else list(Direction)
     r = np.linspace(0.01, 0.99, CURVE)
     a = np.geomspace(1.02, max(STRONGEST, *accelerations), CURVE)

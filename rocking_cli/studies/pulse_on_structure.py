@@ -27,6 +27,7 @@ def sampled_histories(structure: Structure, pulse: Pulse, polarity: int) -> dict
 
     Neither have they where a structure rocks to one side only.
     """
+    structure.ask("linear models")
     exact = pulse.segments() and structure.mechanism.rocks_both_ways
     models = structure.models(["nonlinear"] if exact else [*KAPPAS, "nonlinear"])
     return {model.name: sampled_history(model, pulse, polarity) for model in models}

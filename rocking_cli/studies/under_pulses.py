@@ -153,6 +153,7 @@ def pulsed_model(
     if eta is not None:
         check_eta(eta)
         structure = structure.with_eta(eta)
+    structure.ask("sizes")
     direction = weakest(structure.equivalence, shape, polarities)
     if not structure.mechanism.rocks_both_ways:
         direction = structure.mechanism.directions[0]

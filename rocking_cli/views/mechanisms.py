@@ -95,6 +95,11 @@ def part(name: str) -> View:
         rows = fields(model)
         data["fields"][where or name] = rows
         tables += [Table(f"{name}: {title}" if not where else f"{where}: {model.__doc__}", COLUMNS, _cells(rows))]
+    for kind in Tie.kinds() if name == "ties" else ():
+        rows = [row for row in fields(kind, Tie) if not row["common"] and row["field"] != "law"]
+        where = f"law: {kind.model_fields['law'].default}"
+        data["fields"][where] = rows
+        tables += [Table(f"{where}: {kind.__doc__}", COLUMNS, _cells(rows))]
     return View(data, tables)
 
 

@@ -170,7 +170,7 @@ def attach(
         bodies = [spot.body for spot in spots if spot.body is not None]
         if not bodies:
             raise Refused(loc, "from", "both ends are on the ground, so no motion stretches it")
-        yield loc, tie.attached(spots, max(carrier.count(body, each=tie.each) for body in bodies))
+        yield loc, tie.element(spots, max(carrier.count(body, each=tie.each) for body in bodies))
 
 
 def interlocked(interlock: Interlock, carrier: Carrier, density: float | None, gravity: float) -> Attached:

@@ -9,7 +9,7 @@ themselves: whether they remember, whether they resist by their rate, and whethe
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass
 from itertools import pairwise
 from typing import Any, ClassVar, Literal
@@ -23,7 +23,13 @@ from rocking_cli.core.kinematics import Direction, Points, Reals
 
 Sense = Literal["tension", "compression"]
 Question = Literal["linear models", "equivalent block", "sizes", "verification"]
-"""What a structure may be asked beside its nonlinear history; `sizes` are spectra and maps, which scale it."""
+NO_ANSWER: dict[Question, str] = {
+    "linear models": "the linear models do not hold",
+    "equivalent block": "no single block is equivalent to it",
+    "sizes": "spectra and maps do not hold, as they scale the structure or its motion",
+    "verification": "no code of practice here covers it",
+}
+"""What a structure may be asked beside its nonlinear history, and what is said where its elements do not allow it."""
 
 TOGETHER = 1e-9  # m, and of the distance from the origin: points that are nearer at rest are one
 ROUNDING = 1e-14  # m, and of that distance: elongations that are none
@@ -92,11 +98,6 @@ class Element(ABC):
         if not self.is_linear and question in ("linear models", "verification"):
             return self.departs or "has a force that is no straight line over its elongation"
         return None
-
-
-def refusal(elements: Iterable[Element], question: Question) -> str | None:
-    """Why elements let a question not be answered, in the words of the first that does not; None if all do."""
-    return next((f"{each.name} {why}" for each in elements if (why := each.refuses(question))), None)
 
 
 @dataclass(frozen=True)

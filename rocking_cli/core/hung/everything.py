@@ -11,9 +11,10 @@ import numpy as np
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass
 from rocking_cli.core.hung.attachments import Loc, check_stretched
-from rocking_cli.core.hung.element import Element, Question, Stretched, refusal
+from rocking_cli.core.hung.element import NO_ANSWER, Element, Question, Stretched
 from rocking_cli.core.hung.elements import ConstantForce
 from rocking_cli.core.kinematics import Direction, Reals
+from rocking_cli.errors import InputError, Problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +55,14 @@ class Hung:
         return [tie for each in self.elements for tie in each.stretched if tie.only is not None]
 
     def refuses(self, question: Question) -> str | None:
-        """Why the elements let a question not be answered, in the words of the first that does not; None if all do."""
-        return refusal(self.elements, question)
+        """Why a question has no answer, as a sentence in the words of the first element at fault; None if it has."""
+        found = ((each.name, each.refuses(question)) for each in self.elements)
+        return next((f"{NO_ANSWER[question]}: {name} {why}" for name, why in found if why), None)
+
+    def ask(self, question: Question) -> None:
+        """Raise `InputError` if the elements do not let a question be answered."""
+        if why := self.refuses(question):
+            raise InputError(Problem(why, field="ties"))
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
         """Add their shares to coefficients."""

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cache
+from importlib.metadata import EntryPoint
 from itertools import pairwise
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, cast
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 
 from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, point, quantity
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import Element
 from rocking_cli.core.hung.elements import Spring, SpringBed
+from rocking_cli.errors import MechanismError
+from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.registry import Plugins
+from rocking_cli.text import did_you_mean
 
 LATER = {
     "yield": "a yield force",
@@ -66,7 +73,10 @@ class Face(Described):
 
 
 class Tie(Described):
-    """An elastic tie between two points, along a path of more, or a bed of springs along a face."""
+    """An elastic tie between two points, along a path of more, or a bed of springs along a face.
+
+    A tie of another law derives from it: it adds its fields and gives its own `element`, see `Laws`.
+    """
 
     model_config = ConfigDict(validate_by_name=True)
 
@@ -90,11 +100,27 @@ class Tie(Described):
     only: Literal["tension", "compression"] | None = Field(None, description="the one sense in which it can act")
     each: bool = Field(False, description="whether each of several bodies that move alike has one")
 
+    @model_validator(mode="wrap")
+    @classmethod
+    def _by_its_law(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Leave a tie that names an installed law to the class of that law."""
+        if cls is not Tie or not isinstance(data, dict) or "law" not in data or not laws():
+            return handler(data)
+        if (law := data["law"]) not in laws():
+            guess = did_you_mean(str(law), list(laws())) or f"known: {', '.join(laws())}"
+            raise geometry_error("law", f"there is no law {law!r}: {guess}")
+        return cast("Self", laws()[law].model_validate(data))
+
+    @classmethod
+    def kinds(cls) -> Sequence[type[Tie]]:
+        """The ties of other laws, whose fields may stand where this one's may."""
+        return list(laws().values()) if cls is Tie else ()
+
     @model_validator(mode="before")
     @classmethod
     def _not_yet(cls, data: Any) -> Any:
         for key in LATER:
-            if isinstance(data, dict) and key in data:
+            if isinstance(data, dict) and key in data and key not in cls.model_fields:
                 raise geometry_error(key, f"{LATER[key]} of a tie is not supported in this version: leave it out")
         return data
 
@@ -151,7 +177,7 @@ class Tie(Described):
         assert self.area is not None and self.modulus is not None
         return self.area * self.modulus / (self.length or self.span)
 
-    def attached(self, spots: list[Spot], count: float) -> Element:
+    def element(self, spots: Sequence[Spot], count: float) -> Element:
         """What the equation of motion sees of `count` such ties over these points; of a bed, the ends of its face."""
         if self.bed is not None:
             assert self.modulus is not None
@@ -168,3 +194,33 @@ class Tie(Described):
         if self.bed is None:
             moved |= {"stiffness": self.k, "area": None, "modulus": None, "length": None}
         return self.model_copy(update=moved)
+
+
+class Laws(Plugins[type[Tie]]):
+    """Ties of other laws than the elastic one, by what files call the law: the entry points `rocking.laws`.
+
+    Raises
+    ------
+    InputError
+        On looking up an unknown name.
+    MechanismError
+        On looking up a plugin that cannot be loaded, is no tie, or has a name that two packages claim.
+    """
+
+    kind = "law"
+
+    def __init__(self) -> None:
+        super().__init__("rocking.laws")
+
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> type[Tie]:
+        """What was loaded, if it is a tie that has a field `law`."""
+        if not (isinstance(loaded, type) and issubclass(loaded, Tie) and "law" in loaded.model_fields):
+            raise MechanismError(f"{origin(point)} is not a law: it must derive from Tie and have a field `law`")
+        return loaded
+
+
+@cache
+def laws() -> Laws:
+    """The laws there are."""
+    return Laws()

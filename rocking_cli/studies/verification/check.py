@@ -77,6 +77,7 @@ def verify(
         If the structure does not stand.
     """
     refuse(site, control=control is not None)
+    structure.ask("verification")
     structure.statics  # noqa: B018 - what does not stand, or jumps, is refused with its name
     code = code_of(site)
     taken = {"control": control} if code.takes_control else {}
