@@ -19,6 +19,7 @@ from rocking_cli.core.hung.element import Element
 from rocking_cli.core.hung.elements import ConstantForce, Spring, SpringBed
 from rocking_cli.core.hung.ties import Tie, laws
 from rocking_cli.plugins import registry
+from rocking_cli.testing import check_law
 from tests.conftest import EXAMPLES
 from tests.stiffening import Cubic
 from tests.test_cli import run, run_json
@@ -99,6 +100,39 @@ def test_the_moment_of_an_element_is_its_force_times_the_rate_of_its_elongation(
     assert approx(many * element.force(e) * first, rel=1e-12) == total.Q
     assert total.dQ == approx(many * (element.slope(e, first) * first**2 + element.force(e) * second), rel=1e-9)
     assert approx(many * element.energy(e), rel=1e-12) == total.U
+
+
+@pytest.mark.parametrize("name", ELEMENTS)
+def test_the_laws_of_all_elements_hold_together(name):
+    check_law(ELEMENTS[name], -0.07, 0.05)
+
+
+class Slope(Cubic):
+    def slope(self, e, going):
+        return self.stiffness + 2 * self.cubic * e**2
+
+
+class Energy(Cubic):
+    def energy(self, e):
+        return self.prestress * e + self.stiffness * e**2 / 2
+
+
+class Rest(Cubic):
+    def energy(self, e):
+        return super().energy(e) + 1.0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (Slope, "cable: its slope is not the derivative of its force, at e = -0.07 m"),
+        (Energy, "cable: its energy is not the integral of its force, at e = -0.07 m"),
+        (Rest, "cable: its energy is not 0 at rest"),
+    ],
+)
+def test_a_law_that_does_not_hold_together_is_found(wrong, said):
+    with pytest.raises(AssertionError, match=f"^{said}$"):
+        check_law(wrong("cable", RING, 1e5, 2e3, 4e6), -0.07, 0.05)
 
 
 def test_elements_say_what_may_be_asked_of_them():

@@ -1,6 +1,7 @@
-"""Contracts of mechanisms and of codes of practice, as test classes for authors of plugins."""
+"""Contracts of mechanisms, codes of practice and laws of ties, for tests of their authors."""
 
 from rocking_cli.testing.code import CodeContract as CodeContract
+from rocking_cli.testing.element import check_law as check_law
 from rocking_cli.testing.mechanism import CHECKS as CHECKS
 from rocking_cli.testing.mechanism import MechanismContract as MechanismContract
 from rocking_cli.testing.mechanism import contract as contract

@@ -1,0 +1,49 @@
+"""Whether a law holds together: the slope is the derivative of the force, and that of the energy is the force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rocking_cli.core import Element
+
+POINTS = 20_001  # between which force and energy are compared
+ROUNDING = 1e-6  # of the largest value: more than differences of so many points leave
+
+
+def check_law(element: Element, shortest: float, longest: float) -> None:
+    """Hold the law of an element to itself over a range of elongations.
+
+    Parameters
+    ----------
+    element : Element
+        Any without memory or rate.
+    shortest, longest : float
+        The range [m]; 0 need not be in it.
+
+    Raises
+    ------
+    AssertionError
+        If its energy at rest is not 0, its energy is not the integral of its force, or its slope not the derivative of
+        its force.
+
+    Examples
+    --------
+    >>> from rocking_cli.core import Spot
+    >>> from rocking_cli.core.hung.elements import Spring
+    >>> check_law(Spring("bar", (Spot(None, 0j), Spot("block", 3j)), 1e6, 2e4, only="tension"), -0.05, 0.05)
+    """
+    e = np.linspace(shortest, longest, POINTS)
+    force, energy, slope = element.force(e), element.energy(e), element.slope(e, np.ones(POINTS))
+    _demand(abs(float(element.energy(np.zeros(1))[0])) == 0, element, "its energy is not 0 at rest")
+    step = e[1] - e[0]
+    # Between two points that have no corner between them, whose slopes say what the change must be.
+    for value, rate, said in ((energy, force, "its energy is not the integral of its force"),
+                              (force, slope, "its slope is not the derivative of its force")):  # fmt: skip
+        change, mean = np.diff(value), step / 2 * (rate[1:] + rate[:-1])
+        off = np.abs(change - mean) > np.abs(np.diff(rate)) * step + ROUNDING * np.abs(mean).max()
+        _demand(not off.any(), element, f"{said}, at e = {e[int(off.argmax())]:.4g} m")
+
+
+def _demand(holds: bool, element: Element, said: str) -> None:
+    if not holds:
+        raise AssertionError(f"{element.name}: {said}")
