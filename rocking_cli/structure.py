@@ -46,7 +46,7 @@ class Structure:
     Parameters
     ----------
     mechanism : Mechanism
-        What it is, with what hangs on it.
+        What it is, with what is attached to it.
     file : str, optional
         Where it stands, for errors of its fields that show only when they are used.
     """
@@ -106,11 +106,11 @@ class Structure:
         return None
 
     def refuses(self, question: Question) -> str | None:
-        """Why what hangs on it does not let a question be answered, as a sentence; None if it does."""
+        """Return why its elements leave a question without an answer, as a sentence; None if they do not."""
         return self.mechanism.hung.refuses(question)
 
     def ask(self, question: Question) -> None:
-        """Raise `InputError`, naming it, if what hangs on it does not let a question be answered."""
+        """Raise `InputError`, with its file, if its elements leave a question without an answer."""
         with self._named():
             self.mechanism.hung.ask(question)
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from rocking_cli.core import Element, Reals, Spot, Stretched, Tie, quantity
+from rocking_cli.core import Reals, Spot, quantity
+from rocking_cli.core.hung import Element, Stretched, Tie
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Plugins written before what hangs on a structure was told from its mechanism work as they did, unchanged."""
+"""Plugins written before a structure had `hung` work as they did, unchanged."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ CRUSHED = {**OWN, "crushing": {"strength": 1e6}}
 GAVE = {
     "bare": ({}, 0.2971428571, 0.2888335056, 0.881097561, 0.7404938989, 0.2149137435, [3.0, 1.3]),
     "laden": (OWN, 0.2939434724, 0.2599958073, 0.8888417624, 2102.611442, 0.2346890358, [3.0, 4200.0]),
-    "crushed": (CRUSHED, 0.2788098185, 0.2471621144, 0.8994323299, 1851.944469, 0.2904122643, [3.0, 4200.0, 0.020593965]),
+    "crushed": (
+        CRUSHED, 0.2788098185, 0.2471621144, 0.8994323299, 1851.944469, 0.2904122643,
+        [3.0, 4200.0, 0.020593965],
+    ),
     "tied": (TIED, 0.2898250162, 0.2691833073, 0.8884757901, 5097.491994, 0.2397632963, [3.0, 2150.0]),
 }  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from importlib.metadata import EntryPoint
 from textwrap import dedent
 
@@ -20,7 +21,7 @@ from rocking_cli.core.hung.elements import ConstantForce, Spring, SpringBed
 from rocking_cli.core.hung.ties import Tie, laws
 from rocking_cli.plugins import registry
 from rocking_cli.testing import check_law
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, PROJECT
 from tests.stiffening import Cubic
 from tests.test_cli import run, run_json
 
@@ -247,6 +248,14 @@ def test_the_fields_of_a_law_are_fields_of_its_tie(law, tmp_path, monkeypatch):
         assert says in refused("equiv", "wall.yaml")
     (tmp_path / "wall.yaml").write_text(STIFFENING.replace("law: stiffening", "law: stifening"))
     assert "ties[1].law: there is no law 'stifening': did you mean stiffening?" in refused("equiv", "wall.yaml")
+
+
+def test_the_law_of_the_guide_is_this_one():
+    section = (PROJECT / "docs" / "plugins.md").read_text(encoding="utf-8").partition("## A law of a tie\n")[2]
+    lines = section.partition("\n- `Stretched`")[0].splitlines()
+    code = "\n".join(line[4:] for line in lines if line.startswith("    ") or not line)
+    own = ast.parse((PROJECT / "tests" / "stiffening.py").read_text(encoding="utf-8")).body[2:]
+    assert ast.dump(ast.Module(own, [])) == ast.dump(ast.parse(code))
 
 
 def test_without_such_a_package_a_law_is_no_field(tmp_path):

@@ -25,9 +25,6 @@ from rocking_cli.core.fields import quantity as quantity
 from rocking_cli.core.hung.attached import Attached as Attached
 from rocking_cli.core.hung.attached import PointMass as PointMass
 from rocking_cli.core.hung.attached import Spot as Spot
-from rocking_cli.core.hung.element import Element as Element
-from rocking_cli.core.hung.element import Stretched as Stretched
-from rocking_cli.core.hung.ties import Tie as Tie
 from rocking_cli.core.joints import Joint as Joint
 from rocking_cli.core.kinematics import Direction as Direction
 from rocking_cli.core.kinematics import Reals as Reals

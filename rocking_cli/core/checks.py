@@ -85,11 +85,11 @@ def check_stands(given: Given, hung: Hung, mass: float, rest: AtRest, bare: AtRe
     given : Given
         The structure.
     hung : Hung
-        What hangs on it.
+        What is attached to it.
     mass : float
         Of its own bodies [kg].
     rest, bare : mapping
-        Its coefficients at rest, with what hangs on it and without.
+        Its coefficients at rest, with what is attached to it and without.
     """
     weight = given.gravity * (mass + hung.carried)
     if hung.lifting >= weight:

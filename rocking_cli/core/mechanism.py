@@ -283,7 +283,7 @@ class Mechanism(Given, ABC):
 
     @cached_property
     def hung(self) -> Hung:
-        """What hangs on it: its loads, forces and ties, and what it `carries` itself."""
+        """Its loads, forces and ties, and what it `carries` itself."""
         found: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if self.is_laden:
             taken = [*(thing.name for _, thing in found), *([INTERLOCK] if self.interlock is not None else [])]
@@ -303,7 +303,7 @@ class Mechanism(Given, ABC):
 
     @property
     def attached(self) -> Sequence[Attached]:
-        """All that hangs on it, as its equation of motion sees it."""
+        """All that is attached to it, as its equation of motion sees it."""
         return self.hung.things
 
     def slackness(self, phi: Reals, direction: Direction) -> Reals:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rocking_cli.core import Element
+from rocking_cli.core.hung import Element
 
 POINTS = 20_001  # between which force and energy are compared
 ROUNDING = 1e-6  # of the largest value: more than differences of so many points leave

@@ -1,1 +1,1 @@
-"""Plugins as they were written before what hangs on a structure was told from its mechanism; they stay as they are."""
+"""Plugins as they were written before a structure had `hung`; they stay as they are."""

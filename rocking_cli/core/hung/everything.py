@@ -1,4 +1,4 @@
-"""Everything that hangs on a mechanism, and what follows from all of it together."""
+"""Everything that is attached to a mechanism, and what follows from all of it together."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ class Hung:
         return [tie for each in self.elements for tie in each.stretched if tie.only is not None]
 
     def refuses(self, question: Question) -> str | None:
-        """Why a question has no answer, as a sentence in the words of the first element at fault; None if it has."""
+        """Return why a question has no answer, in the words of the first element at fault; None if it has one."""
         found = ((each.name, each.refuses(question)) for each in self.elements)
         return next((f"{NO_ANSWER[question]}: {name} {why}" for name, why in found if why), None)
 
     def ask(self, question: Question) -> None:
-        """Raise `InputError` if the elements do not let a question be answered."""
+        """Raise `InputError` if the elements leave a question without an answer."""
         if why := self.refuses(question):
             raise InputError(Problem(why, field="ties"))
 
@@ -76,7 +76,7 @@ class Hung:
         return np.array([each.slack_at(each.elongation(follow)[0]) for each in self.one_sided])
 
     def pressing(self, on: Container[str | None], direction: Direction, follow: Follow, gravity: float) -> float:
-        """The downward force at rest of what hangs on some bodies [N].
+        """Return the downward force at rest of what is attached to some bodies [N].
 
         Parameters
         ----------
