@@ -19,7 +19,7 @@ from matplotlib.ticker import NullFormatter
 from PIL import Image, ImageFilter
 from scipy.special import ndtr
 
-from rocking_cli.dynamics.history import History, respond
+from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
@@ -37,6 +37,7 @@ from rocking_cli.studies.overturning import OverturningMap, overturning_map
 from rocking_cli.studies.picture import picture
 from rocking_cli.studies.under_pulses import linear_block, parse_shape
 from tests.conftest import EXAMPLES
+from tests.following import respond
 
 FOLDER = Path(__file__).parent / "pictures"
 DPI = 60

@@ -13,7 +13,6 @@ import pytest
 from PIL import Image
 
 from mechanisms.block import Block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import style
@@ -22,6 +21,7 @@ from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.picture import picture
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.test_cli import run, run_json
 
 BLOCK = Block(width=0.7, height=2.8)

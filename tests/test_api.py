@@ -15,9 +15,9 @@ from pydantic import ValidationError
 import rocking_cli as rk
 from rocking_cli.api.answer import Answer
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics import history
 from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES, PROJECT
+from tests.following import respond
 from tests.test_cli import run_json
 
 ACCEL = str(EXAMPLES / "accel.csv")
@@ -88,7 +88,7 @@ def test_the_stub_is_not_stale(maker):
 
 def test_a_response_is_the_histories_and_the_json_of_the_command(wall):
     answer = rk.respond(wall, ACCEL)
-    alone = history.respond(wall, rk.read_record(ACCEL))
+    alone = respond(wall, rk.read_record(ACCEL))
     assert list(answer) == list(alone)
     for name, run in alone.items():
         assert answer[name].peak_ratio == run.peak_ratio

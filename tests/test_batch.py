@@ -16,11 +16,11 @@ from rocking_cli.core import Direction
 from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.model import MODELS, build_models
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from tests.following import respond
 from tests.unchecked import UncheckedFrame
 
 FRAME = {"spacing": 8.0, "left_height": 6.0, "right_height": 7.5, "column_width": 1.0, "beam_depth": 1.0, "depth": 1.0}

@@ -12,11 +12,11 @@ from rocking_cli import load_structure
 from rocking_cli.cli.main import main
 from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import exact_response
-from rocking_cli.dynamics.history import respond
-from rocking_cli.dynamics.model import build_models
 from rocking_cli.dynamics.pulse_response import closed_form
-from rocking_cli.dynamics.sampled_pulse import sampled_history
 from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.structure import Structure
+from rocking_cli.studies.sampled_pulse import sampled_history
+from tests.following import respond
 from tests.pulses import exact_pulse
 
 from .conftest import EXAMPLES
@@ -191,13 +191,11 @@ def test_a_narrow_terminal_and_a_pipe_keep_every_number(block, monkeypatch):
 
 
 def test_sampling_is_refined_until_it_changes_nothing(block):
-    (model,) = build_models(load_structure(block), ("linear2",))
+    structure = Structure(load_structure(block))
     for spec in ("sine:0.4g:0.5s", "cosine:0.6g:0.3s", "half_sine:0.5g:0.4s"):
         pulse = parse_pulse(spec)
-        found = sampled_history(model, pulse, -1)
-        exact = exact_response(
-            equivalent_block(load_structure(block)), pulse, kappa=2, gravity=model.gravity, polarity=-1
-        )
+        found = sampled_history(structure, "linear2", pulse, -1)
+        exact = exact_response(structure.equivalence, pulse, kappa=2, gravity=structure.mechanism.gravity, polarity=-1)
         assert found.converged
         assert found.history.peak_ratio == approx(exact.peak_ratio, rel=1e-4)
 

@@ -12,13 +12,13 @@ from click.testing import CliRunner
 
 from rocking_cli.cli import respond as respond_command
 from rocking_cli.cli.main import main
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.pulse_fit import FITTED, fit_pulse
 from rocking_cli.excitation.pulses import PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.pulse_fit import draw_pulses
 from rocking_cli.structure_file import load_structure
+from tests.following import respond
 from tests.test_cli import ACCEL, FRAME, run, run_json
 
 SINE = "sine:0.3g:0.8s"

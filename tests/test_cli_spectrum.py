@@ -11,11 +11,11 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import spectrum as study
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
+from tests.following import respond
 
 ACCEL, BLOCK, FRAME = (str(EXAMPLES / name) for name in ("accel.csv", "block.yaml", "frame.yaml"))
 QUICK = ("--sizes", "1:6:5")

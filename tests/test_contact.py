@@ -16,7 +16,6 @@ from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli import errors
 from rocking_cli.core.reactions import impulses
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.holding import joints_in_words
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies import contact
@@ -24,6 +23,7 @@ from rocking_cli.studies.contact import Contacts, _stretches
 from rocking_cli.views.contact import contact_row, contact_words
 from rocking_cli.views.view import number
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.test_cli import run, run_json
 
 G = 9.80665

@@ -14,7 +14,6 @@ from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import parse_pulse
@@ -22,6 +21,7 @@ from rocking_cli.plotting.equivalent import draw_equivalent
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies.equivalent import equivalent, judge
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.pulses import exact_pulse
 
 PULSE = parse_pulse("sine:0.6g:0.5s")

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from mechanisms.block import Block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io import tables
 from rocking_cli.io.tables import write_csv
 from rocking_cli.views.history_table import blocks
+from tests.following import respond
 
 BLOCK = Block(width=0.7, height=2.8)
 PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)))

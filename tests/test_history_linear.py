@@ -9,8 +9,8 @@ from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.rigid_body import RigidBody
 from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
+from tests.following import respond
 from tests.reference_history import Linear
 
 MODELS = ["linear1", "linear2"]

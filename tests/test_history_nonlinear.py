@@ -15,9 +15,9 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.given import DirectionalRestitution
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
 from tests.conftest import record
+from tests.following import respond
 from tests.reference_history import Nonlinear
 from tests.unchecked import UncheckedArch
 

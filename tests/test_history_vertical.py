@@ -11,8 +11,8 @@ from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import GroundMotion
+from tests.following import respond
 from tests.reference_history import Equivalent, Nonlinear
 from tests.unchecked import UncheckedArch
 

@@ -14,7 +14,6 @@ from PIL import Image
 from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.verdict import verdict
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import hung, style
@@ -24,6 +23,7 @@ from rocking_cli.plotting.structure import NO_CRITICAL, draw_structure
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.picture import NODES, picture
+from tests.following import respond
 from tests.test_cli import run, run_json
 
 OF_STONE = {"density": 2400.0, "depth": 1.0}

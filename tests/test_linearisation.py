@@ -18,7 +18,6 @@ from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.advice import grade, preferred_kappa
-from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plotting.linearisation import draw_linearisation
@@ -26,6 +25,7 @@ from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.linearisation import linearisation, velocity_ratios
 from rocking_cli.studies.trust import preferred, trust
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.test_cli import run, run_json
 
 FILES = sorted(path.name for path in EXAMPLES.glob("*.yaml"))

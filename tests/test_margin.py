@@ -8,7 +8,6 @@ import re
 import numpy as np
 import pytest
 
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.model import build_model, build_models
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
@@ -20,6 +19,7 @@ from rocking_cli.studies import margin as margins
 from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
 from rocking_cli.studies.neighbours import Around
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.test_cli import run, run_json
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")

@@ -9,9 +9,9 @@ from mpmath import mp
 
 from mechanisms.block import Block
 from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.kernels import Ground, Law, State, force, nystrom
 from rocking_cli.excitation.base import GroundMotion
+from tests.following import respond
 from tests.reference_history import Nonlinear
 
 # q.. = -(g (1 - 0.8 q - 0.3 q^2 + 0.5 q^3) + u (0.7 + 0.4 q - 0.6 q^2 + 0.2 q^3)), all one cell of a table.

@@ -18,7 +18,6 @@ from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact import exact_response
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.model import build_models
 from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.errors import InputError
@@ -31,6 +30,7 @@ from rocking_cli.studies.boundaries import boundaries
 from rocking_cli.studies.overturning import SCAN, Region, compare, overturning_map
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.pulses import exact_pulse
 
 SINE = parse_shape("sine")

@@ -7,7 +7,6 @@ import json
 import numpy as np
 import pytest
 
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure_file import load_structure
@@ -15,6 +14,7 @@ from rocking_cli.studies.film import Film
 from rocking_cli.studies.picture import picture
 from tests.browser import launch, opened
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.test_cli import run
 from tests.test_hung import TIED_FILE
 

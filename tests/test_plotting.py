@@ -7,7 +7,6 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from mechanisms.block import Block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.plotting import style
@@ -15,6 +14,7 @@ from rocking_cli.plotting.history import FELT, draw_history
 from rocking_cli.plotting.record import draw_record
 from rocking_cli.plotting.thinning import BINS, visible
 from rocking_cli.studies.contact import Contacts
+from tests.following import respond
 
 BLOCK = Block(width=0.7, height=2.8)
 PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)))

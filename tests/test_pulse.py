@@ -25,10 +25,10 @@ from pytest import approx
 from mechanisms.block import Block
 from rocking_cli.cli.main import main
 from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from tests.following import respond
 from tests.pulses import exact_pulse
 
 MP = mpmath.mp.clone()  # a precision of its own, whatever other tests set

@@ -16,9 +16,10 @@ from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import build_model
-from rocking_cli.dynamics.sampled_pulse import sampled_history
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 from rocking_cli.excitation.pulses.base import FINE
+from rocking_cli.structure import Structure
+from rocking_cli.studies.sampled_pulse import sampled_history
 from rocking_cli.studies.under_pulses import parse_shape
 
 BLOCK = Block(width=0.9, height=3.4, gravity=9.81)
@@ -195,6 +196,6 @@ def test_a_history_keeps_one_of_so_many_samples():
 def test_samples_are_refined_until_nothing_changes():
     for shape in SHAPES:
         pulse = pulse_of(shape, 1.04, 5.0)
-        found = sampled_history(build_model(BLOCK, "nonlinear"), pulse)
+        found = sampled_history(Structure(BLOCK), "nonlinear", pulse)
         assert found.converged
         assert found.history.peak_ratio == approx(peak_by_formula(pulse), rel=1e-6)

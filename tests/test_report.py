@@ -17,7 +17,6 @@ import numpy as np
 import pytest
 
 from rocking_cli.core import EquivalentBlock
-from rocking_cli.dynamics.history import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
 from rocking_cli.report.page import symbols
@@ -25,6 +24,7 @@ from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.neighbours import Around
 from rocking_cli.views.parameters import values
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS
+from tests.following import respond
 from tests.test_cli import run, run_json
 
 FRAME, BLOCK, ARCH = (EXAMPLES / f"{name}.yaml" for name in ("frame", "block", "arch"))

@@ -16,11 +16,11 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.wall import Wall
 from rocking_cli.cli.main import main
 from rocking_cli.core import Body, Direction, Mechanism, box, equivalent_block, length, quantity, rotation
-from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting.spectrum import draw_spectra
 from rocking_cli.studies.spectrum import count_histories, shape_of, spectra
+from tests.following import respond
 
 
 class Laden(Mechanism):

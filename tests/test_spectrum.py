@@ -13,12 +13,12 @@ from mechanisms.block import Block
 from mechanisms.rigid_body import RigidBody
 from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import exact_response
-from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting.spectrum import draw_spectra
 from rocking_cli.studies.spectrum import Shape, Spectrum, blocks_of, count_histories, fractile, shape_of, spectra
+from tests.following import respond
 
 PULSE = parse_pulse("sine:0.45g:0.8s")
 FRAME = {

@@ -11,7 +11,6 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.dynamics.history import respond
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility import store_file, tally, units
@@ -19,6 +18,7 @@ from rocking_cli.studies.fragility.campaign import prepare
 from rocking_cli.studies.fragility.store import COLUMNS, Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.stores import RUNS, Sound, as_before_joints, attack, command, version_of
 from tests.test_contact import of_a_block
 from tests.test_study_runs import carry_out, dump, finished, program, wait_until_some_are_finished

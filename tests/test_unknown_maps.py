@@ -12,9 +12,7 @@ from matplotlib.colors import to_hex
 from matplotlib.patches import Rectangle
 
 from mechanisms.block import Block
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
-from rocking_cli.dynamics.sampled_pulse import COARSEST, _alike, sampled_history
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE, parse_pulse
 from rocking_cli.excitation.records import read_record
@@ -33,11 +31,13 @@ from rocking_cli.studies.equivalent import equivalent, judge
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.overturning import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.studies.picture import picture
+from rocking_cli.studies.sampled_pulse import COARSEST, _alike, sampled_history
 from rocking_cli.studies.spectrum import Spectrum, _worst, blocks_of, shape_of, spectra
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 from rocking_cli.views import spectrum as spectrum_views
 from rocking_cli.views.overturning import NO_JOINTS, comparison_view, map_table, map_view
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.test_cli import run
 
 SINE = parse_shape("sine")
@@ -297,7 +297,7 @@ class TestPulses:
         assert "All joints bear" in run("pulse", FILE, "--ag", "0.4g", "--period", 0.6).stdout
 
     def test_sampling_is_not_refined_beyond_what_is_known(self):
-        found = sampled_history(SHAKEN.model, parse_pulse("sine:0.9g:0.6s"))
+        found = sampled_history(Structure(PORTAL), "nonlinear", parse_pulse("sine:0.9g:0.6s"))
         assert found.history.unknown and found.converged and found.per_period == 2 * COARSEST
         unknown = found.history
         assert _alike(unknown, replace(unknown, peak_ratio=0.5)) and not _alike(

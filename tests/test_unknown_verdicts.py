@@ -20,7 +20,6 @@ from rocking_cli.codes.italian.sheet import dynamic as sheets
 from rocking_cli.codes.italian.sheet.build import SHEET
 from rocking_cli.codes.italian.words import of_histories
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.outcome import Outcome
 from rocking_cli.dynamics.verdict import governs
 from rocking_cli.plotting.azimuths import draw_azimuths
@@ -39,6 +38,7 @@ from rocking_cli.views import azimuths as azimuth_views
 from rocking_cli.views import margin as margin_views
 from rocking_cli.views import survey as survey_views
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.test_cli import run, run_json
 
 ARCH = "mechanism: arch\nname: {0}\nradius: {1}\nthickness: 0.8\ninclusion_angle_deg: 150\nvoussoirs: 7\n"

@@ -14,10 +14,10 @@ from mechanisms.block import Block
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
-from rocking_cli.dynamics.history import respond
 from rocking_cli.dynamics.holding import NO_JOINTS, OVERTURNS
 from rocking_cli.dynamics.verdict import agreements, verdict
 from tests.conftest import EXAMPLES, record
+from tests.following import respond
 from tests.test_cli import run
 
 RESTED = respond(Block(width=0.7, height=2.8), release=0.4, models=("nonlinear",))["nonlinear"]

@@ -17,14 +17,15 @@ from rocking_cli.codes.italian.results import Dynamic, RecordPeak
 from rocking_cli.codes.italian.words import of_histories
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
+from rocking_cli.structure import Structure
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
 G, B, H = 9.80665, 0.3, 4.0
 ALPHA, R = atan(B / H), sqrt(B**2 + H**2)
 FACADE = rk.Block(width=2 * B, height=2 * H, one_sided="positive", rebound=0.0)
-MODEL = build_model(FACADE, "nonlinear")
+WALL = Structure(FACADE)
+MODEL = WALL.model("nonlinear")
 SITE = "FC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\n"
 
 
@@ -55,7 +56,7 @@ def first_excursion(ag, period, FC):
 def test_the_peak_is_that_of_the_equation_with_what_holds_it_divided(ag, period, FC):
     pulse = rk.parse_pulse(f"half_sine:{ag}g:{2 * period}s")
     lasts = pulse.duration
-    found = dynamic.peaks(MODEL, curves(FC), pulse.sampled(), (-1,))[Direction.POSITIVE]
+    found = dynamic.peaks(WALL, curves(FC), pulse.sampled(), (-1,))[Direction.POSITIVE]
     phi = first_excursion(ag, lasts, FC)
     assert found.with_confidence == pytest.approx(H * sin(phi) + B * (1 - cos(phi)), rel=2e-4)
     alone = first_excursion(ag, lasts, 1.0)
@@ -65,12 +66,12 @@ def test_the_peak_is_that_of_the_equation_with_what_holds_it_divided(ag, period,
 
 def test_without_the_factor_it_is_respond_on_the_same_runs():
     motion = rk.read_record(EXAMPLES / "accel.csv").scaled(0.2)
-    found = dynamic.peaks(MODEL, curves(1.35), motion, (1, -1))[Direction.POSITIVE]
+    found = dynamic.peaks(WALL, curves(1.35), motion, (1, -1))[Direction.POSITIVE]
     phi = max(follow(MODEL, motion.scaled(sign)).peak_positive for sign in (1, -1))
     assert found.without == pytest.approx(H * sin(phi) + B * (1 - cos(phi)), rel=1e-12)
-    one, other = (dynamic.peaks(MODEL, curves(1.35), motion, (sign,))[Direction.POSITIVE] for sign in (1, -1))
+    one, other = (dynamic.peaks(WALL, curves(1.35), motion, (sign,))[Direction.POSITIVE] for sign in (1, -1))
     assert one.without != other.without and found.without == max(one.without, other.without)
-    assert dynamic.peaks(MODEL, curves(1.35), motion, (-1, 1))[Direction.POSITIVE].without == found.without
+    assert dynamic.peaks(WALL, curves(1.35), motion, (-1, 1))[Direction.POSITIVE].without == found.without
 
 
 def test_the_vertical_component_keeps_its_size_and_its_pace_with_the_other():

@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.api.answer import Answer, MappingAnswer
 from rocking_cli.core import CollapseMechanism, Direction, Equivalence, Mechanism
-from rocking_cli.dynamics import history as histories
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
+from rocking_cli.engines import default_models
+from rocking_cli.engines import respond as histories
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures
@@ -402,9 +403,9 @@ def respond(
 
     ready = _structure(structure)
     shaking = _motion(motion).scaled(scale) if motion is not None else None
-    chosen = _models(models) if models is not None else ready.default_models
+    chosen = _models(models) if models is not None else default_models(ready)
     tilt = Release.of(release).ratio(ready) if release is not None else None
-    found = histories.respond(ready.mechanism, shaking, models=chosen, release=tilt, tail=tail, rtol=rtol)
+    found = histories(ready, shaking, models=chosen, release=tilt, tail=tail, rtol=rtol)
     title = heading(ready.mechanism) + (f", {shaking.name}" if shaking is not None else "")
     nonlinear = found.get("nonlinear")
     contacts = {1: Contacts(ready.mechanism).check(nonlinear, shaking)} if nonlinear is not None else {}

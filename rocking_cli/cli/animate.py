@@ -16,8 +16,9 @@ from rocking_cli.errors import INCOMPLETE, InputError, Problem, RockingError
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from rocking_cli.dynamics.model import Model, ModelName
+    from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.base import GroundMotion
+    from rocking_cli.structure import Structure
     from rocking_cli.studies.film import Film
     from rocking_cli.studies.neighbours import Neighbours
     from rocking_cli.studies.picture import Picture
@@ -119,7 +120,8 @@ def command(
     places = motion_files.separate(out, given, several=several)
     keep_apart([("--out", place) for place in places], read)
     compile_first()
-    camera = _Camera(structure.model(cast("ModelName", model)), picture(structure.mechanism), pace, near)
+    structure.model(cast("ModelName", model))  # what cannot be followed is refused before any motion
+    camera = _Camera(structure, cast("ModelName", model), picture(structure.mechanism), pace, near)
     title, rows = heading(structure.mechanism), []
     for each, place in zip(given, places, strict=True):
         motion = each.motion.scaled(asked.signs[0] * each.factor)
@@ -150,7 +152,8 @@ def _check(asked: GroundMotions) -> None:
 class _Camera:
     """A structure in motion, and the settings of its animation."""
 
-    model: Model
+    structure: Structure
+    model: ModelName
     picture: Picture
     pace: Pace
     near: Near
@@ -159,14 +162,16 @@ class _Camera:
         self, motion: GroundMotion, title: str, out: Path | None
     ) -> tuple[Film, dict[str, float | int | None], Neighbours | None]:
         """Simulate a motion, write its animation, and simulate its neighbours."""
-        from rocking_cli.dynamics.history import follow
+        from rocking_cli.engines import engine_of
         from rocking_cli.studies.film import Film
         from rocking_cli.studies.neighbours import neighbours
 
         assert out is not None
-        film = Film(self.picture, follow(self.model, motion), motion)
+        history = engine_of(self.structure).follow(self.structure, motion, model=self.model)
+        film = Film(self.picture, history, motion)
         found = _write(out, film, title, self.pace.speed, self.pace.fps)
-        return film, found, neighbours(self.model, motion, self.near.around) if self.near.neighbours else None
+        model = self.structure.model(self.model)
+        return film, found, neighbours(model, motion, self.near.around) if self.near.neighbours else None
 
 
 def _write(out: Path, film: Film, title: str, speed: float | None, fps: float) -> dict[str, float | int | None]:

@@ -232,9 +232,13 @@ def _names(structure: Structure, history: History) -> tuple[ModelName, ...]:
     """Return the models to run: those given, or else those that do not mislead, with a note on the others."""
     if not history.by_default:
         return history.names
-    if len(structure.default_models) < len(history.names):
-        terminal.note(f"nonlinear history only: {structure.why_no_block or structure.misleading}")
-    return structure.default_models
+    from rocking_cli.engines import default_models, engine_of
+
+    names = default_models(structure)
+    if len(names) < len(history.names):
+        lacking = f"the engine {engine_of(structure).name} has no linear models"
+        terminal.note(f"nonlinear history only: {structure.why_no_block or structure.misleading or lacking}")
+    return names
 
 
 class _Job:

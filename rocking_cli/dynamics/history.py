@@ -8,10 +8,9 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.joints import JointCheck, check_of
-from rocking_cli.dynamics.model import MODELS, Model, ModelName, build_models
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
 from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.errors import InputError, SolverError
@@ -87,67 +86,6 @@ class History(Outcome[bool, int, float]):
         return float(self.impacts[0, 0]) if len(self.impacts) else float("nan")
 
 
-def respond(
-    mechanism: Mechanism,
-    motion: GroundMotion | None = None,
-    *,
-    models: tuple[ModelName, ...] = MODELS,
-    release: float | None = None,
-    tail: float = TAIL,
-    rtol: float = RTOL,
-) -> dict[ModelName, History]:
-    """The rocking response of a structure to a ground motion, a release from a tilt, or both.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-        The structure.
-    motion : GroundMotion, optional
-        Ground acceleration, straight between its samples and zero after the last. With its vertical component, g
-        becomes g + v_g''.
-    models : tuple of {"nonlinear", "linear1", "linear2"}
-        Which equations of motion to follow.
-    release : float, optional
-        Start at rest from this fraction of phi_cr, between -1 and 1; negative in the negative direction.
-    tail : float
-        How long the samples go on after the record [s]. The motion itself is always followed to its end.
-    rtol : float
-        Relative local error of a step of the nonlinear motion.
-
-    Returns
-    -------
-    dict of str to History
-        In the order of `models`.
-
-    Raises
-    ------
-    InputError
-        If there is neither a motion nor a release, or a value is out of range, or the restitution from kinematics
-        is not positive.
-    SolverError
-        If the motion cannot be followed to its end.
-
-    Notes
-    -----
-    Nonlinear: Eq. 8 by an error-controlled Runge-Kutta-Nystrom pair. Linear: Eq. 16, exact on every ramp of the
-    record; with a vertical component, whose g changes along the ramp, by the same pair.
-    """
-    if motion is None and release is None:
-        raise InputError("nothing to respond to: give a ground motion, a release, or both")
-    unknown = [name for name in models if name not in MODELS]
-    if unknown or not models:
-        raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
-    if release is not None and not 0 < abs(release) < 1:
-        raise InputError(f"release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {release:g}")
-    if release is not None and not mechanism.rocks_both_ways and release * mechanism.directions[0] < 0:
-        raise InputError(f"release is against its side walls: it rocks in the {mechanism.one_sided} direction only")
-    if not (np.isfinite(tail) and tail >= 0):
-        raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
-    check_rtol(rtol)
-    built = build_models(mechanism, models)
-    return {model.name: follow(model, motion, release=release or 0.0, tail=tail, rtol=rtol) for model in built}
-
-
 def check_rtol(rtol: float) -> None:
     """Refuse a relative local error that is none."""
     if not FINEST_RTOL <= rtol < 1:
@@ -164,9 +102,10 @@ def follow(
     most_kept: int = MOST_IMPACTS,
     eta: float = float("nan"),
 ) -> History:
-    """The history of one model; `respond` says what the arguments are.
+    """The history of one model; for the arguments see `Engine.follow` of `rocking_cli.engines`.
 
-    `most_kept` is how many impacts are kept; `eta` the restitution of both directions, NaN: that of the model.
+    `release` is 0 without one; `most_kept` is how many impacts are kept; `eta` the restitution of both directions, NaN:
+    that of the model.
     """
     from rocking_cli.dynamics import kernels  # numba, only when a history is computed
 

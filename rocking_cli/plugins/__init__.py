@@ -1,1 +1,1 @@
-"""Plugins of other packages: mechanisms, record readers, pulse shapes, intensity measures and codes of practice."""
+"""Plugins of other packages: mechanisms, records, pulses, intensity measures, codes of practice and engines."""

@@ -1,4 +1,4 @@
-"""Plugins of one kind by name: mechanisms, record readers, pulse shapes, intensity measures or codes."""
+"""Plugins of one kind by name: mechanisms, record readers, pulse shapes, intensity measures, codes or engines."""
 
 from __future__ import annotations
 

@@ -13,9 +13,10 @@ import numpy as np
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics.history import History, follow
+from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, disagree, governs
+from rocking_cli.engines import default_models, engine_of, respond
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
@@ -346,8 +347,8 @@ def _result(structure: Structure, given: Scaled, polarities: Sequence[int], arou
     found = [] if given.pulse is not None else doubts(ground, measure(ground))
     doubtful = [*found, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
     under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
-    models, model = structure.models(structure.default_models), structure.model("nonlinear")
-    runs = {sign: {each.name: follow(each, motion) for each in models} for sign, motion in under.items()}
+    names, model = default_models(structure), structure.model("nonlinear")
+    runs = {sign: respond(structure, motion, models=names) for sign, motion in under.items()}
     contacts = Contacts(structure.mechanism)
     worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
     doubtful_signs = [sign for sign in polarities if runs[sign]["nonlinear"].unknown]
@@ -391,8 +392,8 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
 def _alone(structure: Structure, fit: PulseFit, polarities: Sequence[int]) -> tuple[float, bool]:
     """The largest peak ratio under a pulse, NaN if it overturns, and whether the outcome is unknown."""
     if structure.why_no_block or structure.refuses("sizes"):  # nothing measures a pulse here
-        alone, model = fit.pulse.sampled(), structure.model("nonlinear")
-        runs = [follow(model, alone.scaled(polarity * fit.sign)) for polarity in polarities]
+        alone, engine = fit.pulse.sampled(), engine_of(structure)
+        runs = [engine.follow(structure, alone.scaled(polarity * fit.sign)) for polarity in polarities]
         if any(run.overturned for run in runs):
             return nan, False
         return max(run.peak_ratio for run in runs), any(run.unknown for run in runs)

@@ -15,13 +15,14 @@ from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism,
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.holding import why_unknown
-from rocking_cli.dynamics.model import ModelName, build_model, linear_model
+from rocking_cli.dynamics.model import ModelName, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import CLOSE
+from rocking_cli.engines import engine_of
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse
-from rocking_cli.structure import with_restitution
+from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
 
 Reals = NDArray[np.float64]
@@ -233,11 +234,8 @@ def _member(
 ) -> Member:
     block = _equivalence(mechanism)[direction]
     own = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
-    shaken = mechanism if eta is None else with_restitution(mechanism, eta)
-    try:
-        history = follow(build_model(shaken, "nonlinear"), own.sampled().scaled(polarity), tail=_tail(own, block.p))
-    except MechanismError as error:
-        raise of_structure(error, _name(mechanism)) from error
+    shaken = Structure(mechanism if eta is None else with_restitution(mechanism, eta))
+    history = engine_of(shaken).follow(shaken, own.sampled().scaled(polarity), tail=_tail(own, block.p))
     return Member(
         _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history,
         mechanism.own_caution(),

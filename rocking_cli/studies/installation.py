@@ -12,6 +12,7 @@ from typing import Any
 
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.compiled import cache_folder, needs_compiling, unwritable
+from rocking_cli.engines.installed import Engines
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.pulses import PulseShapes
 from rocking_cli.excitation.records.registry import Readers
@@ -27,7 +28,7 @@ WITHOUT = ("dev", "docs", "bench", "release")
 
 @dataclass(frozen=True)
 class Plugin:
-    """An installed mechanism, record reader, pulse shape, measure of intensity or code of practice.
+    """An installed mechanism, record reader, pulse shape, measure of intensity, code of practice or engine.
 
     Parameters
     ----------
@@ -55,7 +56,8 @@ class Installation:
     extras : mapping of str to mapping
         For each extra of the package, those packages likewise.
     plugins : mapping of str to tuple of Plugin
-        Under `mechanisms`, `records`, `pulses`, `measures` and `codes`.
+        Under `mechanisms`, `records`, `pulses`, `measures` and `codes`; under `engines` if others are installed than
+        the exact one.
     cache : str
         The folder of the compiled kernels.
     unwritable : str or None
@@ -94,6 +96,7 @@ def examine() -> Installation:
             "pulses": _plugins(PulseShapes()),
             "measures": _plugins(IntensityMeasures()),
             "codes": _plugins(Codes()),
+            **({"engines": engines} if (engines := _plugins(Engines())) else {}),
         },
         str(cache_folder()),
         unwritable(),

@@ -8,11 +8,13 @@ from math import cos, pi, sin
 import numpy as np
 
 from rocking_cli.core import Mechanism, equivalent_block
-from rocking_cli.dynamics.history import History, follow, respond
+from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import build_model
+from rocking_cli.engines import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import fit_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
+from rocking_cli.structure import Structure
 from rocking_cli.studies.paper_figures import Curve, Panel, PaperFigure, Reals, make
 from rocking_cli.text import printable
 
@@ -50,7 +52,7 @@ def record_response(motion: GroundMotion) -> PaperFigure:
     ground.curves.append(Curve("sine pulse in it", time, alone.acceleration / STANDARD_GRAVITY))
     response = Panel("response", "time [s]", OVER)
     for what, shaking in (("record", motion), ("its pulse", alone)):
-        for name, run in respond(frame, shaking, models=("nonlinear", "linear2"), tail=0.0).items():
+        for name, run in respond(Structure(frame), shaking, models=("nonlinear", "linear2"), tail=0.0).items():
             response.curves.append(_followed(f"{LABELS[name]}, {what}", run))
     caption = (
         f"An asymmetric frame with the paper's uplift accelerations (0.197 g positive, 0.241 g negative) under "

@@ -11,9 +11,9 @@ from rocking_cli.dynamics.exact import ExactResponse, exact_response
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.pulse_response import ClosedForm, closed_form
-from rocking_cli.dynamics.sampled_pulse import SampledHistory, sampled_history
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
+from rocking_cli.studies.sampled_pulse import SampledHistory, sampled_history
 
 KAPPAS: dict[ModelName, Literal[1, 2]] = {"linear1": 1, "linear2": 2}
 
@@ -29,8 +29,8 @@ def sampled_histories(structure: Structure, pulse: Pulse, polarity: int) -> dict
     """
     structure.ask("linear models")
     exact = pulse.segments() and structure.mechanism.rocks_both_ways
-    models = structure.models(["nonlinear"] if exact else [*KAPPAS, "nonlinear"])
-    return {model.name: sampled_history(model, pulse, polarity) for model in models}
+    names: list[ModelName] = ["nonlinear"] if exact else [*KAPPAS, "nonlinear"]
+    return {name: sampled_history(structure, name, pulse, polarity) for name in names}
 
 
 def answers(

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
-from rocking_cli.dynamics.history import History, follow
-from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.engines import respond
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
@@ -85,29 +87,23 @@ class Answer:
     to_pulse_contact: Contact | None = None
 
 
-def histories(
-    models: Sequence[Model], motion: GroundMotion | None, release: float | None, tail: float, rtol: float
-) -> dict[ModelName, History]:
-    """The histories of the models under one motion."""
-    return {model.name: follow(model, motion, release=release or 0.0, tail=tail, rtol=rtol) for model in models}
-
-
 def answer(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Answer:
     """Follow models of a structure under a motion, or freely from a release."""
-    models = structure.models(names)
     contacts = Contacts(structure.mechanism)
-
-    def respond(motion: GroundMotion | None) -> Histories:
-        return histories(models, motion, asked.release, asked.tail, asked.rtol)
-
+    follow = partial(respond, structure, models=names, release=asked.release, tail=asked.tail, rtol=asked.rtol)
     under = {sign: given.motion.scaled(sign * given.factor) if given is not None else None for sign in asked.signs}
     first = under[asked.signs[0]]
     fit = _find(first, asked.with_pulse) if first is not None and asked.with_pulse is not None else None
-    runs = {sign: respond(motion) for sign, motion in under.items()}
-    best = next((model for model in models if not model.is_linear), models[0])
+    runs = {sign: follow(motion) for sign, motion in under.items()}
+    best: ModelName = "nonlinear" if "nonlinear" in names else names[0]
     near = {
         sign: neighbours(
-            best, motion, asked.around, release=asked.release, release_is_angle=asked.release_is_angle, rtol=asked.rtol
+            structure.model(best),
+            motion,
+            asked.around,
+            release=asked.release,
+            release_is_angle=asked.release_is_angle,
+            rtol=asked.rtol,
         )
         for sign, motion in under.items()
         if asked.around.count
@@ -116,7 +112,7 @@ def answer(structure: Structure, names: Sequence[ModelName], given: Scaled | Non
     if fit is None or first is None:
         return Answer(given, first, runs, near, contacts=checked)
     pulse = fit.alone(first)
-    alone = respond(pulse)
+    alone = follow(pulse)
     checked_alone = contacts.check(alone["nonlinear"], pulse) if "nonlinear" in alone else None
     return Answer(given, first, runs, near, fit, alone, checked, checked_alone)
 

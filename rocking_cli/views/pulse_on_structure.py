@@ -14,12 +14,12 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.holding import NO_JOINTS, joints_in_words
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
-from rocking_cli.dynamics.sampled_pulse import SampledHistory
 from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
+from rocking_cli.studies.sampled_pulse import SampledHistory
 from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
 from rocking_cli.views.response import known_data, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import sqrt
 
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.results import Dynamic, RecordPeak, Verification
 from rocking_cli.codes.italian.site import ItalianSite, floor_at
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.history import History, follow
-from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.history import History
+from rocking_cli.engines import engine_of
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
@@ -34,7 +35,7 @@ def with_confidence(motion: GroundMotion, FC: float) -> GroundMotion:
 
 
 def peaks(
-    model: Model, curves: Mapping[Direction, ExactCurve], motion: GroundMotion, signs: Sequence[int]
+    structure: Structure, curves: Mapping[Direction, ExactCurve], motion: GroundMotion, signs: Sequence[int]
 ) -> dict[Direction, RecordPeak]:
     """The largest displacement in each direction under one record, the worse of several polarities.
 
@@ -42,8 +43,8 @@ def peaks(
 
     Parameters
     ----------
-    model : Model
-        The nonlinear one of the structure.
+    structure : Structure
+        The structure.
     curves : mapping
         The capacity curve of each direction, with its FC.
     motion : GroundMotion
@@ -57,9 +58,10 @@ def peaks(
         If a motion cannot be followed to its end.
     """
     under = [motion.scaled(sign) if sign != 1 else motion for sign in signs]
-    own = [follow(model, each) for each in under]
+    follow = partial(engine_of(structure).follow, structure)
+    own = [follow(each) for each in under]
     factors = {curve.confidence for curve in curves.values()}
-    weaker = {FC: own if FC == 1 else [follow(model, with_confidence(each, FC)) for each in under] for FC in factors}
+    weaker = {FC: own if FC == 1 else [follow(with_confidence(each, FC)) for each in under] for FC in factors}
     found = {}
     for direction, curve in curves.items():
         d, known_to = _largest(curve, direction, own)
@@ -72,13 +74,13 @@ def peaks(
 def with_histories(found: Verification, structure: Structure, site: ItalianSite, asked: Histories) -> Verification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
     taken = structure if found.mechanism is structure.mechanism else Structure(found.mechanism, structure.file)
-    model = taken.model("nonlinear")
+    checked = "joints" in engine_of(taken).knows and taken.model("nonlinear").joints is not None
     curves = {direction: each.exact for direction, each in found.directions.items()}
     state = _state_of_records(found, asked.state)
     what, moved = where_it_stands(asked, floor_at(site, state))
     every = []
     for motion in moved:
-        every.append(peaks(model, curves, motion, asked.signs))
+        every.append(peaks(taken, curves, motion, asked.signs))
         asked.progress(1)
     directions = {
         direction: replace(
@@ -88,7 +90,7 @@ def with_histories(found: Verification, structure: Structure, site: ItalianSite,
                 each.d0,
                 {state: each.states[state].d},
                 RECORDS,
-                checked=model.joints is not None,
+                checked=checked,
                 motions=what,
             ),
         )

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rocking_cli.dynamics.history import History, follow
-from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.engines import engine_of
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.structure import Structure
 
 COARSEST, FINEST = 1000, 32_000  # samples to a period
 WITHIN = 1e-6
@@ -31,13 +33,15 @@ class SampledHistory:
     converged: bool
 
 
-def sampled_history(model: Model, pulse: Pulse, polarity: int = 1) -> SampledHistory:
+def sampled_history(structure: Structure, model: ModelName, pulse: Pulse, polarity: int = 1) -> SampledHistory:
     """The history of a model under a pulse, its sampling refined until that changes nothing.
 
     Parameters
     ----------
-    model : Model
-        See `build_models`.
+    structure : Structure
+        What the pulse shakes.
+    model : {"nonlinear", "linear1", "linear2"}
+        Which equation of motion.
     pulse : Pulse
         Any.
     polarity : {1, -1}
@@ -52,9 +56,10 @@ def sampled_history(model: Model, pulse: Pulse, polarity: int = 1) -> SampledHis
     The motion under n samples to a period is off by order n^-4 of its peak, n^-3 where it only just uplifts: the last
     halving of the interval changes at least seven times as much as is left to change.
     """
-    before, per_period = None, COARSEST
+    engine, before, per_period = engine_of(structure), None, COARSEST
     while True:
-        history = follow(model, pulse.sampled(per_period).scaled(polarity), tail=0.0)
+        motion = pulse.sampled(per_period).scaled(polarity)
+        history = engine.follow(structure, motion, model=model, tail=0.0)
         converged = before is not None and _alike(before, history)
         if converged or per_period >= FINEST:
             return SampledHistory(history, per_period, converged)

@@ -1,0 +1,157 @@
+"""What an engine is to this package: a class derived from `Engine`, which simulates the histories of structures."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Set
+from math import isfinite, isnan
+from typing import Any, ClassVar, Literal
+
+from rocking_cli.dynamics.history import RTOL, TAIL, History, check_rtol
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.plugins.errors import blame, guard
+from rocking_cli.structure import Structure
+
+Knowledge = Literal["linear models", "releases", "vertical components", "joints"]
+
+
+def _failed(own: Any, method: str) -> str:
+    return f"the engine {own.name} failed in {method}"
+
+
+class Engine(ABC):
+    """An engine simulates the time history of one structure under one ground motion.
+
+    Batches are not simulated by engines: `respond_many`, and so neighbours, margins, maps, spectra, surveys and
+    fragility studies, use the models and the compiled kernel of the exact engine alone.
+
+    Attributes
+    ----------
+    name : str
+        Its name; its entry point of `rocking.engines` has the same one.
+    knows : set of str
+        What it covers beside the nonlinear history under a horizontal motion: `"linear models"`, `"releases"` from a
+        tilt, `"vertical components"` of motions, and whether `"joints"` are checked. What is not listed is refused;
+        without `"joints"` the results carry the caution that the joints are not checked.
+    """
+
+    name: ClassVar[str]
+    knows: ClassVar[Set[Knowledge]] = frozenset()
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """Guard what a subclass answers."""
+        super().__init_subclass__(**named)
+        guard(cls, ("refuses", "history"), _failed)
+
+    @abstractmethod
+    def refuses(self, structure: Structure) -> str | None:
+        """Return why it cannot simulate a structure, as a clause without a full stop; None if it can."""
+
+    @abstractmethod
+    def history(
+        self,
+        structure: Structure,
+        motion: GroundMotion | None,
+        *,
+        model: ModelName,
+        release: float,
+        tail: float,
+        rtol: float,
+    ) -> History:
+        """Return the history that `follow` has been asked for.
+
+        Arguments are those of `follow`, checked; `release` is 0 if there is none. Raise `SolverError` if the motion
+        cannot be simulated to its end.
+        """
+
+    def follow(
+        self,
+        structure: Structure,
+        motion: GroundMotion | None = None,
+        *,
+        model: ModelName = "nonlinear",
+        release: float | None = None,
+        tail: float = TAIL,
+        rtol: float = RTOL,
+    ) -> History:
+        """Simulate the motion of a structure under a ground motion, from a tilt, or both.
+
+        Parameters
+        ----------
+        structure : Structure
+            The structure.
+        motion : GroundMotion, optional
+            Ground acceleration, straight between its samples and zero after the last. With its vertical component, g
+            becomes g + v_g''.
+        model : {"nonlinear", "linear1", "linear2"}
+            Equation of motion.
+        release : float, optional
+            Start at rest from this fraction of phi_cr, between -1 and 1; negative in the negative direction.
+        tail : float
+            How long the samples go on after the record [s]. The motion itself is always followed to its end.
+        rtol : float
+            Relative local error of a step of the nonlinear motion.
+
+        Returns
+        -------
+        History
+            What became of the structure, its peaks, impacts and samples.
+
+        Raises
+        ------
+        InputError
+            If there is neither a motion nor a release, a value is out of range, or the engine refuses the structure
+            or does not cover what is asked for.
+        SolverError
+            If the motion cannot be followed to its end.
+        PluginError
+            If an engine of another package fails, or returns no valid history.
+        """
+        _check(structure, motion, release, tail, rtol)
+        if (why := self.refuses(structure)) is not None:
+            reason = f"the engine {self.name} cannot simulate {structure.name}: {why}"
+            raise InputError(Problem(reason, file=structure.file))
+        needed: dict[Knowledge, bool] = {
+            "linear models": model != "nonlinear",
+            "releases": release is not None,
+            "vertical components": motion is not None and motion.vertical is not None,
+        }
+        if lacking := [what for what, is_needed in needed.items() if is_needed and what not in self.knows]:
+            raise InputError(f"the engine {self.name} does not simulate {' or '.join(lacking)}")
+        found = self.history(structure, motion, model=model, release=release or 0.0, tail=tail, rtol=rtol)
+        with blame(_failed(self, "history"), type(self).__module__):
+            if fault := _fault(found, model, checks_joints="joints" in self.knows):
+                raise PluginError(f"{_failed(self, 'history')}: {fault}")
+        return found
+
+
+def _check(
+    structure: Structure, motion: GroundMotion | None, release: float | None, tail: float, rtol: float
+) -> None:  # fmt: skip
+    """Raise `InputError` if an argument is out of range."""
+    if motion is None and release is None:
+        raise InputError("nothing to respond to: give a ground motion, a release, or both")
+    if release is not None and not 0 < abs(release) < 1:
+        raise InputError(f"release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {release:g}")
+    if release is not None and not (way := structure.mechanism).rocks_both_ways and release * way.directions[0] < 0:
+        raise InputError(f"release is against its side walls: it rocks in the {way.one_sided} direction only")
+    if not (isfinite(tail) and tail >= 0):
+        raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
+    check_rtol(rtol)
+
+
+def _fault(found: object, model: ModelName, *, checks_joints: bool) -> str:
+    """Return why an answer of an engine is not a valid history; empty if it is one."""
+    if not isinstance(found, History):
+        return f"it must return a History, got {type(found).__name__}"
+    if found.model != model:
+        return f"it must return a history of the model {model}, got {found.model}"
+    if any(each.shape != found.time.shape for each in (found.phi, found.rate, found.ratio)):
+        return "time, phi, rate and ratio of its history differ in length"
+    if found.impacts.shape[1:] != (3,):
+        return f"impacts must have the shape (k, 3), got {found.impacts.shape}"
+    if not checks_joints and not isnan(found.opening):
+        return "its history has an opening of joints, but `joints` is not in what it knows"
+    return ""
