@@ -49,7 +49,7 @@ _HOME = {
     "dynamics.exact": ["ExactResponse", "exact_response"],
     "dynamics.exact_batch": ["exact_many"],
     "dynamics.history": ["History"],
-    "dynamics.model": ["Model", "build_models"],
+    "dynamics.model": ["Model"],
     "dynamics.outcome": ["Outcome"],
     "dynamics.pulse_response": ["closed_form", "exact_pulse"],
     "errors": ["InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
@@ -63,6 +63,7 @@ _HOME = {
     "processing.floor": ["Floor"],
     "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],
     "processing.oscillator": ["ResponseSpectrum"],
+    "structure": ["build_models"],
     "structure_file": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}

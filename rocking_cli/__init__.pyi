@@ -52,7 +52,6 @@ from rocking_cli.dynamics.exact import exact_response as exact_response
 from rocking_cli.dynamics.exact_batch import exact_many as exact_many
 from rocking_cli.dynamics.history import History as History
 from rocking_cli.dynamics.model import Model as Model
-from rocking_cli.dynamics.model import build_models as build_models
 from rocking_cli.dynamics.outcome import Outcome as Outcome
 from rocking_cli.dynamics.pulse_response import closed_form as closed_form
 from rocking_cli.dynamics.pulse_response import exact_pulse as exact_pulse
@@ -77,6 +76,7 @@ from rocking_cli.processing.intensity import RelativeMeasure as RelativeMeasure
 from rocking_cli.processing.intensity import RunMeasure as RunMeasure
 from rocking_cli.processing.intensity import parse_measure as parse_measure
 from rocking_cli.processing.oscillator import ResponseSpectrum as ResponseSpectrum
+from rocking_cli.structure import build_models as build_models
 from rocking_cli.structure_file import load_structure as load_structure
 
 __version__: str

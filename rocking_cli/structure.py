@@ -39,6 +39,11 @@ def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
         raise InputError(Problem(f"{name}: {reason[0].lower()}{reason[1:]}", field=field)) from None
 
 
+def build_models(mechanism: Mechanism, names: Sequence[ModelName] = MODELS) -> list[Model]:
+    """Prepare models of a structure: `Structure(mechanism).models(names)`. Raises `InputError` or `MechanismError`."""
+    return Structure(mechanism).models(names)
+
+
 @dataclass(frozen=True, eq=False)
 class Structure:
     """A structure, and all that is derived from its mechanism, computed when first requested.

@@ -6,10 +6,10 @@ import pytest
 from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.contact import Contacts
 from tests import oracle
+from tests.following import build_model
 
 TIME = 0.005 * np.arange(500)
 SHAKING = GroundMotion("two sines", 0.005, 3.2 * np.sin(5 * TIME) * np.sin(1.3 * TIME))

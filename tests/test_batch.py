@@ -16,10 +16,11 @@ from rocking_cli.core import Direction
 from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.model import MODELS, build_models
+from rocking_cli.dynamics.model import MODELS
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import build_models
 from tests.following import respond
 from tests.unchecked import UncheckedFrame
 

@@ -62,10 +62,10 @@ def shares(near):
 
 class TestNeighbours:
     def test_they_are_what_the_study_finds(self):
-        from rocking_cli.dynamics.model import build_model
         from rocking_cli.excitation.records import read_record
         from rocking_cli.structure_file import load_structure
         from rocking_cli.studies.neighbours import neighbours
+        from tests.following import build_model
 
         words = ("respond", FRAME, "--record", ACCEL, "--scale", "1.1", "--polarity", "-1", "--neighbours", 50)
         deviations = ("--amplitude-deviation", 0.05, "--restitution-deviation", 0.01, "--slenderness-deviation", "7%")

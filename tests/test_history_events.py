@@ -13,11 +13,12 @@ from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.deck import MOST_IMPACTS
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import Model, build_models
+from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.dynamics.tables import Table
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import build_models
 from tests.following import respond
 from tests.reference_history import Linear, Nonlinear
 from tests.unchecked import UncheckedArch

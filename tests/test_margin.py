@@ -8,18 +8,18 @@ import re
 import numpy as np
 import pytest
 
-from rocking_cli.dynamics.model import build_model, build_models
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.margin import draw_margins
+from rocking_cli.structure import build_models
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
 from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
 from rocking_cli.studies.neighbours import Around
 from tests.conftest import EXAMPLES
-from tests.following import respond
+from tests.following import build_model, respond
 from tests.test_cli import run, run_json
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")

@@ -13,7 +13,6 @@ from scipy.special import ndtr, ndtri
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact_batch import exact_many
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
@@ -33,7 +32,7 @@ from rocking_cli.studies.neighbours import (
     severity,
 )
 from tests.conftest import EXAMPLES
-from tests.following import respond
+from tests.following import build_model, respond
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
 FRAME = load_structure(EXAMPLES / "frame.yaml")

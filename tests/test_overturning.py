@@ -18,13 +18,12 @@ from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact import exact_response
-from rocking_cli.dynamics.model import build_models
 from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
-from rocking_cli.structure import Structure
+from rocking_cli.structure import Structure, build_models
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.boundaries import boundaries
 from rocking_cli.studies.overturning import SCAN, Region, compare, overturning_map

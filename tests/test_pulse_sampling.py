@@ -15,12 +15,12 @@ from mechanisms.block import Block
 from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 from rocking_cli.excitation.pulses.base import FINE
 from rocking_cli.structure import Structure
 from rocking_cli.studies.sampled_pulse import sampled_history
 from rocking_cli.studies.under_pulses import parse_shape
+from tests.following import build_model
 
 BLOCK = Block(width=0.9, height=3.4, gravity=9.81)
 ALPHA, R = atan(0.9 / 3.4), hypot(0.9, 3.4) / 2

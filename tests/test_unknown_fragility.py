@@ -15,7 +15,6 @@ import pytest
 import yaml
 
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.errors import InputError
 from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_ida, draw_surface
 from rocking_cli.plotting.quantiles import draw_quantiles
@@ -30,6 +29,7 @@ from rocking_cli.studies.fragility.ranking import judge, rank
 from rocking_cli.studies.fragility.store import JOINTS, UNKNOWN, Endings, Rows, Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
+from tests.following import build_model
 from tests.stores import command
 from tests.test_study_runs import carry_out
 

@@ -10,12 +10,12 @@ from mechanisms.point_mass import PointMass
 from mechanisms.rigid_body import RigidBody
 from mechanisms.wall import Wall
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.movements import Watched
 from rocking_cli.views.response import runs_view
+from tests.following import build_model
 from tests.test_cli import run
 
 TIME = 0.01 * np.arange(400)

@@ -156,7 +156,7 @@ def respond_many(
     Parameters
     ----------
     models : sequence of Model
-        See `build_models`.
+        See `Structure.model`.
     motions : sequence of GroundMotion or None
         The ground motions, before scaling; None for no shaking.
     runs : Runs

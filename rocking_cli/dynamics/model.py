@@ -15,8 +15,6 @@ from rocking_cli.core import (
     Equivalence,
     EquivalentBlock,
     Mechanism,
-    both_statics,
-    equivalent_block,
 )
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.restitution import why_none
@@ -161,13 +159,19 @@ NO_REBOUND = Problem(
 )
 
 
-def build_model(mechanism: Mechanism, name: ModelName) -> Model:
+def build(
+    mechanism: Mechanism, statics: tuple[Statics, Statics], equivalence: Equivalence | None, name: ModelName
+) -> Model:
     """Prepare one model of a structure.
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure.
+    statics : tuple of Statics
+        Its moments in both directions.
+    equivalence : Equivalence or None
+        Its equivalent blocks, which the linear models need.
     name : {"nonlinear", "linear1", "linear2"}
         Which equation of motion.
 
@@ -175,22 +179,8 @@ def build_model(mechanism: Mechanism, name: ModelName) -> Model:
     ------
     InputError
         If the restitution from kinematics is not positive, or the rebound of a one-sided structure is not known, so
-        that the motion after an impact is unknown.
+        that the motion after an impact is unknown; or if an element has no linear model.
     """
-    return build_models(mechanism, (name,))[0]
-
-
-def build_models(mechanism: Mechanism, names: tuple[ModelName, ...] = MODELS) -> list[Model]:
-    """Prepare several models of a structure; see `build_model`."""
-    statics = both_statics(mechanism)
-    equivalence = equivalent_block(mechanism, statics) if set(names) != {"nonlinear"} else None
-    return [build(mechanism, statics, equivalence, name) for name in names]
-
-
-def build(
-    mechanism: Mechanism, statics: tuple[Statics, Statics], equivalence: Equivalence | None, name: ModelName
-) -> Model:
-    """Prepare one model of a structure from its statics, and a linear one from its blocks; see `build_model`."""
     label = mechanism.name or mechanism.mechanism
     etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
     if isnan(etas[0]):

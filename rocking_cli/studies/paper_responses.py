@@ -9,7 +9,6 @@ import numpy as np
 
 from rocking_cli.core import Mechanism, equivalent_block
 from rocking_cli.dynamics.history import History, follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.engines import respond
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import fit_pulse
@@ -98,7 +97,7 @@ def equivalent_vulnerability() -> PaperFigure:
         drawn = motion.kept
         time = np.arange(drawn.npts, dtype=np.float64) * drawn.dt
         pulses.curves.append(Curve(name, time, drawn.acceleration / STANDARD_GRAVITY))
-        model = build_model(structure, "nonlinear")
+        model = Structure(structure).model("nonlinear")
         run = follow(replace(model, joints=None), motion, tail=SHOWN / block.p)  # as the paper: all joints hold
         curve = _followed(name, run, block.p)
         shown = curve.x <= SHOWN

@@ -15,9 +15,10 @@ from rocking_cli.core import (
     equivalent_block,
 )
 from rocking_cli.core.strength import Strength
-from rocking_cli.dynamics.model import Model, ModelName, build_model
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.io.field_problems import of_arguments
+from rocking_cli.structure import Structure
 
 ALIKE = 1e-7  # relative difference, of what shape alone decides where it does, that solvers and rounding may make
 TRIED = ((0.1, 0.5, 0.9), (10.0, 2.0, 1.1))  # scales at which that is looked at: of each row the first that there is
@@ -67,7 +68,7 @@ class Sizes:
     def build(self, scale: float) -> Model:
         """Its model at a scale. Raises as `equivalence`, or if its restitution is not known."""
         mechanism = self.at(scale)
-        return build_model(mechanism.model_copy(update={"name": self._named(scale)}), self.model)
+        return Structure(mechanism.model_copy(update={"name": self._named(scale)})).model(self.model)
 
     def period(self, scale: float) -> float:
         """2 pi/p at a scale [s]."""

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import Model, ModelName, build_model
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.structure import with_restitution
+from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.sources import KeptMotions
@@ -218,5 +218,5 @@ class _Models:
                 del self._kept[next(iter(self._kept))]
             # With a restitution that every run replaces, so that none is asked of the kinematics, which may have none.
             given = sample.mechanism if self._eta is None else with_restitution(sample.mechanism, self._eta)
-            self._kept[key] = build_model(given, self._name)
+            self._kept[key] = Structure(given).model(self._name)
         return self._kept[key]
