@@ -5,8 +5,8 @@ import pytest
 
 from mechanisms.block import Block
 from mechanisms.wall import Wall
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.contact import Contacts
 from tests import oracle

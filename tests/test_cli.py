@@ -62,7 +62,7 @@ def shares(near):
 
 class TestNeighbours:
     def test_they_are_what_the_study_finds(self):
-        from rocking_cli.dynamics.model import build_model
+        from rocking_cli.dynamics.dispatch import build_model
         from rocking_cli.excitation.records import read_record
         from rocking_cli.structure_file import load_structure
         from rocking_cli.studies.neighbours import neighbours

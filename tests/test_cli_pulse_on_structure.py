@@ -11,9 +11,9 @@ from pytest import approx
 from rocking_cli import load_structure
 from rocking_cli.cli.main import main
 from rocking_cli.core import equivalent_block
+from rocking_cli.dynamics.dispatch import build_models
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import respond
-from rocking_cli.dynamics.model import build_models
 from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.dynamics.sampled_pulse import sampled_history
 from rocking_cli.excitation.pulses import parse_pulse

@@ -12,8 +12,9 @@ from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.deck import MOST_IMPACTS
+from rocking_cli.dynamics.dispatch import build_models
 from rocking_cli.dynamics.history import follow, respond
-from rocking_cli.dynamics.model import Model, build_models
+from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.dynamics.tables import Table
 from rocking_cli.errors import InputError

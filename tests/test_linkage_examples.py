@@ -10,8 +10,8 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.testing import contract
 from tests.conftest import EXAMPLES
 from tests.test_cli import run_json

@@ -8,8 +8,8 @@ import re
 import numpy as np
 import pytest
 
+from rocking_cli.dynamics.dispatch import build_model, build_models
 from rocking_cli.dynamics.history import respond
-from rocking_cli.dynamics.model import build_model, build_models
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse

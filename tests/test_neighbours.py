@@ -12,9 +12,9 @@ from scipy.special import ndtr, ndtri
 
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import respond
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse

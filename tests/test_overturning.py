@@ -17,9 +17,9 @@ from mechanisms.block import Block
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.dispatch import build_models
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import respond
-from rocking_cli.dynamics.model import build_models
 from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY

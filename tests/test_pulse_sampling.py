@@ -13,9 +13,9 @@ from scipy.optimize import brentq
 
 from mechanisms.block import Block
 from rocking_cli.core import equivalent_block
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.dynamics.sampled_pulse import sampled_history
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 from rocking_cli.excitation.pulses.base import FINE

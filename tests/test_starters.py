@@ -8,8 +8,8 @@ import pytest
 
 from rocking_cli.cli.new import STARTERS
 from rocking_cli.core import both_statics
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure_file import load_structure, parse_structure
 from tests.conftest import EXAMPLES

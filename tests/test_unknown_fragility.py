@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 import yaml
 
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.errors import InputError
 from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_ida, draw_surface
 from rocking_cli.plotting.quantiles import draw_quantiles

@@ -16,8 +16,8 @@ from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.results import Dynamic, RecordPeak
 from rocking_cli.codes.italian.words import of_histories
 from rocking_cli.core import Direction
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 

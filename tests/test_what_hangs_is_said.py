@@ -9,8 +9,8 @@ from mechanisms.cone import Cone
 from mechanisms.point_mass import PointMass
 from mechanisms.rigid_body import RigidBody
 from mechanisms.wall import Wall
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.contact import Contacts

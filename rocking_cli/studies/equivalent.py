@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.holding import why_unknown
-from rocking_cli.dynamics.model import ModelName, build_model, linear_model
+from rocking_cli.dynamics.model import ModelName, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import CLOSE
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure

@@ -8,8 +8,8 @@ from math import cos, pi, sin
 import numpy as np
 
 from rocking_cli.core import Mechanism, equivalent_block
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.history import History, follow, respond
-from rocking_cli.dynamics.model import build_model
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import fit_pulse
 from rocking_cli.excitation.pulses.shapes import Sine

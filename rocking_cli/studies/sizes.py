@@ -15,7 +15,8 @@ from rocking_cli.core import (
     equivalent_block,
 )
 from rocking_cli.core.strength import Strength
-from rocking_cli.dynamics.model import Model, ModelName, build_model
+from rocking_cli.dynamics.dispatch import build_model
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.io.field_problems import of_arguments
 

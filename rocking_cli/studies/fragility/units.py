@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.dispatch import build_model
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import Model, ModelName, build_model
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
