@@ -16,6 +16,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.dispatch import ELASTIC, KERNELS
 from rocking_cli.dynamics.model import MODELS
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.errors import InputError
@@ -197,16 +198,15 @@ def test_progress_counts_every_run_once(count):
 def test_an_interruption_in_progress_stops_what_has_not_begun(monkeypatch, error):
     every, runs = mixed(400)
     begun = []
-    run = batch.run_deck
 
     def counted(*args, **options):
-        begun.append(options["first"])
-        return run(*args, **options)
+        begun.append(args[3])
+        return ELASTIC.run(*args, **options)
 
     def interrupt(done):
         raise error
 
-    monkeypatch.setattr(batch, "run_deck", counted)
+    monkeypatch.setitem(KERNELS, "elastic", replace(ELASTIC, run=counted))
     monkeypatch.setattr(batch, "UNIT", 1)
     with pytest.raises(error):
         respond_many(every, motions(), runs, threads=1, progress=interrupt)

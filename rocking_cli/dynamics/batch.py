@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out, read_marks, run_deck
+from rocking_cli.dynamics.deck import MOST_IMPACTS, read_marks
+from rocking_cli.dynamics.dispatch import KERNELS
 from rocking_cli.dynamics.history import RTOL, check_rtol
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
@@ -204,7 +206,6 @@ def respond_many(
             raise InputError(f"run {int(places.argmax())}: there is no {name} {places.max()}, only {there}")
     etas = _etas(models, runs)
     rows = np.zeros((len(runs), kernels.RUN_COLUMNS))
-    rows[:, kernels.STRUCTURE] = runs.model
     rows[:, kernels.RECORD] = runs.record
     rows[:, kernels.FACTOR] = runs.scale * runs.polarity / runs.slender
     rows[:, kernels.V_FACTOR] = abs(runs.scale)
@@ -217,14 +218,17 @@ def respond_many(
         rows[:, kernels.START] = starts[runs.model, which]
     rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
     marks = np.empty((len(runs), kernels.MARKS))
-    if len(runs):
-        deck = lay_out(models, motions)
-        most = DECISIVE - 1 if only_peaks else MOST_IMPACTS  # it is left after more than these
-
-        def follow(first: int, stop: int) -> None:
-            run_deck(deck, rows, marks, first=first, stop=stop, rtol=rtol, most_impacts=most, brief=True)
-
-        in_parts(follow, len(runs), UNIT, threads, progress)
+    most = DECISIVE - 1 if only_peaks else MOST_IMPACTS  # it is left after more than these
+    for name in dict.fromkeys(model.kernel for model in models):
+        kernel, own = KERNELS[name], [k for k, model in enumerate(models) if model.kernel == name]
+        # A slice is a view: runs of a single kernel are not copied.
+        mine = np.isin(runs.model, own) if len(own) < len(models) else slice(None)
+        its_rows, its_marks = rows[mine], marks[mine]
+        its_rows[:, kernels.STRUCTURE] = np.searchsorted(own, runs.model[mine])
+        deck = kernel.lay_out([models[k] for k in own], motions)
+        run = partial(kernel.run, deck, its_rows, its_marks, rtol=rtol, most_impacts=most, brief=True)
+        in_parts(run, len(its_rows), UNIT, threads, progress)
+        marks[mine] = its_marks
     reach = np.array([model.reach for model in models])
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
     found = read_marks(marks, phi_cr, reach[runs.model])

@@ -8,7 +8,8 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
+from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, read_marks
+from rocking_cli.dynamics.dispatch import KERNELS
 from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
@@ -122,7 +123,9 @@ def follow(
     runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE, kernels.SLENDER]] = 1.0
     runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = eta
     runs[0, kernels.START] = model.q(release)
-    run_deck(lay_out([model], [motion]), runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
+    kernel = KERNELS[model.kernel]
+    deck = kernel.lay_out([model], [motion])
+    kernel.run(deck, runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
     found = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
     end = float(marks[0, kernels.ENDED])
     if found.failed[0]:

@@ -4,25 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import isnan, nan, sqrt
+from math import nan, sqrt
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import (
-    Direction,
-    Equivalence,
-    EquivalentBlock,
-    Mechanism,
-)
+from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism
 from rocking_cli.core.advice import uplift_error
-from rocking_cli.core.restitution import why_none
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.uncertainty import Uncertainty
 from rocking_cli.dynamics.joints import Joints, joints_of
 from rocking_cli.dynamics.tables import Table, tabulate
-from rocking_cli.errors import InputError, Problem
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -79,6 +72,8 @@ class Model:
         The joints that its histories are checked against; None if they are not known, or of a linear model.
     scatter : Scatter
         How well the structure is known.
+    kernel : str
+        Name of the kernel that simulates it, see `rocking_cli.dynamics.dispatch.KERNELS`.
     """
 
     name: ModelName
@@ -97,6 +92,7 @@ class Model:
     corners: Integers = field(default_factory=lambda: np.zeros((0, 2), np.int64))
     joints: Joints | None = None
     scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC, SLENDERNESS))
+    kernel: str = "elastic"
 
     @property
     def p(self) -> float:
@@ -151,58 +147,8 @@ class Model:
         return float(np.copysign(phi if self.tables is None else self.tables[side].q(phi), ratio))
 
 
-NO_REBOUND = Problem(
-    "is missing: a time history of a one-sided structure needs it, and only for a plain rectangle does it follow from "
-    "the shape",
-    field="rebound",
-    hint="give a measured value as rebound, a number in [0, 1)",
-)
-
-
-def build(
-    mechanism: Mechanism, statics: tuple[Statics, Statics], equivalence: Equivalence | None, name: ModelName
-) -> Model:
-    """Prepare one model of a structure.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-        The structure.
-    statics : tuple of Statics
-        Its moments in both directions.
-    equivalence : Equivalence or None
-        Its equivalent blocks, which the linear models need.
-    name : {"nonlinear", "linear1", "linear2"}
-        Which equation of motion.
-
-    Raises
-    ------
-    InputError
-        If the restitution from kinematics is not positive, or the rebound of a one-sided structure is not known, so
-        that the motion after an impact is unknown; or if an element has no linear model.
-    """
-    label = mechanism.name or mechanism.mechanism
-    etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
-    if isnan(etas[0]):
-        raise InputError(NO_REBOUND)
-    for direction, eta in zip(mechanism.sides, etas, strict=True):
-        if eta <= 0 and mechanism.rocks_both_ways:
-            raise InputError(
-                Problem(
-                    f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends "
-                    f"motion in the {direction.label} direction: {why_none(eta)}",
-                    field="restitution",
-                    hint="give a measured value as restitution, a number in (0, 1]",
-                )
-            )
-    if name == "nonlinear":
-        model = _nonlinear(label, mechanism, statics, etas)
-    else:
-        mechanism.hung.ask("linear models")
-        assert equivalence is not None
-        model = linear_model(label, name, (equivalence.positive, equivalence.negative), mechanism.gravity)
-        if mechanism.attached:
-            model = _with_held(model, mechanism, (equivalence.positive, equivalence.negative))
+def completed(model: Model, mechanism: Mechanism) -> Model:
+    """Return a model with what all models of a structure share: its scatter, and its sides or its bounds of eta."""
     model = replace(model, scatter=_scatter(mechanism))
     if not mechanism.rocks_both_ways:
         return _one_sided(model, mechanism.directions[0])
@@ -228,8 +174,19 @@ def _one_sided(model: Model, direction: Direction) -> Model:
     return replace(model, numbers=numbers, one_sided=direction, most_eta=(1.0, 1.0))
 
 
-def _nonlinear(label: str, mechanism: Mechanism, statics: tuple[Statics, Statics], etas: tuple[float, float]) -> Model:
-    tables = tabulate(mechanism, statics)
+def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas: tuple[float, float]) -> Model:
+    """Prepare the nonlinear model of a structure whose forces depend on its rotation alone.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    statics : tuple of Statics
+        Statics of the positive and the negative direction.
+    etas : tuple of float
+        Restitution of impacts that end motion in the positive and in the negative direction.
+    """
+    label, tables = mechanism.name or mechanism.mechanism, tabulate(mechanism, statics)
     numbers = []
     for direction, side, table, eta in zip(mechanism.sides, statics, tables, etas, strict=True):
         p = _rate(mechanism, direction, side)
@@ -274,7 +231,7 @@ def _held_at_rest(mechanism: Mechanism, direction: Direction) -> float:
     return float(rest.Q[0] / (mechanism.gravity * rest.B[0]))
 
 
-def _with_held(model: Model, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:
+def with_held(model: Model, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:
     """A linear model of a tied structure: of its moment near phi_cr the part that vertical motion leaves alone.
 
     I_eq x.. = -(g G' + Q') x - v_g'' (G + G' x) - s B u_g'', x = phi - phi_cr.
