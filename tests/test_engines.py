@@ -9,6 +9,7 @@ import tomllib
 from dataclasses import replace
 from importlib.metadata import EntryPoint
 from math import atan, isnan, sin
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -83,6 +84,15 @@ class Other(Delegating):
 class Checks(Delegating):
     def spoilt(self, history):
         return history
+
+
+class Spoils(Delegating):
+    """Gives a history with some fields replaced."""
+
+    fields: ClassVar = {}
+
+    def spoilt(self, history):
+        return replace(super().spoilt(history), **self.fields)
 
 
 class Asks(Delegating):
@@ -220,6 +230,8 @@ class TestWhichEngine:
         assert engine_of(Structure(BLOCK)).name == "exact" and by_solve_ivp.name == "by_solve_ivp"
         with pytest.raises(InputError, match=r"unknown engine: by_solve \(did you mean by_solve_ivp\?\)"):
             engine("by_solve")
+        with pytest.raises(InputError, match=r"unknown engine: nope \(known: by_solve_ivp, exact\)"):
+            engine("nope")
 
     def test_if_all_refuse_their_reasons_are_given(self, by_solve_ivp, exact_refuses):
         cone = rk.Cone(base_radius=1.0, height=4.0)
@@ -266,6 +278,39 @@ class TestEnginesThatGoWrong:
         install(broken=cls)
         with pytest.raises(PluginError, match=f"^the engine broken {said}"):
             engine("broken").follow(Structure(BLOCK), MOTIONS["rocks"])
+
+    @pytest.mark.parametrize(
+        ("fields", "said"),
+        [
+            ({"fell_to": 1}, "fell_to of its history is 1, but overturned is False"),
+            ({"overturned": True}, "fell_to of its history is 0, but overturned is True"),
+            ({"peak_negative": -0.1}, "a peak of its history must be at least 0, got -0.1"),
+            ({"peak_positive": float("nan")}, "a peak of its history must be at least 0, got nan"),
+            ({"impact_count": 0}, r"its history has \d+ impacts, but impact_count is 0"),
+        ],
+    )
+    def test_a_history_that_contradicts_itself_is_none(self, install, monkeypatch, fields, said):
+        install(broken=Spoils)
+        monkeypatch.setattr(Spoils, "fields", fields)
+        with pytest.raises(PluginError, match=f"^the engine broken failed in history: {said}$"):
+            engine("broken").follow(Structure(BLOCK), MOTIONS["rocks"])
+
+    @pytest.mark.parametrize(
+        ("arguments", "said"),
+        [
+            ((BLOCK, MOTIONS["rocks"]), "structure must be a Structure of rocking_cli.engines, got Block"),
+            ((Structure(BLOCK), "sine:0.3g:0.8s"), "motion must be a GroundMotion, got str"),
+            (
+                (Structure(BLOCK), MOTIONS["rocks"], "linear3"),
+                "model must be one of nonlinear, linear1, linear2, got 'linear3'",
+            ),
+        ],
+    )
+    def test_wrong_arguments_are_no_fault_of_an_engine(self, install, arguments, said):
+        install(broken=Divides)
+        structure, motion, *model = arguments
+        with pytest.raises(InputError, match=f"^{re.escape(said)}$"):
+            engine("broken").follow(structure, motion, **({"model": model[0]} if model else {}))
 
     @pytest.mark.parametrize(
         ("name", "cls", "said"),

@@ -54,7 +54,7 @@ class BySolveIvp(Engine):
         it, time, ground = structure.mechanism, motion.time, motion.acceleration
         g, alpha = it.gravity, atan(it.width / it.height)
         p = (1.5 * g / hypot(it.width, it.height)) ** 0.5  # p^2 = 3 g / (4 R)
-        eta = 1 - 1.5 * sin(alpha) ** 2 if it.restitution is None else it.restitution
+        etas = dict(zip((1, -1), structure.etas, strict=True))  # of impacts that end positive and negative motion
         keep = motion.dt * motion.every
         samples = np.arange(time[:: motion.every].size + round(tail / keep)) * keep
 
@@ -98,7 +98,7 @@ class BySolveIvp(Engine):
                 phi[samples > t] = rate[samples > t] = nan
             elif t < last:
                 impacts.append((t, s, -run.y[1, -1]))
-                s, w = -s, -eta * run.y[1, -1]
+                s, w = -s, -etas[s] * run.y[1, -1]
                 if w < REST * p * alpha:
                     (t, s), w = lifts(t), 0.0
 

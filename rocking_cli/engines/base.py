@@ -7,8 +7,10 @@ from collections.abc import Set
 from math import isfinite, isnan
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from rocking_cli.dynamics.history import RTOL, TAIL, History, check_rtol
-from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame, guard
@@ -109,7 +111,7 @@ class Engine(ABC):
         PluginError
             If an engine of another package fails, or returns no valid history.
         """
-        _check(structure, motion, release, tail, rtol)
+        _check(structure, motion, model, release, tail, rtol)
         if (why := self.refuses(structure)) is not None:
             reason = f"the engine {self.name} cannot simulate {structure.name}: {why}"
             raise InputError(Problem(reason, file=structure.file))
@@ -128,9 +130,15 @@ class Engine(ABC):
 
 
 def _check(
-    structure: Structure, motion: GroundMotion | None, release: float | None, tail: float, rtol: float
+    structure: object, motion: object, model: ModelName, release: float | None, tail: float, rtol: float
 ) -> None:  # fmt: skip
-    """Raise `InputError` if an argument is out of range."""
+    """Raise `InputError` if an argument is of the wrong type or out of range."""
+    if not isinstance(structure, Structure):
+        raise InputError(f"structure must be a Structure of rocking_cli.engines, got {type(structure).__name__}")
+    if not isinstance(motion, GroundMotion | None):
+        raise InputError(f"motion must be a GroundMotion, got {type(motion).__name__}")
+    if model not in MODELS:
+        raise InputError(f"model must be one of {', '.join(MODELS)}, got {model!r}")
     if motion is None and release is None:
         raise InputError("nothing to respond to: give a ground motion, a release, or both")
     if release is not None and not 0 < abs(release) < 1:
@@ -152,6 +160,17 @@ def _fault(found: object, model: ModelName, *, checks_joints: bool) -> str:
         return "time, phi, rate and ratio of its history differ in length"
     if found.impacts.shape[1:] != (3,):
         return f"impacts must have the shape (k, 3), got {found.impacts.shape}"
+    if not (np.diff(found.time) > 0).all():
+        return "the times of its history do not increase"
+    if (found.fell_to != 0) != found.overturned:
+        return f"fell_to of its history is {found.fell_to}, but overturned is {found.overturned}"
+    fallen = {1: found.peak_positive, -1: found.peak_negative}
+    if any(not peak >= 0 and side != found.fell_to for side, peak in fallen.items()):
+        return (
+            f"a peak of its history must be at least 0, got {next(peak for peak in fallen.values() if not peak >= 0):g}"
+        )
+    if found.impact_count < len(found.impacts):
+        return f"its history has {len(found.impacts)} impacts, but impact_count is {found.impact_count}"
     if not checks_joints and not isnan(found.opening):
         return "its history has an opening of joints, but `joints` is not in what it knows"
     return ""

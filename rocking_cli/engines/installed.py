@@ -17,6 +17,7 @@ from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import origin
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.structure import Structure
+from rocking_cli.text import did_you_mean
 
 GROUP = "rocking.engines"
 EXACT = Exact()
@@ -64,6 +65,8 @@ def engines() -> Engines:
 
 def engine(name: str) -> Engine:
     """Return the engine of a name, `"exact"` or one that is installed. Raises `InputError` if there is none."""
+    if name != EXACT.name and name not in engines():
+        raise InputError(f"unknown engine: {name} ({did_you_mean(name, [EXACT.name, *engines()])})")
     return EXACT if name == EXACT.name else engines()[name]
 
 

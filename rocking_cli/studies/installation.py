@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from typing import Any
 
+from rocking_cli.core.hung.ties import Laws
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.compiled import cache_folder, needs_compiling, unwritable
 from rocking_cli.engines.installed import Engines
@@ -56,8 +57,8 @@ class Installation:
     extras : mapping of str to mapping
         For each extra of the package, those packages likewise.
     plugins : mapping of str to tuple of Plugin
-        Under `mechanisms`, `records`, `pulses`, `measures` and `codes`; under `engines` if others are installed than
-        the exact one.
+        Under `mechanisms`, `records`, `pulses`, `measures` and `codes`; under `laws` and `engines` if any are
+        installed beside those of this program.
     cache : str
         The folder of the compiled kernels.
     unwritable : str or None
@@ -96,7 +97,7 @@ def examine() -> Installation:
             "pulses": _plugins(PulseShapes()),
             "measures": _plugins(IntensityMeasures()),
             "codes": _plugins(Codes()),
-            **({"engines": engines} if (engines := _plugins(Engines())) else {}),
+            **{name: others for name, of in (("laws", Laws()), ("engines", Engines())) if (others := _plugins(of))},
         },
         str(cache_folder()),
         unwritable(),
