@@ -86,6 +86,9 @@ class Checks(Delegating):
         return history
 
 
+NO_MODEL = "model must be one of nonlinear, linear1, linear2, got 'linear3'"
+
+
 class Spoils(Delegating):
     """Gives a history with some fields replaced."""
 
@@ -302,7 +305,7 @@ class TestEnginesThatGoWrong:
             ((Structure(BLOCK), "sine:0.3g:0.8s"), "motion must be a GroundMotion, got str"),
             (
                 (Structure(BLOCK), MOTIONS["rocks"], "linear3"),
-                "model must be one of nonlinear, linear1, linear2, got 'linear3'",
+                NO_MODEL,
             ),
         ],
     )

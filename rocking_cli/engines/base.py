@@ -164,11 +164,9 @@ def _fault(found: object, model: ModelName, *, checks_joints: bool) -> str:
         return "the times of its history do not increase"
     if (found.fell_to != 0) != found.overturned:
         return f"fell_to of its history is {found.fell_to}, but overturned is {found.overturned}"
-    fallen = {1: found.peak_positive, -1: found.peak_negative}
-    if any(not peak >= 0 and side != found.fell_to for side, peak in fallen.items()):
-        return (
-            f"a peak of its history must be at least 0, got {next(peak for peak in fallen.values() if not peak >= 0):g}"
-        )
+    for side, peak in ((1, found.peak_positive), (-1, found.peak_negative)):
+        if not peak >= 0 and side != found.fell_to:
+            return f"a peak of its history must be at least 0, got {peak:g}"
     if found.impact_count < len(found.impacts):
         return f"its history has {len(found.impacts)} impacts, but impact_count is {found.impact_count}"
     if not checks_joints and not isnan(found.opening):
