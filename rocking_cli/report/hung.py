@@ -16,7 +16,7 @@ ABSENT = "-"
 Rows = list[list[str]]
 
 
-class Hung(NamedTuple):
+class HungTables(NamedTuple):
     """Tables and a sentence.
 
     Parameters
@@ -43,7 +43,7 @@ class Hung(NamedTuple):
     said: list[str]
 
 
-def hung_on(content: Assessment) -> Hung | None:
+def hung_on(content: Assessment) -> HungTables | None:
     """Return the tables of loads and ties; None if the structure has neither."""
     mechanism = content.mechanism
     if not mechanism.attached:
@@ -52,7 +52,7 @@ def hung_on(content: Assessment) -> Hung | None:
     found = {each.given.motion.name: _worse(watched, each) for each in content.results}
     shown = {name + _until(moved): moved for name, moved in found.items()}
     hung = mechanism.hung
-    return Hung(
+    return HungTables(
         masses=[_mass(each) for each in hung.masses],
         forces=[_force(each) for each in hung.elements if isinstance(each, ConstantForce)],
         ties=[_tie(each) for each in hung.ties],
