@@ -144,7 +144,7 @@ class Samples(NamedTuple):
     impacts: np.ndarray  # (most, 3): time [s], sign of the direction that ends and rate before [rad/s]
 
 
-class Tabled(NamedTuple):
+class Structure(NamedTuple):
     """The tables of one structure, and the numbers of one history."""
 
     linear: bool
@@ -1232,7 +1232,7 @@ def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks):
         linear = deck.structures[m, 2] == 1
         held = deck.held[cells] if deck.held.shape[0] > 0 else deck.held
         corners = deck.corners[cells] if deck.corners.shape[0] > 0 else deck.corners
-        structure = Tabled(
+        structure = Structure(
             linear, numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells], held, corners
         )
         of, size = deck.records[r], what[SIZE]
