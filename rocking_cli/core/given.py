@@ -1,12 +1,13 @@
-"""What a file may say of every structure, whatever its mechanism: masses, restitution, loads, ties and supports."""
+"""What a file may say of every structure, whatever its mechanism, and how a structure is made of it."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import Annotated, Any, Literal, Self
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, SerializeAsAny, model_validator
+from pydantic import Field, SerializeAsAny, ValidationError, model_validator
 
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
 from rocking_cli.core.hung.attachments import Refused
@@ -17,6 +18,8 @@ from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.strength import Strength
 from rocking_cli.core.uncertainty import Uncertainty
+from rocking_cli.errors import FieldError
+from rocking_cli.plugins.errors import blame
 
 KINEMATIC = "kinematic"
 """What a file says of a rebound that follows from the shape."""
@@ -49,6 +52,9 @@ class DirectionalRestitution(Described):
 
 class Given(Described):
     """The fields that every structure may have beside those of its mechanism, and what follows from them alone."""
+
+    mechanism: ClassVar[str]
+    """The name of the mechanism, that of its entry point."""
 
     name: Name | None = Field(None, description="what to call the structure")
     gravity: float = Field(
@@ -147,6 +153,49 @@ class Given(Described):
         if self.crushing is not None and self.crushing.depth is None and self.depth is None:
             raise geometry_error(("crushing", "depth"), "is missing: give the length of the pivot out of plane")
         return self
+
+    def __init__(self, /, **fields: Any) -> None:
+        try:
+            super().__init__(**fields)
+            self._hold_together()
+        except ValidationError as error:
+            from rocking_cli.io.field_problems import of_arguments
+
+            raise FieldError(*of_arguments(type(self), error.errors(include_url=False), type(self).mechanism)) from None
+
+    # As pydantic marks its own: files and copies are validated without it, and place their errors themselves.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""
+        kept = {key: getattr(self, key) for key in self.model_fields_set}
+        return type(self).from_fields({**kept, **(update or {})})
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], folder: Path | None = None) -> Self:
+        """The mechanism with these fields.
+
+        Parameters
+        ----------
+        fields : mapping
+            Names and values.
+        folder : Path, optional
+            Where files that fields name are, by default here: `folder` in the context of the validation.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            If they are not fields of this mechanism, or do not fit together.
+        PluginError
+            If a validator of the plugin fails in any other way.
+        """
+        with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
+            made = cls.model_validate(dict(fields), context={"folder": folder})
+            made._hold_together()
+            return made
+
+    def _hold_together(self) -> None:
+        """Raise `ValidationError` of the fields that do not fit together."""
 
     @property
     def restitution_is_kinematic(self) -> bool:

@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from inspect import isfunction
 from math import nan, sqrt
-from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from pydantic import ValidationError
@@ -37,8 +36,8 @@ from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Sketch
-from rocking_cli.errors import FieldError, InputError, Problem
-from rocking_cli.plugins.errors import blame, guard
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.plugins.errors import guard
 
 ANSWERS = (
     "bodies", "motion", "limit", "sketch", "joints", "pieces", "piece_at", "contacts", "alike", "volume", "total_mass",
@@ -63,8 +62,6 @@ class Mechanism(Given, ABC):
     Where a structure gives no masses its total mass is 1 kg, so that inertias and moments are per kilogram.
     """
 
-    mechanism: ClassVar[str]
-    """The name of the mechanism, that of its entry point."""
     title: ClassVar[str]
     """What it is, in a few words."""
     source: ClassVar[str]
@@ -75,46 +72,6 @@ class Mechanism(Given, ABC):
     """A sentence or two, which the tool shows, on where its answers are unsafe or mean less than they seem."""
     starter: ClassVar[tuple[str, ...]] = ()
     """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
-
-    def __init__(self, /, **fields: Any) -> None:
-        try:
-            super().__init__(**fields)
-            self._hold_together()
-        except ValidationError as error:
-            from rocking_cli.io.field_problems import of_arguments
-
-            raise FieldError(*of_arguments(type(self), error.errors(include_url=False), type(self).mechanism)) from None
-
-    # As pydantic marks its own: files and copies are validated without it, and place their errors themselves.
-    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
-
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""
-        kept = {key: getattr(self, key) for key in self.model_fields_set}
-        return type(self).from_fields({**kept, **(update or {})})
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], folder: Path | None = None) -> Self:
-        """The mechanism with these fields.
-
-        Parameters
-        ----------
-        fields : mapping
-            Names and values.
-        folder : Path, optional
-            Where files that fields name are, by default here: `folder` in the context of the validation.
-
-        Raises
-        ------
-        pydantic.ValidationError
-            If they are not fields of this mechanism, or do not fit together.
-        PluginError
-            If a validator of the plugin fails in any other way.
-        """
-        with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
-            made = cls.model_validate(dict(fields), context={"folder": folder})
-            made._hold_together()
-            return made
 
     def _hold_together(self) -> None:
         """Check the masses, loads and ties against the bodies; raise `ValidationError` of the fields."""
