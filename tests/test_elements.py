@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from importlib.metadata import EntryPoint
 from textwrap import dedent
 
@@ -18,8 +19,10 @@ from rocking_cli.core import Direction, Spot
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.element import Element
 from rocking_cli.core.hung.elements import ConstantForce, Spring, SpringBed
-from rocking_cli.core.hung.ties import Tie, laws
+from rocking_cli.core.hung.ties import Laws, Tie, laws
+from rocking_cli.errors import MechanismError
 from rocking_cli.plugins import registry
+from rocking_cli.plugins.installed import load
 from rocking_cli.testing import check_law
 from tests.conftest import EXAMPLES, PROJECT
 from tests.stiffening import Cubic
@@ -256,6 +259,44 @@ def test_the_law_of_the_guide_is_this_one():
     code = "\n".join(line[4:] for line in lines if line.startswith("    ") or not line)
     own = ast.parse((PROJECT / "tests" / "stiffening.py").read_text(encoding="utf-8")).body[2:]
     assert ast.dump(ast.Module(own, [])) == ast.dump(ast.parse(code))
+
+
+class Divides(Cubic):
+    def force(self, e):
+        return e / 0 if e.size > 1 else [][0]
+
+
+def test_an_error_of_a_law_is_its_own(law, tmp_path, monkeypatch):
+    monkeypatch.setattr("tests.stiffening.Cubic", Divides)
+    (tmp_path / "wall.yaml").write_text(STIFFENING)
+    said = in_one_line(run("equiv", tmp_path / "wall.yaml", code=3).stderr)
+    where = r" the element Divides failed in force: IndexError: list index out of range \(.*test_elements\.py:\d+\)$"
+    assert re.search(where, said), said
+
+
+def test_a_tie_with_a_law_is_no_bed(law, tmp_path):
+    bed = "    bed: {from: [-0.5, 0.0], to: [-0.5, 3.0]}\n    modulus: 1e5\n"
+    lines = [line for line in STIFFENING.splitlines() if not re.match(r"\s+(from|to|stiffness|prestress):", line)]
+    (tmp_path / "wall.yaml").write_text("\n".join(lines) + "\n" + bed)
+    said = "wall.yaml:10:10: ties[1].bed cannot be combined with `law`: a bed of springs is elastic"
+    assert said in refused("equiv", tmp_path / "wall.yaml")
+
+
+class Nameless(Tie):
+    pass
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("tests.test_elements:Cubic", "is not a law: it must be a class derived from Tie"),
+        ("tests.test_elements:Nameless", 'is not a law: it must have the field law: Literal["odd"] = "odd"'),
+        ("tests.stiffening:Stiffening", 'is not a law: it must have the field law: Literal["odd"] = "odd"'),
+    ],
+)
+def test_what_is_no_law_is_named_with_its_package(value, said):
+    with pytest.raises(MechanismError, match=re.escape(said)):
+        Laws.accept(load(EntryPoint("odd", value, "rocking.laws")), EntryPoint("odd", value, "rocking.laws"))
 
 
 def test_without_such_a_package_a_law_is_no_field(tmp_path):

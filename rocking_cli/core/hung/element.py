@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Follow, Push, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals
+from rocking_cli.plugins.errors import guard
 
 Sense = Literal["tension", "compression"]
 Question = Literal["linear models", "equivalent block", "sizes", "verification"]
@@ -36,6 +37,10 @@ ROUNDING = 1e-14  # m, and of that distance: elongations that are none
 NEAR = 1e-6  # rad or so: two points that met at rest are still so near that their distance is its derivative times phi
 
 
+def _failed(cls: type, method: str) -> str:
+    return f"the element {cls.__name__} failed in {method}"
+
+
 class Element(ABC):
     """Something on a mechanism whose force follows from its elongation: a tie, a bed of springs, a constant force."""
 
@@ -48,6 +53,12 @@ class Element(ABC):
     """Whether its law is made of straight lines, so that its slope at the critical rotation stands for it."""
     departs: ClassVar[str] = ""
     """How its force departs from straight lines over its elongation, to follow its name: `yields`."""
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """Guard what an element of another package answers: whatever fails there is an error of that package."""
+        super().__init_subclass__(**named)
+        if cls.__module__.partition(".")[0] != __name__.partition(".")[0]:
+            guard(cls, ("force", "slope", "energy", "slack_at", "elongation", "act", "forces"), _failed)
 
     @property
     @abstractmethod

@@ -129,6 +129,8 @@ class Tie(Described):
         ways = [self.start is not None or self.end is not None, self.path is not None, self.bed is not None]
         if sum(ways) != 1 or (ways[0] and (self.start is None or self.end is None)):
             raise geometry_error("from", "give one of: `from` and `to`, `path`, or `bed`")
+        if self.bed is not None and type(self) is not Tie:
+            raise geometry_error("bed", "cannot be combined with `law`: a bed of springs is elastic")
         if self.bed is not None:
             self._check_bed()
         else:
@@ -215,8 +217,11 @@ class Laws(Plugins[type[Tie]]):
     @staticmethod
     def accept(loaded: object, point: EntryPoint) -> type[Tie]:
         """What was loaded, if it is a tie that has a field `law`."""
-        if not (isinstance(loaded, type) and issubclass(loaded, Tie) and "law" in loaded.model_fields):
-            raise MechanismError(f"{origin(point)} is not a law: it must derive from Tie and have a field `law`")
+        if not (isinstance(loaded, type) and issubclass(loaded, Tie)):
+            raise MechanismError(f"{origin(point)} is not a law: it must be a class derived from Tie")
+        if "law" not in loaded.model_fields or loaded.model_fields["law"].default != point.name:
+            wanted = f'law: Literal["{point.name}"] = "{point.name}"'
+            raise MechanismError(f"{origin(point)} is not a law: it must have the field {wanted}")
         return loaded
 
 
