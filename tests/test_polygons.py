@@ -14,6 +14,7 @@ from mechanisms.block import Block
 from mechanisms.rigid_body import MOST, RigidBody
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import FieldError, MechanismError
+from rocking_cli.structure import Structure
 from rocking_cli.studies.linearisation import compare
 from rocking_cli.studies.picture import picture
 from tests.test_cli import run
@@ -140,7 +141,7 @@ def test_no_warning_but_an_error_where_rounding_hides_the_motion(height):
 
     flat = Block.model_construct(width=1e5, height=height)  # of a plugin that takes it
     with pytest.raises(SolverError, match="so stocky"):
-        compare(flat, equivalent_block(flat), (0.5,), (2.0,))
+        compare(Structure(flat), (0.5,), (2.0,))
 
 
 def test_a_report_stands_without_the_error_of_the_block(tmp_path):
