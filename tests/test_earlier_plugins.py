@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import importlib.util
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from pytest import approx
 
 import rocking_cli as rk
+from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.testing import MechanismContract, contract
+from rocking_cli.views.hung import hung_data, hung_in_words
 from tests.conftest import PROJECT
 from tests.earlier.pedestal import Pedestal
 from tests.earlier.rocking_capped_block import CappedBlock
@@ -48,6 +51,40 @@ def test_a_plugin_that_uses_all_of_the_earlier_contract_gives_what_it_gave(name)
     assert rk.respond(made, wave, models="nonlinear")["nonlinear"].peak_ratio == approx(peak, rel=1e-9)
     assert [each.value for each in made.found(Direction.POSITIVE)] == approx(found, rel=1e-9)
     assert [each.check for each in contract(made) if not each.passed] == []
+
+
+@dataclass(frozen=True)
+class Drag:
+    """Something attached that this package does not know: a constant moment against the motion [N m]."""
+
+    name: str
+    moment: float
+
+    def act(self, total, direction, follow):
+        total.Q[:] += self.moment
+        total.U[:] += self.moment * total.phi
+
+    def forces(self, direction, follow):
+        return ()
+
+
+class Dragged(Pedestal):
+    drag: float = 0.0
+
+    def carries(self):
+        return (Drag("drag", self.drag),)
+
+
+def test_what_a_plugin_attaches_by_a_class_of_its_own_counts_in_statics_and_verification():
+    plain, made = (Dragged(width=0.8, height=2.0, tall=1.0, mass=2000.0, drag=drag) for drag in (0.0, 400.0))
+    rest = made.coefficients(np.zeros(1), Direction.POSITIVE)
+    more = 400.0 / (made.gravity * float(rest.B[0]))
+    assert made.uplift(Direction.POSITIVE) == approx(plain.uplift(Direction.POSITIVE) + more, rel=1e-12)
+    alpha0 = [Chain(each, Direction.POSITIVE).alpha0 for each in (plain, made)]
+    assert alpha0 == approx([plain.uplift(Direction.POSITIVE), made.uplift(Direction.POSITIVE)], rel=1e-12)
+    assert rk.equiv(made).to_frame() is not None
+    assert list(hung_in_words(made)) == ["With drag: its contribution to the equation of motion."]
+    assert hung_data(made) == [{"name": "drag", "kind": "Drag"}]
 
 
 class TestCappedBlock(MechanismContract):

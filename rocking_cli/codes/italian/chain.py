@@ -10,8 +10,7 @@ import numpy as np
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.coefficients import Coefficients
-from rocking_cli.core.hung.attached import Follow, PointMass, Spot
-from rocking_cli.core.hung.element import Element
+from rocking_cli.core.hung.attached import Attached, Follow, PointMass, Spot
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.core.reactions import parts
 from rocking_cli.errors import InputError
@@ -150,14 +149,16 @@ class Chain:
 
     def held_by(self, *, ties: bool) -> float:
         """The work per unit rotation that ties take at rest, or that forces take: internal work, or -F.r' [N m]."""
-        return sum(self._moment(each) for each in self.mechanism.hung.elements if bool(each.stretched) == ties)
+        hung = self.mechanism.hung
+        return sum(self._moment(thing) for thing in hung.things if (thing in hung.ties) == ties)
 
     @property
     def works(self) -> dict[str, float]:
         """The work per unit rotation that each force and tie takes at rest, by its name [N m]."""
-        return {each.name: self._moment(each) for each in self.mechanism.hung.elements}
+        held = [thing for thing in self.mechanism.attached if not isinstance(thing, PointMass)]
+        return {thing.name: self._moment(thing) for thing in held}
 
-    def _moment(self, thing: Element) -> float:
+    def _moment(self, thing: Attached) -> float:
         rest = np.zeros(1)
         total = Coefficients(rest, *(np.zeros(1) for _ in range(7)))
         thing.act(total, self.direction, self._follow_at_rest)
