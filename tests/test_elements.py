@@ -261,6 +261,29 @@ def test_the_law_of_the_guide_is_this_one():
     assert ast.dump(ast.Module(own, [])) == ast.dump(ast.parse(code))
 
 
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (("error",), "the linear models do not hold: cable yields"),
+        (("overturning", "--model", "nonlinear"), "spectra and maps are not available: cable yields"),
+        (("spectrum", "--record", ACCEL), "spectra and maps are not available: cable yields"),
+        (("verify", "--site", EXAMPLES / "verify" / "site.yaml"), "no code of practice here covers it: cable yields"),
+        (("equivalent", EXAMPLES / "block.yaml", "--ag", "1g", "--period", "0.5"), "wall: the linear models do not"),
+    ],
+    ids=lambda value: value[0] if isinstance(value, tuple) else "",
+)
+def test_a_tie_that_remembers_has_statics_and_no_block(monkeypatch, tmp_path, command, said):
+    (tmp_path / "wall.yaml").write_text(WALL.replace("2e5", "2e3"))
+    elastic = run_json("equiv", tmp_path / "wall.yaml")["directions"]
+    monkeypatch.setattr(Spring, "has_memory", True)
+    monkeypatch.setattr(Spring, "departs", "yields")
+    found = run_json("equiv", tmp_path / "wall.yaml")["directions"]
+    for side, values in found.items():
+        assert (values["lambda"], values["phi_cr"]) == (elastic[side]["lambda"], elastic[side]["phi_cr"])
+        assert (values["p"], values["no_block"]) == (None, "cable yields")
+    assert said in refused(command[0], tmp_path / "wall.yaml", *command[1:])
+
+
 class Divides(Cubic):
     def force(self, e):
         return e / 0 if e.size > 1 else [][0]

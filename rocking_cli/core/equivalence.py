@@ -170,8 +170,6 @@ def _too_large(error: BaseException | None) -> bool:
 
 
 def _one_direction(mechanism: Mechanism, direction: Direction, found: Statics) -> EquivalentBlock:
-    if why := mechanism.hung.refuses("equivalent block"):
-        raise NoEquivalentBlock(why)
     if found.phi_cr is None or found.why_no_block is not None:
         raise NoEquivalentBlock(
             f"no single block is equivalent to it in the {direction.label} direction: {found.why_no_block}"

@@ -87,4 +87,5 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
         rises = mechanism.bends and (slope >= 0).any()
         cause = ": what ties it stiffens it" if mechanism.attached else ""
         why = f"its restoring moment does not fall all the way from rest{cause}" if rises else ""
+    why = mechanism.hung.fault("equivalent block") or why
     return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None)

@@ -190,8 +190,9 @@ def _name(mechanism: Mechanism) -> str:
 
 
 def _equivalence(mechanism: Mechanism) -> Equivalence:
+    if why := mechanism.hung.refuses("linear models"):
+        raise InputError(Problem(f"{_name(mechanism)}: {why}", field="ties"))
     try:
-        mechanism.hung.ask("linear models")
         return equivalent_block(mechanism)
     except MechanismError as error:
         raise of_structure(error, _name(mechanism)) from error

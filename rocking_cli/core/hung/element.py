@@ -27,7 +27,7 @@ Question = Literal["linear models", "equivalent block", "sizes", "verification"]
 NO_ANSWER: dict[Question, str] = {
     "linear models": "the linear models do not hold",
     "equivalent block": "no single block is equivalent to it",
-    "sizes": "spectra and maps do not hold, as they scale the structure or its motion",
+    "sizes": "spectra and maps are not available",
     "verification": "no code of practice here covers it",
 }
 """What a structure may be asked beside its nonlinear history, and what is said where its elements do not allow it."""

@@ -55,9 +55,14 @@ class Hung:
         return [tie for each in self.elements for tie in each.stretched if tie.only is not None]
 
     def refuses(self, question: Question) -> str | None:
-        """Return why a question has no answer, in the words of the first element at fault; None if it has one."""
+        """Return why a question has no answer, as a sentence; None if it has one."""
+        fault = self.fault(question)
+        return f"{NO_ANSWER[question]}: {fault}" if fault is not None else None
+
+    def fault(self, question: Question) -> str | None:
+        """Return which element lets a question not be answered, in its own words; None if all do."""
         found = ((each.name, each.refuses(question)) for each in self.elements)
-        return next((f"{NO_ANSWER[question]}: {name} {why}" for name, why in found if why), None)
+        return next((f"{name} {why}" for name, why in found if why), None)
 
     def ask(self, question: Question) -> None:
         """Raise `InputError` if the elements leave a question without an answer."""
