@@ -603,7 +603,7 @@ def test_a_second_process_finds_the_machine_code(tmp_path):
         "from rocking_cli.excitation.pulses import parse_pulse;"
         "e = equivalent_block(Registry()['block'](width=0.7, height=2.8));"
         "exact_many(e, parse_pulse('sine:0.4g:1s'), [4.0], [1.0], kappa=2, gravity=9.81);"
-        "many = ways._compiled_module('rocking_cli.dynamics.pulse_motion')['many'];"
+        "many = ways.compiled_module('rocking_cli.dynamics.pulse_motion')['many'];"
         "print(sum(many.stats.cache_hits.values()), sum(many.stats.cache_misses.values()))"
     )
     said = [

@@ -79,13 +79,14 @@ def _ready(of: KernelSet) -> Kernel:
 
 
 @functools.cache
-def _compiled_module(module: str) -> dict[str, Any]:
+def compiled_module(module: str) -> dict[str, Any]:
+    """The functions of a kernel by name, compiled by numba."""
     source = importlib.import_module(module)
     return compiled.compile_source(source.SOURCE, inline=source.INLINE)
 
 
 def _jit(of: KernelSet) -> Kernel:
-    function: Kernel = _compiled_module(of.module)[of.function]
+    function: Kernel = compiled_module(of.module)[of.function]
     return function
 
 
