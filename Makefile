@@ -10,7 +10,7 @@ STAMP := $(VENV)/.installed
 RELEASE_STAMP := $(VENV)/.installed-release
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench validation stub pictures \
+.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench kernels validation stub pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -81,6 +81,12 @@ soak: setup  ## What takes too long for the tests, an hour: damaged stores, race
 
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py
+
+KERNELS := out/kernels
+kernels:  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; PYTHON up to 3.13, READY=FOLDER for another place
+	$(PYTHON) -m venv $(KERNELS)
+	$(KERNELS)/$(notdir $(BIN))/python -m pip install --quiet "numba==0.61.2" "llvmlite==0.44.0" "numpy<2.3" "platformdirs>=4"
+	$(KERNELS)/$(notdir $(BIN))/python scripts/make_kernels.py $(READY)
 
 stub: setup  ## Write rocking_cli/__init__.pyi, which types what the package hands out
 	$(BIN)/python docs/make_stub.py

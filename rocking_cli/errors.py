@@ -168,6 +168,10 @@ class CacheWarning(UserWarning):
     """Compiled kernels that cannot be used, and are compiled anew."""
 
 
+class KernelWarning(UserWarning):
+    """Kernels that run far slower than they could."""
+
+
 class SolverError(RockingError):
     """A solver that could not reach an answer it can stand behind."""
 

@@ -25,6 +25,8 @@ FORMATS = RECORDS / "formats"
 NEEDS_RECORDS = pytest.mark.skipif(not FORMATS.is_dir(), reason=f"no real records in {RECORDS} (ROCKING_RECORDS)")
 
 
+KEPT = ("ROCKING_RECORDS", "ROCKING_KERNELS")  # the second has all tests run with the kernels of that way
+
 # What tests read is as in a pipe, where no line is broken; those of widths say how wide they are.
 os.environ.pop("COLUMNS", None)
 
@@ -46,7 +48,7 @@ def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
     """No test takes the defaults of whoever runs it: the file that would have them, which is not there."""
     from rocking_cli.cli import defaults
 
-    for name in [each for each in os.environ if each.startswith("ROCKING_") and each != "ROCKING_RECORDS"]:
+    for name in [each for each in os.environ if each.startswith("ROCKING_") and each not in KEPT]:
         monkeypatch.delenv(name)
     file = tmp_path_factory.getbasetemp() / "user" / "rocking.toml"
     file.unlink(missing_ok=True)

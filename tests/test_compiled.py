@@ -90,7 +90,10 @@ def test_settings_with_which_numba_does_not_start_are_named(setting):
     code = "from rocking_cli.cli.main import main; main()"
     arguments = ["respond", str(EXAMPLES / "block.yaml"), "--pulse", "sine:0.5g:1.2s"]
     ended = subprocess.run(
-        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, env={**os.environ, name: value}
+        [sys.executable, "-c", code, *arguments],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "ROCKING_KERNELS": "jit", name: value},
     )
     assert ended.returncode == 2 and "Traceback" not in ended.stderr
     assert f"does not start with {setting}: " in ended.stderr and "unset these variables" in ended.stderr

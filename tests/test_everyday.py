@@ -188,7 +188,7 @@ class TestCompiling:
 
     @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals")
     def test_something_moves_on_a_terminal_and_a_damaged_cache_is_mended(self, tmp_path):
-        cache = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "TERM": "xterm"}
+        cache = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "TERM": "xterm", "ROCKING_KERNELS": "jit"}
         shown = on_a_terminal([sys.executable, *self.MAP], cache)
         assert "compiling the exact response to pulses, about five seconds, once" in shown
         assert "compiling 0:00:01" in shown and shown.count("compiling 0:00:0") > 5
@@ -200,6 +200,9 @@ class TestCompiling:
             mended = subprocess.run([sys.executable, *self.MAP], env=cache, capture_output=True, text=True, check=True)
             assert mended.stderr.count("is damaged and is compiled again") == times and "Traceback" not in mended.stderr
             assert mended.stdout == piped.stdout
+        ready = {**cache, "ROCKING_KERNELS": "ready"}
+        shipped = subprocess.run([sys.executable, *self.MAP], env=ready, capture_output=True, text=True, check=True)
+        assert shipped.stdout == piped.stdout and "compil" not in on_a_terminal([sys.executable, *self.MAP], ready)
 
 
 def on_a_terminal(arguments, environment):
@@ -223,7 +226,7 @@ class TestInfo:
 
         found = run_json("info")
         assert found["version"] == version("rocking-cli") and found["libraries"]["numpy"] == version("numpy")
-        assert {"cluster", "docx", "parquet", "seismo"} == set(found["extras"])
+        assert {"cluster", "docx", "parquet", "seismo"} == set(found["extras"]) - {"jit"}
         names = {kind: {each["name"] for each in plugins} for kind, plugins in found["plugins"].items()}
         assert "arch" in names["mechanisms"] and "peer_at2" in names["records"] and "ricker" in names["pulses"]
         assert found["processors"] >= found["threads"] >= 1

@@ -563,14 +563,15 @@ def test_many_are_each_as_one(shape):
 
 
 def test_compiled_and_not_give_the_same_numbers():
-    from rocking_cli.dynamics.exact_batch import _compiled
+    from rocking_cli.dynamics import ways
+    from rocking_cli.dynamics.calling import PULSES
 
     sides = sides_of(equivalent_block(FRAME), kappa=1, gravity=G)
     for shape in SHAPE:
         segments = segments_of(SHAPE[shape](1.0, 1.0))
         for a, T in zip(*grid(9), strict=True):
             compiled, plain = np.empty((1, RESULTS)), [[0.0] * RESULTS]
-            _compiled()(sides, np.array(segments), np.array([a]), np.array([T]), 0, 1, compiled)
+            ways.kernel(PULSES)(sides, np.array(segments), np.array([a]), np.array([T]), 0, 1, compiled)
             pulse_motion.many(sides, segments, [a], [T], 0, 1, plain)
             assert compiled[0] == approx(plain[0], rel=1e-13, abs=1e-15, nan_ok=True)
 
@@ -597,12 +598,13 @@ def test_progress_is_told_and_adds_up():
 
 def test_a_second_process_finds_the_machine_code(tmp_path):
     code = (
-        "from rocking_cli.dynamics.exact_batch import _compiled, exact_many;"
+        "from rocking_cli.dynamics.exact_batch import exact_many; from rocking_cli.dynamics import ways;"
         "from rocking_cli import Registry, equivalent_block;"
         "from rocking_cli.excitation.pulses import parse_pulse;"
         "e = equivalent_block(Registry()['block'](width=0.7, height=2.8));"
         "exact_many(e, parse_pulse('sine:0.4g:1s'), [4.0], [1.0], kappa=2, gravity=9.81);"
-        "print(sum(_compiled().stats.cache_hits.values()), sum(_compiled().stats.cache_misses.values()))"
+        "many = ways.compiled_module('rocking_cli.dynamics.pulse_motion')['many'];"
+        "print(sum(many.stats.cache_hits.values()), sum(many.stats.cache_misses.values()))"
     )
     said = [
         subprocess.run(
@@ -610,7 +612,7 @@ def test_a_second_process_finds_the_machine_code(tmp_path):
             capture_output=True,
             text=True,
             check=True,
-            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},
+            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "ROCKING_KERNELS": "jit"},
         ).stdout.split()
         for _ in range(2)
     ]

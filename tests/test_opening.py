@@ -425,7 +425,7 @@ def test_an_opening_and_a_slip_step_by_step(end, before, accelerations, time, af
     at, rate = [(kernels.GAP, kernels.GAP_RATE), (kernels.SLIP, kernels.SLIP_RATE)][end // 2]
     columns = [at + end % 2, rate + end % 2]
     kept[0, columns] = before
-    moves = kernels.advance_opening.py_func(kept, 0, end, *accelerations, time)
+    moves = kernels.advance_opening(kept, 0, end, *accelerations, time)
     assert kept[0, columns] == pytest.approx(after)
     assert moves == (after[1] > 0 or (end < 2 and after[0] > 0))
 

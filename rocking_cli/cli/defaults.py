@@ -33,7 +33,7 @@ IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")
 """Options whose meaning differs between commands: only the table of a command may set them."""
 GONE = {"within-amplitude": "amplitude-deviation", "within-restitution": "restitution-deviation"}
 """Options that no longer exist, and what to give instead: their values had another meaning."""
-OTHERS = ("DEBUG", "BROWSER")
+OTHERS = ("DEBUG", "BROWSER", "KERNELS")
 """Other variables of the environment that the program reads."""
 
 

@@ -12,7 +12,8 @@ _SAID: set[str] = set()
 
 def compile_first(*, exact: bool = False) -> None:
     """Compile the kernel of histories or of exact responses if this machine has not yet; show a spinner."""
-    from rocking_cli.dynamics.compiled import HISTORIES, PULSES, needs_compiling
+    from rocking_cli.dynamics.compiled import HISTORIES, PULSES
+    from rocking_cli.dynamics.ways import needs_compiling
 
     kernel = PULSES if exact else HISTORIES
     if needs_compiling(kernel) and kernel not in _SAID:

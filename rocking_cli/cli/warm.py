@@ -12,8 +12,8 @@ from rocking_cli.cli import options, terminal
 def command(as_json: bool) -> None:
     """Compile the kernels of time histories and of exact pulse responses, so that no later command has to wait.
 
-    This takes about fifteen seconds, once for each machine and version; later calls report that all is compiled. The
-    machine code is kept in the cache folder of the user, or in the folder named by NUMBA_CACHE_DIR in the environment.
+    This takes a second or two, once for each machine and version; later calls report that all is compiled. The machine
+    code is kept in the cache folder of the user, or in the folder named by NUMBA_CACHE_DIR in the environment.
 
     \b
     Example:

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, read_marks
 from rocking_cli.dynamics.dispatch import KERNELS
 from rocking_cli.dynamics.history import RTOL, check_rtol
@@ -196,8 +197,6 @@ def respond_many(
     >>> [float(x) for x in respond_many(models, [wave], Runs.every(1, 1, scales=(0.3, 0.5))).peak_ratio.round(4)]
     [0.0, 0.2522]
     """
-    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
-
     check_rtol(rtol)
     if threads is not None and threads < 1:
         raise InputError(f"threads must be 1 or more, got {threads}")

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.dynamics.compiled import HISTORIES, has_run
+from rocking_cli.dynamics import compiled, kernels, ways
+from rocking_cli.dynamics.calling import HISTORIES, TIED
 from rocking_cli.dynamics.joints import laid_out
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcome
 from rocking_cli.excitation.base import GroundMotion
 
 if TYPE_CHECKING:
-    from rocking_cli.dynamics.kernels import Deck
     from rocking_cli.dynamics.outcome import Outcomes
 
 Reals = NDArray[np.float64]
@@ -29,7 +29,7 @@ MOST_IMPACTS = 20_000  # after the record and its tail, to call it still rocking
 
 
 def run_deck(
-    deck: Deck,
+    deck: kernels.Deck,
     runs: Reals,
     marks: Reals,
     first: int = 0,
@@ -44,11 +44,17 @@ def run_deck(
     impacts: Reals = NO_IMPACTS,
 ) -> None:
     """Run the kernel, which fills `marks` and, if given, the samples and the impacts of the last history."""
-    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
-
-    samples = kernels.Samples(every, phi, rate, impacts)
-    kernels.run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks)
-    has_run(HISTORIES)
+    run = ways.kernel(TIED if deck.forces.ndim == 4 else HISTORIES)
+    samples = kernels.Samples(every, phi, rate, impacts, np.empty(kernels.MARKS))
+    most = int(deck.joints.sizes[:, 1].max(initial=0))
+    room = kernels.Room(
+        np.empty((2, kernels.COLUMNS)),
+        np.empty((most, kernels.KEPT)),
+        np.empty(kernels.NOTES),
+        np.empty(4 * most, np.int64),
+    )
+    run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks, room)
+    ways.has_run(compiled.HISTORIES)
 
 
 def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
@@ -63,8 +69,6 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     reach : ndarray, shape (n,)
         The displacement that openings of joints are over [m]; NaN if the joints are not known.
     """
-    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
-
     status = marks[:, kernels.STATUS]
     passed, crossed = marks[:, kernels.PASSED], marks[:, kernels.CROSSED]
     # What has passed the critical rotation for good has overturned, whatever opens later on.
@@ -97,10 +101,8 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     )
 
 
-def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> Deck:
+def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> kernels.Deck:
     """Lay out models and ground motions (None: no shaking) for the kernel."""
-    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
-
     structures, records = [], []
     cells = 0
     for model in models:

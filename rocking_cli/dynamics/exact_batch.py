@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.core import Direction, Equivalence
-from rocking_cli.dynamics import pulse_motion
-from rocking_cli.dynamics.compiled import PULSES, compile_source, has_run
+from rocking_cli.dynamics import compiled, pulse_motion, ways
+from rocking_cli.dynamics.calling import PULSES
 from rocking_cli.dynamics.exact import polarity_of, segments_of, sides_of
 from rocking_cli.dynamics.outcome import UNCHECKED, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import in_parts
@@ -70,13 +69,13 @@ def exact_many(
     n = factors.size
     results = np.empty((n, pulse_motion.RESULTS))
     if n:
-        many = _compiled()
+        many = ways.kernel(PULSES)
 
         def follow(first: int, stop: int) -> None:
             many(sides, segments, factors, stretches, first, stop, results)
 
         in_parts(follow, n, UNIT, threads, progress)
-        has_run(PULSES)
+        ways.has_run(compiled.PULSES)
     status, side, impacts, uplift_time, *ratios = results.T
     overturned = status == pulse_motion.OVERTURNED
     fell_to = np.where(overturned, 1 - 2 * side, 0).astype(np.int64)
@@ -113,8 +112,3 @@ def _sizes(amplitudes: ArrayLike, periods: ArrayLike) -> tuple[NDArray[np.float6
             k = int(wrong.argmax())
             raise InputError(f"pulse {k}: the {name} must be positive, got {values[k]:g}")
     return a, t
-
-
-@cache
-def _compiled() -> Any:
-    return compile_source(pulse_motion.SOURCE, inline=(pulse_motion.at,))["many"]

@@ -8,6 +8,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, read_marks
 from rocking_cli.dynamics.dispatch import KERNELS
 from rocking_cli.dynamics.joints import JointCheck, check_of
@@ -108,8 +109,6 @@ def follow(
     `release` is 0 without one; `most_kept` is how many impacts are kept; `eta` the restitution of both directions, NaN:
     that of the model.
     """
-    from rocking_cli.dynamics import kernels  # numba, only when a history is computed
-
     every = motion.every if motion is not None else 1
     dt = every * motion.dt if motion is not None else RELEASE_DT  # between the samples that are kept
     npts = _samples(motion) if motion is not None else 0

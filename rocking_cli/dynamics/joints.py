@@ -16,6 +16,7 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.released import ONE, PUSH, RATE, Released, Undetermined, impulses, released
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.strength import Strength
+from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.tables import Table
 
@@ -144,8 +145,6 @@ REASONS = ("opens", "slides", "crushes", "weightless")  # in the order of the ke
 
 def check_of(joints: Joints | None, marks: Reals) -> JointCheck | None:
     """Return what the kernel says of the joints in one history; None if they are not known."""
-    from rocking_cli.dynamics import kernels  # numba, only when a history is asked for
-
     if joints is None:
         return None
 
@@ -406,15 +405,15 @@ def laid_out(all_joints: Sequence[Joints | None]) -> tuple[Integers, Integers, R
         )  # fmt: skip
         numbers[k] = each.gravity, each.limit * each.reach, each.step, each.scales, *each.calm
         first += len(each.labels)
-        rows_at, struck_at, within_at = (
-            rows_at + each.rows.size, struck_at + each.struck.size, within_at + each.within.size,
-        )  # fmt: skip
+        rows_at += each.rows.size // kernels.OF_ROW
+        struck_at += each.struck.size // 2
+        within_at += each.within.size // 5
     return (
         counts,
         np.concatenate([np.zeros((0, 2, 4), np.int64), *(each.contacts for each in known)]),
         np.concatenate([np.zeros((0, 2)), *(each.bearing for each in known)]),
-        np.concatenate([np.zeros(0), *(each.rows.ravel() for each in known)]),
-        np.concatenate([np.zeros(0), *(each.struck.ravel() for each in known)]),
-        np.concatenate([np.zeros(0), *(each.within.ravel() for each in known)]),
+        np.concatenate([np.zeros((0, kernels.OF_ROW)), *(each.rows.reshape(-1, kernels.OF_ROW) for each in known)]),
+        np.concatenate([np.zeros((0, 2)), *(each.struck.reshape(-1, 2) for each in known)]),
+        np.concatenate([np.zeros((0, 5)), *(each.within.reshape(-1, 5) for each in known)]),
         numbers,
     )

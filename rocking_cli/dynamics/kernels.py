@@ -1,4 +1,4 @@
-"""The history kernel: one compiled function for every structure, on floats and arrays alone.
+"""The history kernel: one function for every structure, on floats and arrays alone.
 
 A direction of rocking is an index d (0 positive, 1 negative) with sign s. A motion is (q, w): q = 0 at rest, dq =
 sqrt(I) dphi along it, and w = q. the root of twice the kinetic energy. In this coordinate the inertia is one, and
@@ -10,17 +10,18 @@ so two tables describe a mechanism, and Nystrom's methods for q.. = f(t, q) appl
 motion a third one says how much of the first, Q/g, does not follow g + v_g''. The linear model is q = phi; without
 vertical ground motion it is advanced in closed form.
 
-All of it stands in one file because the compiled code is kept by file: a function elsewhere could go stale.
+All of it stands in one file because the compiled code is kept by file: a function elsewhere could go stale. It is one
+source for three uses (`rocking_cli.dynamics.ways`): compiled ahead, compiled by numba, and run by Python as it stands.
+Nothing in it allocates memory or raises: code that is compiled ahead has no other library to call than that of C.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import ceil, cosh, isfinite, nan, sinh, sqrt
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
-
-from rocking_cli.dynamics.compiled import compile_inline, compile_kernel
 
 # Columns of `numbers`, one row a direction.
 LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED = range(12)
@@ -74,6 +75,24 @@ LOOK = 1.25e-3  # s: the longest step in which openings of joints are advanced, 
 BEHIND = 1e-11  # of a cell: how far behind a corner of the force a motion goes on
 COINCIDE = 1e-9  # of an interval: what is closer than this is at one moment
 
+SOURCE: list[Callable[..., object]] = []
+"""What is to be compiled, each after those it calls."""
+INLINE: list[Callable[..., object]] = []
+"""What of it is to be set into each place that calls it: a call would cost more than the few sums inside."""
+Function = TypeVar("Function", bound=Callable[..., object])
+
+
+def called(function: Function) -> Function:
+    """Mark a function of the kernel."""
+    SOURCE.append(function)
+    return function
+
+
+def inlined(function: Function) -> Function:
+    """Mark one that is to be set into its callers."""
+    INLINE.append(function)
+    return called(function)
+
 
 class Joints(NamedTuple):
     """The joints of structures, which histories are checked against; see `rocking_cli.dynamics.joints`."""
@@ -83,9 +102,11 @@ class Joints(NamedTuple):
     sizes: np.ndarray
     contacts: np.ndarray  # int (joints, 2, 4): see the columns above, for either direction; -1 where there is none
     bearing: np.ndarray  # (joints, 2): see the columns above
-    rows: np.ndarray  # of all structures, each (cells, 2, rows, OF_ROW): forces [N] and compliance [1/kg] over q
-    struck: np.ndarray  # each (2, rows, 2): impulses over the rate before, a constant and the factor of eta
-    within: np.ndarray  # each (cells, 2, 5): where all joints bear for certain, see `quiet`
+    # (n, OF_ROW): forces [N] and compliance [1/kg] over q, of all cells, directions and rows of each structure
+    rows: np.ndarray
+    # (n, 2): of its directions and rows, impulses over the rate before, a constant and the factor of eta
+    struck: np.ndarray
+    within: np.ndarray  # (n, 5): of its cells and directions, where all joints bear for certain, see `quiet`
     # (m, 6): gravity [m/s2], limit of the opening [m], longest step in the structure's own size [s], whether all forces
     # scale with g, and the u_g'' and the q.^2 that joints bear up to phi_cr, each without the other
     numbers: np.ndarray
@@ -95,6 +116,8 @@ class Watch(NamedTuple):
     """The joints of one structure, and the numbers of one history."""
 
     size: int
+    cells: int  # of `rows`
+    lines: int  # rows of a direction in a cell
     contacts: np.ndarray
     bearing: np.ndarray
     rows: np.ndarray
@@ -142,6 +165,16 @@ class Samples(NamedTuple):
     phi: np.ndarray  # (samples,): signed rotation [rad], NaN after overturning
     rate: np.ndarray  # (samples,): rate [rad/s]
     impacts: np.ndarray  # (most, 3): time [s], sign of the direction that ends and rate before [rad/s]
+    aside: np.ndarray  # (MARKS,): what the flights between samples note, which nobody reads
+
+
+class Room(NamedTuple):
+    """Memory for one history at a time."""
+
+    numbers: np.ndarray  # (2, COLUMNS)
+    kept: np.ndarray  # (most joints of a structure, KEPT)
+    notes: np.ndarray  # (NOTES,)
+    active: np.ndarray  # int (four of each joint,)
 
 
 class Structure(NamedTuple):
@@ -209,7 +242,7 @@ class State(NamedTuple):
     f: float
 
 
-@compile_inline
+@inlined
 def law_of(exact, numbers, d):
     """The law of one direction."""
     return Law(
@@ -224,7 +257,7 @@ def law_of(exact, numbers, d):
     )
 
 
-@compile_inline
+@inlined
 def force(forces, law, q, push, g):
     """q.. by the tables; beyond their ends the outermost cubic goes on smoothly."""
     place = q * law.per_cell
@@ -245,7 +278,7 @@ def force(forces, law, q, push, g):
     return -(b0 + x * b1 + x * x * (b2 + x * b3))
 
 
-@compile_inline
+@inlined
 def nystrom(forces, law, ground, tau, state, h):
     """One step h of Dormand, El-Mikkawy and Prince's Nystrom pair 6(4)6FM [IMA J. Numer. Anal. 7, 1987].
 
@@ -310,13 +343,13 @@ def nystrom(forces, law, ground, tau, state, h):
     return State(q1, w1, k6), abs(e_q), abs(e_w)
 
 
-@compile_inline
+@inlined
 def balance(law, q, push):
     """q.. of the linear model without vertical ground motion [Eqs. 12, 16]."""
-    return law.p**2 * (q - law.q_cr - law.kappa_g * push)
+    return law.p * law.p * (q - law.q_cr - law.kappa_g * push)
 
 
-@compile_inline
+@inlined
 def hyperbolic(y):
     """cosh y - 1, sinh y and sinh y - y, none of which cancels for small y."""
     if abs(y) < 0.1:
@@ -328,7 +361,7 @@ def hyperbolic(y):
     return 2 * half * half, sh, sh - y
 
 
-@compile_inline
+@inlined
 def closed_form(law, ground, state, h):
     """A time h of the linear model on a straight ramp of the ground acceleration [Eqs. 12, 16].
 
@@ -344,7 +377,7 @@ def closed_form(law, ground, state, h):
     return State(q + moved, w + p * (slack * sh + drift * ch1), p * p * (slack * (1 + ch1) + drift * sh))
 
 
-@compile_inline
+@inlined
 def advance(forces, law, ground, tau, state, h):
     """The state a time h after tau, and the errors of its q and w."""
     if law.exact:
@@ -352,7 +385,7 @@ def advance(forces, law, ground, tau, state, h):
     return nystrom(forces, law, ground, tau, state, h)
 
 
-@compile_kernel
+@called
 def locate(forces, law, ground, tau, state, low, high, guess, sought, level, falling):
     """Where inside a step q reaches level, w vanishes or q.. vanishes: Newton on the step itself, kept in a bracket.
 
@@ -385,7 +418,7 @@ def locate(forces, law, ground, tau, state, low, high, guess, sought, level, fal
     return h, State(q, w, f)
 
 
-@compile_kernel
+@called
 def first_root(a, b, c):
     """The least x > 0 with a x^2 + b x + c = 0, without cancellation; NaN if there is none."""
     discriminant = b * b - 4 * a * c
@@ -399,7 +432,7 @@ def first_root(a, b, c):
     return min(one, other) if other > 0 else one
 
 
-@compile_kernel
+@called
 def turning_point(forces, law, ground, tau, state, size, f1, rising):
     """Where in a step q turns, from rising to falling or back, and the q it reaches."""
     q, w, f = state
@@ -413,7 +446,7 @@ def turning_point(forces, law, ground, tau, state, size, f1, rising):
     return x, extreme
 
 
-@compile_kernel
+@called
 def inspect(forces, law, ground, t, tau, state, size, ended, marks):
     """Look inside a step of the given size and end for impact, turning points, peak and the crossing of phi_cr.
 
@@ -459,19 +492,19 @@ def inspect(forces, law, ground, t, tau, state, size, ended, marks):
     return False, size, State(q1, w1, f1)
 
 
-@compile_inline
+@inlined
 def corners_below(corners, law, q):
     """How many corners of the force lie below q."""
     return corners[min(max(int(q * law.per_cell), 0), corners.shape[0] - 1), law.d]
 
 
-@compile_inline
+@inlined
 def passes(corners, law, q, q1):
     """Whether there is a corner of the force between two places."""
     return corners.shape[0] > 0 and corners_below(corners, law, q) != corners_below(corners, law, q1)
 
 
-@compile_kernel
+@called
 def up_to_corner(forces, corners, law, ground, tau, state, size, ended):
     """The part of a step up to the first corner of the force, which no step of any order may pass, and q behind it.
 
@@ -498,7 +531,7 @@ def up_to_corner(forces, corners, law, ground, tau, state, size, ended):
     return x, (node + way * BEHIND) / law.per_cell
 
 
-@compile_inline
+@inlined
 def quiet(watch, law, ground, tau, q, w):
     """Whether no joint moves, and all bear for certain: u_g'' between two straight lines over q.^2, up to some q.^2.
 
@@ -513,24 +546,26 @@ def quiet(watch, law, ground, tau, q, w):
     if weight <= 0 or not (watch.scales or weight == law.gravity):
         return False
     per_weight = watch.gravity / weight
-    cells = watch.within.shape[0]
+    cells = watch.within.shape[0] // 2
     k = min(max(int(q * cells / law.q_end), 0), cells - 1)
     y, push = w * w * per_weight, (1.0 - 2.0 * law.d) * (ground.push + ground.ramp * tau) * watch.slender * per_weight
-    line = watch.within[k, law.d]
+    line = watch.within[2 * k + law.d]
     return y <= line[4] and line[0] + line[1] * y <= push and push <= line[2] + line[3] * y
 
 
-@compile_kernel
+@called
 def weigh(watch, d, per_end, q, w, u, weight, lift):
     """Fill in how fast each joint would open and slip where the motion is, and return what is missing there."""
     rows, kept = watch.rows, watch.kept
-    place = q * per_end * rows.shape[0]
-    k = min(max(int(place), 0), rows.shape[0] - 1)
+    place = q * per_end * watch.cells
+    k = min(max(int(place), 0), watch.cells - 1)
     x = place - k
+    row = (2 * k + d) * watch.lines
     one, push, rate, up = weight, u, w * w, lift
     missing, where, crushes, tension, parted = 0.0, -1, -1, 0.0, -1
     for j in range(watch.size):
-        kept[j, GAP_ACC : GAP_ACC + 4] = -1.0
+        for end in range(4):
+            kept[j, GAP_ACC + end] = -1.0
         total, shear = 0.0, watch.contacts[j, d, SHEAR]
         if shear < 0:
             continue
@@ -538,7 +573,7 @@ def weigh(watch, d, per_end, q, w, u, weight, lift):
             r = watch.contacts[j, d, NORMAL + end]
             if r < 0:
                 continue
-            at = rows[k, d, r]
+            at = rows[row + r]
             n = one * cubic(at, 0, x) + push * cubic(at, 4, x) + rate * cubic(at, 8, x) + up * cubic(at, 12, x)
             total += n
             kept[j, GAP_ACC + end] = -n * cubic(at, 16, x)
@@ -550,7 +585,7 @@ def weigh(watch, d, per_end, q, w, u, weight, lift):
                 crushes = j
         friction = watch.bearing[j, FRICTION]
         if isfinite(friction):
-            at = rows[k, d, shear]
+            at = rows[row + shear]
             t = one * cubic(at, 0, x) + push * cubic(at, 4, x) + rate * cubic(at, 8, x) + up * cubic(at, 12, x)
             c = cubic(at, 16, x)
             for sense in range(2):
@@ -561,13 +596,13 @@ def weigh(watch, d, per_end, q, w, u, weight, lift):
     return Demand(missing, where, crushes, parted)
 
 
-@compile_inline
+@inlined
 def cubic(at, first, x):
     """A cubic of a row at a place of its cell."""
     return at[first] + x * (at[first + 1] + x * (at[first + 2] + x * at[first + 3]))
 
 
-@compile_inline
+@inlined
 def advance_opening(kept, j, end, a0, a1, h):
     """Advance one opening or slip by h under an acceleration straight between its two ends; True if it moves."""
     slips = end >= 2
@@ -589,14 +624,14 @@ def advance_opening(kept, j, end, a0, a1, h):
     return kept[j, rate] > 0 or (not slips and kept[j, at] > 0)
 
 
-@compile_inline
+@inlined
 def through(kept, j, end, x):
     """The acceleration of a row inside a step, by the parabola through its start, middle and end."""
     a0, am, a1 = kept[j, START_ACC + end], kept[j, HALF_ACC + end], kept[j, GAP_ACC + end]
     return a0 + x * (4 * am - 3 * a0 - a1 + x * (2 * a0 - 4 * am + 2 * a1))
 
 
-@compile_kernel
+@called
 def note(watch, d, q_cr, t, q, demand, moving, marks):
     """Note what a moment shows of the joints."""
     notes, kept = watch.notes, watch.kept
@@ -632,7 +667,7 @@ def note(watch, d, q_cr, t, q, demand, moving, marks):
         notes[SINCE] = nan
 
 
-@compile_kernel
+@called
 def passed(watch, d, t, q, reason, where, marks):
     """Note that nothing is known any longer."""
     marks[PASSED], marks[REASON], marks[WHERE], marks[PASSED_IMPACTS] = t, reason, where, marks[IMPACTS]
@@ -641,7 +676,15 @@ def passed(watch, d, t, q, reason, where, marks):
     marks[PASSED_PEAK + d] = max(watch.notes[SO_FAR + d], q)
 
 
-@compile_kernel
+@inlined
+def copy_accelerations(watch, column):
+    """Keep the accelerations of now as those of another moment; slices of one array would be copied through memory."""
+    for j in range(watch.size):
+        for end in range(4):
+            watch.kept[j, column + end] = watch.kept[j, GAP_ACC + end]
+
+
+@called
 def look(watch, law, ground, t, tau, state, size, ended, peak, marks):
     """Hold the joints against what a step asks of them: how far any opens or slips, released alone.
 
@@ -657,18 +700,20 @@ def look(watch, law, ground, t, tau, state, size, ended, peak, marks):
         now = weigh(watch, d, per_end, state.q, state.w, u0 + ramp * tau, unit, lift + ground.grade * tau)
         note(watch, d, q_cr, t + tau, state.q, now, notes[MOVING] > 0, marks)
     notes[SEEN] = t + tau + size
-    kept[:, START_ACC : START_ACC + 4] = kept[:, GAP_ACC : GAP_ACC + 4]
+    copy_accelerations(watch, START_ACC)
     steps = max(1, ceil(size / watch.step - 1e-9))
     half = Demand(0.0, -1, -1, -1)
     if steps > 2:
         q, w = between(state, ended, size, 0.5)
         at = tau + size / 2
         half = weigh(watch, d, per_end, q, w, u0 + ramp * at, unit, lift + ground.grade * at)
-        kept[:, HALF_ACC : HALF_ACC + 4] = kept[:, GAP_ACC : GAP_ACC + 4]
+        copy_accelerations(watch, HALF_ACC)
     at = tau + size
     last = weigh(watch, d, per_end, ended.q, ended.w, u0 + ramp * at, unit, lift + ground.grade * at)
     if steps <= 2:
-        kept[:, HALF_ACC : HALF_ACC + 4] = (kept[:, START_ACC : START_ACC + 4] + kept[:, GAP_ACC : GAP_ACC + 4]) / 2
+        for j in range(watch.size):
+            for end in range(4):
+                kept[j, HALF_ACC + end] = (kept[j, START_ACC + end] + kept[j, GAP_ACC + end]) / 2
     rows = 0  # that move, or begin to
     for j in range(watch.size):
         for end in range(4):
@@ -701,7 +746,7 @@ def look(watch, law, ground, t, tau, state, size, ended, peak, marks):
         notes[SO_FAR + d] = max(notes[SO_FAR + d], q)
 
 
-@compile_inline
+@inlined
 def between(state, ended, size, x):
     """q and w inside a step, by the polynomial of order 5 through both of its ends."""
     q, w, f = state
@@ -718,11 +763,11 @@ def between(state, ended, size, x):
     return max(height, 0.0), speed / size
 
 
-@compile_kernel
+@called
 def strike(watch, d, t, rate, eta, marks):
     """Let joints fly open, or slide, that an impact does not press together; d is the direction that begins."""
     kept, rows = watch.kept, watch.rows
-    moving, missing, where = False, 0.0, -1
+    moving, missing, where, row = False, 0.0, -1, d * watch.lines
     for j in range(watch.size):
         if watch.contacts[j, d, CHANGES]:
             kept[j, GAP : GAP + 4] = 0.0
@@ -733,19 +778,19 @@ def strike(watch, d, t, rate, eta, marks):
         for end in range(2):
             r = watch.contacts[j, d, NORMAL + end]
             if r >= 0:
-                p = rate * (watch.struck[d, r, 0] + eta * watch.struck[d, r, 1])
+                p = rate * (watch.struck[row + r, 0] + eta * watch.struck[row + r, 1])
                 total += p
                 if -p > missing:
                     missing, where = -p, j
-                kept[j, GAP_RATE + end] += rows[0, d, r, 16] * max(0.0, -p)
+                kept[j, GAP_RATE + end] += rows[row + r, 16] * max(0.0, -p)
         friction = watch.bearing[j, FRICTION]
         if isfinite(friction):
-            p = rate * (watch.struck[d, shear, 0] + eta * watch.struck[d, shear, 1])
+            p = rate * (watch.struck[row + shear, 0] + eta * watch.struck[row + shear, 1])
             for sense in range(2):
                 left = friction * max(total, 0.0) - (1.0 - 2.0 * sense) * p
                 if -left > missing:
                     missing, where = -left, j
-                kept[j, SLIP_RATE + sense] += rows[0, d, shear, 16] * max(0.0, -left)
+                kept[j, SLIP_RATE + sense] += rows[row + shear, 16] * max(0.0, -left)
         for end in range(2):
             if kept[j, GAP + end] > 0 or kept[j, GAP_RATE + end] > 0 or kept[j, SLIP_RATE + end] > 0:
                 moving = True
@@ -754,7 +799,7 @@ def strike(watch, d, t, rate, eta, marks):
     note(watch, d, 1.0, t, 0.0, Demand(missing, where, -1, -1), moving, marks)
 
 
-@compile_kernel
+@called
 def settle(watch, t, marks):
     """Close all joints of a structure at rest; what slid stays where it is."""
     watch.kept[:, GAP : GAP + 4] = 0.0
@@ -763,7 +808,7 @@ def settle(watch, t, marks):
     watch.notes[MOVING] = 0.0
 
 
-@compile_inline
+@inlined
 def misses(law, rtol, state, ended, e_q, e_w):
     """The error of a step over what is allowed: rtol of q and w, and of a hundredth of phi_cr where they are small."""
     if law.exact:
@@ -774,20 +819,20 @@ def misses(law, rtol, state, ended, e_q, e_w):
     return max(e_q * most_w, e_w * most_q) / (rtol * most_q * most_w)
 
 
-@compile_inline
+@inlined
 def rises(law, state, ended):
     """Whether q grows all through a step, and does not pass phi_cr in it."""
     outward = state.w > 0 and ended.w > 0 and (state.f >= 0 or ended.f <= 0)
     return outward and (ended.q < law.q_cr or state.q >= law.q_cr)
 
 
-@compile_inline
+@inlined
 def falls(state, ended):
     """Whether q falls all through a step, and does not reach 0 in it."""
     return state.w < 0 and ended.w < 0 and (state.f <= 0 or ended.f >= 0) and ended.q > 0
 
 
-@compile_inline
+@inlined
 def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watch, marks):
     """Advance a motion from tau towards end, to the first impact or the kinematic limit.
 
@@ -860,7 +905,7 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watc
     return STUCK, tau, state, h
 
 
-@compile_kernel
+@called
 def is_certain(structure, d, q, strongest, weight, most_weight):
     """Whether an outward motion from q beyond phi_cr overturns whatever comes: nothing later can turn it back.
 
@@ -882,13 +927,13 @@ def is_certain(structure, d, q, strongest, weight, most_weight):
     return numbers[d, GRAVITY] * structure.certain[cell, d] >= needed
 
 
-@compile_inline
+@inlined
 def uplift(numbers, d, g):
     """The ground acceleration that lifts a structure while g + v_g'' is g [m/s2]."""
     return numbers[d, LAMBDA] * g + numbers[d, HELD] * (numbers[d, GRAVITY] - g)
 
 
-@compile_kernel
+@called
 def lifts_at(numbers, tau, end, u, ramp, g, grade):
     """When a structure at rest lifts between tau and end, and in which direction (-1: it does not).
 
@@ -915,7 +960,7 @@ def lifts_at(numbers, tau, end, u, ramp, g, grade):
     return first, lifted
 
 
-@compile_inline
+@inlined
 def angle(structure, d, q):
     """phi and dphi/dq at q."""
     if structure.linear:
@@ -929,21 +974,22 @@ def angle(structure, d, q):
     return phi, slope
 
 
-@compile_inline
+@inlined
 def stays(numbers, u):
     """Whether a ground acceleration lifts a structure at rest in neither direction."""
     g = numbers[0, GRAVITY] * (1 + MARGIN)
     return -numbers[1, LAMBDA] * g <= -u and -u <= numbers[0, LAMBDA] * g
 
 
-@compile_kernel
+@called
 def draw(structure, law, ground, t, flight, rtol, dt, drawn, watch, samples):
     """Fill in the output samples between tau and end by a separate integration.
 
     Sampling therefore never affects the motion. Returns how many samples are done.
     """
     tau, end, state, h = flight
-    nothing = np.zeros(MARKS)
+    nothing = samples.aside
+    nothing[:] = 0.0
     s = 1.0 - 2.0 * law.d
     while drawn < samples.phi.size and drawn * dt <= t + end:
         _, tau, state, h = fly(
@@ -967,7 +1013,7 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, watch, samples):
     return drawn
 
 
-@compile_kernel
+@called
 def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, marks):
     """Follow one motion to its end: at rest, overturned, or still rocking after `most_impacts` impacts.
 
@@ -975,7 +1021,7 @@ def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, 
     """
     linear, numbers, forces, _, _, _, corners = structure
     u, factor, dt, v, v_factor, v_dt, ahead, v_ahead, v_above = motion
-    every, phi_out, rate_out, impacts = samples
+    every, phi_out, rate_out, impacts, _ = samples
     marks[:] = nan
     marks[PEAK : PEAK + 2] = 0.0
     marks[IMPACTS] = 0.0
@@ -1152,14 +1198,15 @@ def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, 
             return STILL_ROCKING
 
 
-@compile_kernel
-def numbers_of(usual, what):
-    """The numbers of one history: those of its structure, in its size and with its restitution.
+@called
+def numbers_of(usual, what, numbers):
+    """Fill in the numbers of one history: those of its structure, in its size and with its restitution.
 
     A structure of another size has the same motion as this one under accelerations divided by its size.
     """
-    numbers = usual.copy()
     for d in range(2):
+        for column in range(COLUMNS):
+            numbers[d, column] = usual[d, column]
         numbers[d, P] /= sqrt(what[SIZE])
         numbers[d, REST] /= sqrt(what[SIZE])
         numbers[d, GRAVITY] /= what[SIZE]
@@ -1167,11 +1214,10 @@ def numbers_of(usual, what):
         eta = what[ETA_POSITIVE + d]
         if isfinite(eta):
             numbers[d, ETA] = eta
-    return numbers
 
 
-@compile_kernel
-def watch_of(joints, m, size, slender, motion):
+@called
+def watch_of(joints, m, size, slender, motion, room):
     """The joints of a structure, none of which has opened."""
     first, count, rows, cells, rows_at, struck_at, within_at, within_cells = joints.sizes[m]
     gravity, limit, quick, scales, push, fast = joints.numbers[m]
@@ -1181,25 +1227,27 @@ def watch_of(joints, m, size, slender, motion):
         slow = fast / size * (1 - strongest / push)
     return Watch(
         count,
+        cells,
+        rows,
         joints.contacts[first : first + count],
         joints.bearing[first : first + count],
-        joints.rows[rows_at : rows_at + cells * 2 * rows * OF_ROW].reshape((cells, 2, rows, OF_ROW)),
-        joints.struck[struck_at : struck_at + 4 * rows].reshape((2, rows, 2)),
-        joints.within[within_at : within_at + within_cells * 10].reshape((within_cells, 2, 5)),
+        joints.rows[rows_at : rows_at + cells * 2 * rows],
+        joints.struck[struck_at : struck_at + 2 * rows],
+        joints.within[within_at : within_at + within_cells * 2],
         gravity,
         limit,
         min(LOOK, quick * sqrt(size)),
         scales != 0,
         slender,
         slow,
-        np.empty((count, KEPT)),
-        np.empty(NOTES),
-        np.empty(4 * count, np.int64),
+        room.kept[:count],
+        room.notes,
+        room.active[: 4 * count],
     )
 
 
-@compile_kernel
-def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks):
+@called
+def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks, room):
     """Follow the histories first to stop of `runs`, one after the other.
 
     Parameters
@@ -1223,17 +1271,19 @@ def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks):
     all_marks : ndarray, shape (n, MARKS)
         For each history peaks of both directions [rad], last upward crossing of phi_cr, first uplift, number of
         impacts, end time, index of the direction it ended in, and how it ended; to be filled.
+    room : Room
+        Memory of this call.
     """
     for i in range(first, stop):
         what = runs[i]
         m, r = int(what[STRUCTURE]), int(what[RECORD])
-        numbers = numbers_of(deck.numbers[m], what)
+        numbers_of(deck.numbers[m], what, room.numbers)
         cells = slice(deck.structures[m, 0], deck.structures[m, 0] + deck.structures[m, 1])
         linear = deck.structures[m, 2] == 1
         held = deck.held[cells] if deck.held.shape[0] > 0 else deck.held
         corners = deck.corners[cells] if deck.corners.shape[0] > 0 else deck.corners
         structure = Structure(
-            linear, numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells], held, corners
+            linear, room.numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells], held, corners
         )
         of, size = deck.records[r], what[SIZE]
         horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
@@ -1252,7 +1302,7 @@ def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks):
             deck.v_above[v_later],
         )
         marks = all_marks[i]
-        watch = watch_of(deck.joints, m, size, what[SLENDER], motion)
+        watch = watch_of(deck.joints, m, size, what[SLENDER], motion, room)
         marks[STATUS] = follow(structure, motion, what[START], rtol, most_impacts, brief, watch, samples, marks)
         for d in range(2):
             for peak in (PEAK, PASSED_PEAK, WARNED_PEAK):

@@ -335,3 +335,5 @@ def many(
 
 SOURCE = (at, root, cross, fly, next_lift, follow, many)
 """What is to be compiled, each after those it calls."""
+INLINE = (at,)
+"""What of it is to be set into each place that calls it."""

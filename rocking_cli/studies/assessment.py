@@ -13,6 +13,7 @@ import numpy as np
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
+from rocking_cli.dynamics import ways
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, disagree, governs
@@ -42,7 +43,7 @@ NEAR = 1.25  # a factor on the motion within which the opposite outcome of some 
 POINTS = 80  # of each side of a map
 OMEGAS, TALLEST = (1.0, 10.0), 10.0  # omega_g/p of a map, and a_g/(g lambda) up to which it goes at least
 BEYOND = 1.15  # times a mark, that a map goes further
-PACKAGES = ("numpy", "numba", "scipy", "matplotlib")
+PACKAGES = ("numpy", "scipy", "matplotlib")
 
 
 @dataclass(frozen=True)
@@ -329,6 +330,7 @@ def versions(mechanism: Mechanism) -> dict[str, str]:
         f"mechanism {mechanism.mechanism}": _plugin(mechanism),
         "Python": platform.python_version(),
         **{name: version(name) for name in PACKAGES},
+        **ways.versions(),
     }
 
 

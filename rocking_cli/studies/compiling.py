@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from time import monotonic
 
-from rocking_cli.dynamics.compiled import HISTORIES, PULSES, needs_compiling
+from rocking_cli.dynamics import ways
+from rocking_cli.dynamics.compiled import HISTORIES, PULSES
 
 CALLED = {HISTORIES: "histories", PULSES: "exact_pulses"}
 """The kernels, by the names that users know them by."""
@@ -32,7 +33,8 @@ class Compiled:
 
 def compile_kernel(kernel: str) -> Compiled:
     """Compile a kernel, or load what was compiled before."""
-    before, began = not needs_compiling(kernel), monotonic()
+    before, began = ways.is_ready(kernel), monotonic()
+    ways.prepare(kernel)
     if kernel == HISTORIES:
         _follow()
     else:

@@ -12,7 +12,8 @@ from typing import Any
 
 from rocking_cli.core.hung.ties import Laws
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics.compiled import cache_folder, needs_compiling, unwritable
+from rocking_cli.dynamics import ways
+from rocking_cli.dynamics.compiled import cache_folder, unwritable
 from rocking_cli.engines.installed import Engines
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.pulses import PulseShapes
@@ -101,7 +102,7 @@ def examine() -> Installation:
         },
         str(cache_folder()),
         unwritable(),
-        {name: not needs_compiling(kernel) for kernel, name in CALLED.items()},
+        {name: ways.is_ready(kernel) for kernel, name in CALLED.items()},
         os.cpu_count() or 1,
         len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
     )

@@ -13,6 +13,7 @@ from rocking_cli import __version__
 from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equivalent_block
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
+from rocking_cli.dynamics import ways
 from rocking_cli.dynamics.dispatch import NO_REBOUND, kernel_for
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures, parse_measure
@@ -222,7 +223,11 @@ def versions(study: Study) -> dict[str, str]:
 
 def libraries() -> dict[str, str]:
     """Versions of what else has a say in the last bits: kept for whoever compares two stores."""
-    return {"python": platform.python_version(), **{name: version(name) for name in ("numpy", "numba", "scipy")}}
+    return {
+        "python": platform.python_version(),
+        **{name: version(name) for name in ("numpy", "scipy")},
+        **ways.versions(),
+    }
 
 
 def _trial(study: Study, sample: Sample) -> Trial:

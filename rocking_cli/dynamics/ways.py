@@ -1,0 +1,189 @@
+"""The three ways to run a kernel, and which of them is taken.
+
+The kernels have one source. The first way that works is taken: the code that is shipped (`shipped`), which needs
+llvmlite; numba (`compiled`), an extra for authors of kernels; Python, which takes a hundred times longer and says so.
+All give the same numbers.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import os
+import threading
+import warnings
+from collections.abc import Callable
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from types import FunctionType
+from typing import Any
+
+from rocking_cli.dynamics import compiled, shipped
+from rocking_cli.dynamics.calling import HISTORIES, PULSES, SETS, TIED, KernelSet, call
+from rocking_cli.errors import InputError, KernelWarning
+
+CHOSEN = "ROCKING_KERNELS"
+"""The variable of the environment that names a way, and then no other one is tried."""
+READY, JIT, PYTHON = "ready", "jit", "python"
+WAYS = (READY, JIT, PYTHON)
+OF_FILE = {compiled.HISTORIES: (HISTORIES, TIED), compiled.PULSES: (PULSES,)}
+"""The sets of each kernel that commands call."""
+
+Kernel = Callable[..., None]
+_LOCK = threading.RLock()
+
+
+def kernel(of: KernelSet) -> Kernel:
+    """The function of a set, to be called with the arguments that it has in its source."""
+    return _chosen(of.name)[1]
+
+
+def way(of: KernelSet) -> str:
+    """Which way is taken: `READY`, `JIT` or `PYTHON`."""
+    return _chosen(of.name)[0]
+
+
+def forget() -> None:
+    """Choose anew, for tests: another environment, another cache."""
+    _choose.cache_clear()
+    shipped.forget()
+
+
+def _chosen(name: str) -> tuple[str, Kernel]:
+    with _LOCK:  # the threads of a batch come at once
+        return _choose(name)
+
+
+@functools.cache
+def _choose(name: str) -> tuple[str, Kernel]:
+    of, asked = SETS[name], os.environ.get(CHOSEN)
+    if asked is not None and asked not in WAYS:
+        raise InputError(f"{CHOSEN} is {asked!r}: give one of {', '.join(WAYS)}")
+    reasons: list[str] = []
+    for each in (asked,) if asked else WAYS:
+        try:
+            return each, MAKE[each](of)
+        except (shipped.Unusable, ImportError) as error:
+            reasons.append(str(error))
+    raise InputError(f"{CHOSEN} is {asked!r}, but {'; '.join(reasons)}: leave it out")
+
+
+def _ready(of: KernelSet) -> Kernel:
+    entry = shipped.load(of)
+
+    def run(*arguments: Any) -> None:
+        call(entry, of, arguments)
+
+    return run
+
+
+@functools.cache
+def compiled_module(module: str) -> dict[str, Any]:
+    """The functions of a kernel by name, compiled by numba."""
+    source = importlib.import_module(module)
+    return compiled.compile_source(source.SOURCE, inline=source.INLINE)
+
+
+def _jit(of: KernelSet) -> Kernel:
+    function: Kernel = compiled_module(of.module)[of.function]
+    return function
+
+
+def _python(of: KernelSet) -> Kernel:
+    if os.environ.get(CHOSEN) != PYTHON:
+        _say_slow()
+    return in_python(of)
+
+
+@functools.cache
+def _say_slow() -> None:
+    """Warn, once in this process."""
+    try:
+        shipped.load(HISTORIES)
+        why = ""
+    except shipped.Unusable as error:
+        why = f" ({error})"
+    text = (
+        f"time histories are computed by Python itself, which takes a hundred times longer{why}: "
+        "install llvmlite, or rocking-cli[jit]"
+    )
+    warnings.warn(KernelWarning(text), stacklevel=2)
+
+
+def in_python(of: KernelSet) -> Kernel:
+    """The source of a kernel with the arithmetic of machine code, in which nothing raises."""
+    import numpy as np
+
+    module = importlib.import_module(of.module)
+    namespace = {**vars(module), "int": _truncated, "ceil": _raised}
+    for each in module.SOURCE:
+        twin = FunctionType(each.__code__, namespace, each.__name__, each.__defaults__)
+        namespace[each.__name__] = twin
+    function = namespace[of.function]
+
+    def run(*arguments: Any) -> None:
+        with np.errstate(all="ignore"):
+            function(*arguments)
+
+    return run
+
+
+LEAST = -(2**63)
+"""What a processor makes of a number that is too large for a whole one, or of none."""
+
+
+def _truncated(value: float) -> int:
+    try:
+        return int(value)
+    except (ValueError, OverflowError):
+        return LEAST
+
+
+def _raised(value: float) -> int:
+    from math import ceil
+
+    try:
+        return ceil(value)
+    except (ValueError, OverflowError):
+        return LEAST
+
+
+MAKE = {READY: _ready, JIT: _jit, PYTHON: _python}
+
+
+def needs_compiling(file: str = compiled.HISTORIES) -> bool:
+    """Whether numba will have to compile a kernel when it is next called, which takes some seconds."""
+    return way(OF_FILE[file][0]) == JIT and compiled.needs_compiling(file)
+
+
+def is_ready(file: str) -> bool:
+    """Whether a kernel can be used without making machine code first."""
+    asked = os.environ.get(CHOSEN)
+    for each in (asked,) if asked else WAYS:
+        if each == READY and shipped.is_usable():
+            return all(shipped.is_kept(one.name) for one in OF_FILE[file])
+        if each == JIT and find_spec("numba") is not None:
+            return not compiled.needs_compiling(file)
+    return True
+
+
+def versions() -> dict[str, str]:
+    """Versions of what turns kernels into machine code, as far as it is installed."""
+    found = {}
+    for name in ("llvmlite", "numba"):
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
+
+
+def prepare(file: str) -> None:
+    """Make what a kernel may need, whichever set is called first."""
+    for each in OF_FILE[file]:
+        kernel(each)
+
+
+def has_run(file: str) -> None:
+    """Note that a kernel is compiled, for the next process."""
+    if way(OF_FILE[file][0]) == JIT:
+        compiled.has_run(file)

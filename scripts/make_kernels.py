@@ -1,0 +1,187 @@
+"""Write the kernels that are shipped, rocking_cli/dynamics/ready: `make kernels`.
+
+    python scripts/make_kernels.py [FOLDER]
+
+Numba compiles each set of functions for a processor without any extensions to LLVM bitcode, which llvmlite turns into
+machine code where it is used. Newer versions of LLVM read what older ones wrote, and not the reverse: hence the pinned
+versions, `requirements` of the Makefile, which only this script needs.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import json
+import os
+import platform
+import sys
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+PROJECT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(PROJECT))
+# Before numba is imported: nothing of this machine may be in what is shipped.
+for _name in [each for each in os.environ if each.startswith("NUMBA_")]:
+    del os.environ[_name]
+os.environ["NUMBA_CPU_NAME"], os.environ["NUMBA_CPU_FEATURES"] = "generic", ""
+
+import llvmlite  # noqa: E402
+import llvmlite.binding as llvm  # noqa: E402
+import numba  # noqa: E402
+from llvmlite import ir  # noqa: E402
+from numba import njit, types  # noqa: E402
+from numba.extending import intrinsic  # noqa: E402
+from numba.np.arrayobj import populate_array  # noqa: E402
+
+from rocking_cli.dynamics import shipped  # noqa: E402
+from rocking_cli.dynamics.calling import SETS, KernelSet, Layout  # noqa: E402
+from rocking_cli.dynamics.compiled import OPTIONS  # noqa: E402
+
+# Without numba's runtime: what would allocate memory or count references does not compile.
+AHEAD = {**OPTIONS, "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+ELEMENTS = {"R": types.float64, "I": types.int64}
+POINTERS = {kind: types.CPointer(element) for kind, element in ELEMENTS.items()}
+
+
+def array_of(kind: str) -> Any:
+    """A function that makes an array of its address and shape; that of numba needs its runtime."""
+
+    @intrinsic
+    def array(context, address, shape):  # type: ignore[no-untyped-def]
+        result = types.Array(ELEMENTS[kind], len(shape), "C")
+
+        def make(context, builder, signature, given):  # type: ignore[no-untyped-def]
+            made = context.make_array(result)(context, builder)
+            size = context.get_constant(types.intp, 8)
+            lengths = [builder.extract_value(given[1], k) for k in range(result.ndim)]
+            strides = [size]
+            for length in reversed(lengths[1:]):
+                strides.insert(0, builder.mul(strides[0], length))
+            data = builder.inttoptr(given[0], made.data.type)
+            populate_array(made, data, lengths, strides, size, meminfo=None)
+            return made._getvalue()
+
+        return result(types.int64, shape), make
+
+    return array
+
+
+@intrinsic
+def element(context, row, place):  # type: ignore[no-untyped-def]
+    """A number of a row; the place is given in the source."""
+
+    def make(context, builder, signature, given):  # type: ignore[no-untyped-def]
+        return builder.load(builder.gep(given[0], [given[1]]))
+
+    return row.dtype(row, place), make
+
+
+class Writing:
+    """The source of an entry: what each argument of the kernel is, in terms of the three rows."""
+
+    def __init__(self) -> None:
+        self.whole = self.real = self.places = 0
+
+    def _next(self) -> str:
+        self.whole += 1
+        return f"__at(whole, {self.whole - 1})"
+
+    def argument(self, layout: Layout) -> str:
+        """One argument."""
+        if isinstance(layout, tuple):
+            return f"{layout[0]}({', '.join(map(self.argument, layout[1]))})"
+        if layout == "i":
+            return self._next()
+        if layout == "b":
+            return f"{self._next()} != 0"
+        if layout == "f":
+            self.real += 1
+            return f"__at(real, {self.real - 1})"
+        shape = "".join(f"{self._next()}, " for _ in range(int(layout[1])))
+        self.places += 1
+        return f"__array_of_{layout[0]}(__at(places, {self.places - 1}), ({shape}))"
+
+
+def code_of(function: Any) -> Any:
+    """The code of a function as if the file were in no folder: the bitcode keeps where an error would be raised."""
+    return function.__code__.replace(co_filename=f"{function.__module__.rpartition('.')[2]}.py")
+
+
+def entry_of(kernel: KernelSet) -> Any:
+    """The compiled entry of a set, as numba has it."""
+    module = importlib.import_module(kernel.module)
+    namespace = dict(vars(module))
+    for function in module.SOURCE:
+        twin = FunctionType(code_of(function), namespace, function.__name__)
+        twin.__module__, twin.__qualname__ = function.__module__, function.__qualname__
+        inline = {"forceinline": True} if function in module.INLINE else {}
+        namespace[function.__name__] = njit(**AHEAD, **inline)(twin)
+    writing = Writing()
+    arguments = ", ".join(map(writing.argument, kernel.arguments))
+    source = f"def entry(whole, real, places):\n    {kernel.function}({arguments})\n    return 0\n"
+    space = {**namespace, "__at": element, "__array_of_R": array_of("R"), "__array_of_I": array_of("I")}
+    exec(source, space)
+    signature = types.int64(POINTERS["I"], POINTERS["R"], POINTERS["I"])
+    return njit(signature, **AHEAD)(space["entry"]).overloads[signature.args]
+
+
+def module_of(kernel: KernelSet) -> llvm.ModuleRef:
+    """A set as a module of LLVM, whose only function to be called from outside has the name of the set."""
+    compiled = entry_of(kernel)
+    module = llvm.parse_assembly(compiled.library.get_llvm_str())
+    inner = next(each for each in module.functions if each.name == compiled.fndesc.llvm_func_name)
+    outer = ir.Module(name=kernel.name)
+    outer.triple, outer.data_layout = module.triple, module.data_layout
+    whole, real, status = ir.IntType(64), ir.DoubleType(), ir.IntType(32)
+    raised = ir.LiteralStructType([ir.IntType(8).as_pointer(), status, ir.IntType(8).as_pointer(),
+                                   ir.IntType(8).as_pointer(), status]).as_pointer()  # fmt: skip
+    rows = [whole.as_pointer(), real.as_pointer(), whole.as_pointer()]
+    numba_way = ir.FunctionType(status, [whole.as_pointer(), raised.as_pointer(), *rows])
+    called = ir.Function(outer, numba_way, inner.name)
+    function = ir.Function(outer, ir.FunctionType(status, rows), shipped.symbol(kernel.name))
+    builder = ir.IRBuilder(function.append_basic_block())
+    builder.ret(builder.call(called, [builder.alloca(whole), builder.alloca(raised), *function.args]))
+    module.link_in(llvm.parse_assembly(str(outer)))
+    for each in (*module.functions, *module.global_variables):
+        if not each.is_declaration and each.name != shipped.symbol(kernel.name):
+            each.linkage = "internal"
+    passes = llvm.ModulePassManager()
+    passes.add_global_dce_pass()
+    passes.add_strip_dead_prototypes_pass()
+    passes.run(module)
+    for number, each in enumerate(module.global_variables):  # numba names them by addresses
+        each.name = f"{kernel.name}.{number}"
+    module.name = kernel.name
+    module.verify()
+    return module
+
+
+def main(folder: Path) -> None:
+    """Write all sets and the manifest."""
+    given = {"numba": numba.__version__, "llvmlite": llvmlite.__version__}
+    if given != shipped.MADE_BY:
+        sys.exit(f"the kernels are made by {shipped.MADE_BY}, not by {given}: see `make kernels`")
+    llvm.initialize()
+    llvm.initialize_native_target()
+    folder.mkdir(parents=True, exist_ok=True)
+    files = {}
+    for kernel in SETS.values():
+        module = module_of(kernel)
+        print(kernel.name, "calls", *shipped.needed(module, kernel.name))
+        bitcode = module.as_bitcode()
+        (folder / f"{kernel.name}.bc").write_bytes(bitcode)
+        files[kernel.name] = hashlib.sha256(bitcode).hexdigest()
+        print(f"{kernel.name}: {len(bitcode) / 1024:.0f} KB")
+    made = {
+        "python": platform.python_version(),
+        "numba": numba.__version__,
+        "llvmlite": llvmlite.__version__,
+        "llvm": ".".join(map(str, llvm.llvm_version_info)),
+    }
+    manifest = {"source": shipped.source_hash(), "made_by": made, "files": files}
+    (folder / "manifest.json").write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else PROJECT / "rocking_cli" / "dynamics" / "ready")
