@@ -74,10 +74,10 @@ def _own_mechanisms() -> dict[str, str]:
 
     Those of other packages are found in `mechanisms`, by their names.
     """
-    from importlib.metadata import distribution
+    from rocking_cli.plugins.points import entry_points
 
-    points = distribution("rocking-cli").entry_points.select(group="rocking.mechanisms")
-    return {point.attr: point.name for point in points}
+    own = [point for point in entry_points("rocking.mechanisms") if point.package.startswith("rocking-cli ")]
+    return {point.value.partition(":")[2]: point.name for point in own}
 
 
 __all__ = sorted(["__version__", "mechanisms", *_MODULES])
@@ -90,7 +90,7 @@ def __getattr__(name: str) -> Any:
         from rocking_cli.core.registry import Registry
 
         return Registry()
-    if not name.startswith("_") and name in (own := _own_mechanisms()):
+    if name[:1].isupper() and name in (own := _own_mechanisms()):  # other names may be modules that are being imported
         return __getattr__("mechanisms")[own[name]]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

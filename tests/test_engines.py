@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import json
 import re
 import tomllib
 from dataclasses import replace
-from importlib.metadata import EntryPoint
 from math import atan, isnan, sin
 from typing import ClassVar
 
@@ -17,8 +15,9 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.engines import Engine, engine, engine_of, respond
 from rocking_cli.engines.exact import Exact
-from rocking_cli.engines.installed import GROUP, Engines, engines
+from rocking_cli.engines.installed import Engines, engines
 from rocking_cli.errors import InputError, MechanismError, PluginError
+from rocking_cli.plugins.points import Point, entry_points
 from rocking_cli.structure import Structure
 from tests.conftest import EXAMPLES, PROJECT
 from tests.test_cli import run, run_json
@@ -132,7 +131,7 @@ class NoClass:
 @pytest.fixture
 def install(monkeypatch):
     """Install engines beside the exact one: an object of this file under each name."""
-    real = importlib.metadata.entry_points
+    real = entry_points
 
     def beside(**given):
         points = []
@@ -140,10 +139,10 @@ def install(monkeypatch):
             if isinstance(value, type):
                 monkeypatch.setattr(value, "name", name)
                 value = f"{__name__}:{value.__name__}"
-            points.append(EntryPoint(name, value, GROUP))
+            points.append(Point(name, value, Engines.group))
         monkeypatch.setattr(
             "rocking_cli.plugins.installed.entry_points",
-            lambda *, group: [*real(group=group), *(points if group == GROUP else ())],
+            lambda group: [*real(group), *(points if group == Engines.group else ())],
         )
         engines.cache_clear()
 
@@ -157,7 +156,7 @@ def by_solve_ivp(install, monkeypatch):
     folder = EXAMPLES / "engine"
     monkeypatch.syspath_prepend(folder)
     project = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    install(**project["entry-points"][GROUP])
+    install(**project["entry-points"][Engines.group])
     return engine("by_solve_ivp")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import FrozenInstanceError, dataclass, fields
-from importlib.metadata import EntryPoint
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from hypothesis import strategies as st
 
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.pulses import GROUP, Pulse, PulseShapes, parse_pulse
+from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.pulses.shapes import (
     AntisymmetricRicker,
     Cosine,
@@ -23,6 +22,7 @@ from rocking_cli.excitation.pulses.shapes import (
     Ricker,
     Sine,
 )
+from rocking_cli.plugins.points import Point
 from tests.test_cli import run_json
 
 A, T = 3.0, 0.8
@@ -295,7 +295,7 @@ class Incomplete(Pulse):
 
 
 def install(monkeypatch, *points):
-    entries = [EntryPoint(name=name, value=value, group=GROUP) for name, value in points]
+    entries = [Point(name=name, value=value, group=PulseShapes.group) for name, value in points]
     monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: entries)
 
 

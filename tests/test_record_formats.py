@@ -17,7 +17,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import layout, read_record
-from rocking_cli.excitation.records.registry import FALLBACK, GROUP, load_readers, reader_for, takes_bytes
+from rocking_cli.excitation.records.registry import FALLBACK, Readers, load_readers, reader_for, takes_bytes
 from rocking_cli.excitation.records.units import UNITS
 from tests.conftest import FORMATS, NEEDS_RECORDS, RECORDS, record
 
@@ -568,7 +568,11 @@ def reader(title: str, *, claims: bool) -> SimpleNamespace:
 
 def test_the_readers_come_in_through_entry_points():
     assert set(load_readers()) == {*MADE, "peer_at2", "sac", "miniseed", FALLBACK}
-    assert load_readers("rocking.nothing") == {}
+
+
+def test_without_entry_points_there_is_no_reader(monkeypatch):
+    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: [])
+    assert load_readers() == {}
 
 
 def test_two_claims_are_an_error_that_says_why():
@@ -622,8 +626,10 @@ def test_a_file_of_no_format_lists_what_was_tried(write):
 
 
 def test_a_broken_reader_is_named(monkeypatch):
-    point = SimpleNamespace(name="odd", value="elsewhere:odd", dist=None, load=lambda: SimpleNamespace(sniff=len))
-    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: [point] if group == GROUP else [])
+    point = SimpleNamespace(name="odd", value="elsewhere:odd", package="odd 1", load=lambda: SimpleNamespace(sniff=len))
+    monkeypatch.setattr(
+        "rocking_cli.plugins.installed.entry_points", lambda group: [point] if group == Readers.group else []
+    )
     monkeypatch.setattr("rocking_cli.plugins.installed._LEFT_OUT", set())
     why = r"elsewhere:odd.* is not a record reader: it has no read, TITLE, SIGN"
     with pytest.warns(PluginWarning, match=f"{why}; it is left out"):

@@ -8,16 +8,16 @@ import os
 import re
 import subprocess
 import sys
-from importlib.metadata import EntryPoint
 from math import atan
 
 import pytest
 
 from mechanisms.block import Block
 from rocking_cli.core import Mechanism
-from rocking_cli.core.registry import GROUP, Registry, conformance
+from rocking_cli.core.registry import Registry, conformance
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.plugins.installed import load
+from rocking_cli.plugins.points import Point
 from rocking_cli.testing import CHECKS
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -439,7 +439,7 @@ def test_printing_from_other_threads_is_kept_out_of_the_results():
 
 
 def entry(value, name="odd"):
-    return EntryPoint(name=name, value=value, group=GROUP)
+    return Point(name=name, value=value, group=Registry.group)
 
 
 def test_a_plugin_that_cannot_be_imported_says_whose_it_is():

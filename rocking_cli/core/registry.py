@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from importlib.metadata import EntryPoint
 from typing import cast
 
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.points import Point
 from rocking_cli.plugins.registry import Plugins
-
-GROUP = "rocking.mechanisms"
 
 
 class UnknownMechanismError(InputError, KeyError):
@@ -22,11 +20,6 @@ class UnknownMechanismError(InputError, KeyError):
 class Registry(Plugins[type[Mechanism]]):
     """Mechanism classes by name. Listing names loads nothing; looking one up loads and checks it.
 
-    Parameters
-    ----------
-    group : str
-        The entry-point group.
-
     Raises
     ------
     InputError
@@ -35,14 +28,12 @@ class Registry(Plugins[type[Mechanism]]):
         On looking up a plugin that cannot be loaded, breaks the contract, or has a name that two packages claim.
     """
 
+    group = "rocking.mechanisms"
     kind = "mechanism"
     unknown = UnknownMechanismError
 
-    def __init__(self, group: str = GROUP) -> None:
-        super().__init__(group)
-
     @staticmethod
-    def accept(loaded: object, point: EntryPoint) -> type[Mechanism]:
+    def accept(loaded: object, point: Point) -> type[Mechanism]:
         """What was loaded, held to the contract of `Mechanism`."""
         if faults := conformance(loaded, point.name):
             raise MechanismError(f"{origin(point)} is not a mechanism: " + "; ".join(faults))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 from functools import cache
-from importlib.metadata import EntryPoint
 from typing import get_args
 
 from rocking_cli.dynamics.history import RTOL, TAIL, History
@@ -15,11 +14,11 @@ from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.points import Point
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.structure import Structure
 from rocking_cli.text import did_you_mean
 
-GROUP = "rocking.engines"
 EXACT = Exact()
 
 
@@ -34,13 +33,11 @@ class Engines(Plugins[Engine]):
         On looking up a plugin that cannot be loaded, is no engine, or has a name that two packages claim.
     """
 
+    group = "rocking.engines"
     kind = "engine"
 
-    def __init__(self) -> None:
-        super().__init__(GROUP)
-
     @staticmethod
-    def accept(loaded: object, point: EntryPoint) -> Engine:
+    def accept(loaded: object, point: Point) -> Engine:
         """What was loaded, if it is a complete engine of its name."""
         if not (isinstance(loaded, type) and issubclass(loaded, Engine)):
             raise MechanismError(f"{origin(point)} is not an engine: it must be a class derived from Engine")

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import warnings
-from importlib.metadata import EntryPoint, entry_points
 
 from rocking_cli.errors import MechanismError, PluginWarning
 from rocking_cli.plugins.errors import blame
+from rocking_cli.plugins.points import Point, entry_points
 
 
-def find(group: str) -> dict[str, list[EntryPoint]]:
+def find(group: str) -> dict[str, list[Point]]:
     """Find the entry points of a group by name; several of one name are a conflict for the caller to report."""
-    points: dict[str, list[EntryPoint]] = {}
-    for point in entry_points(group=group):
+    points: dict[str, list[Point]] = {}
+    for point in entry_points(group):
         same_name = points.setdefault(point.name, [])
         # An editable and a normal install of one package list the same entry twice.
         if all(point.value != other.value for other in same_name):
@@ -20,25 +20,20 @@ def find(group: str) -> dict[str, list[EntryPoint]]:
     return points
 
 
-def package(point: EntryPoint) -> str:
-    """Return the distribution and version of an entry point."""
-    return f"{point.dist.name} {point.dist.version}" if point.dist else "unknown package"
-
-
-def origin(point: EntryPoint) -> str:
+def origin(point: Point) -> str:
     """Return the plugin and its package, for a message."""
-    return f"plugin {point.name} of {package(point)} ({point.value})"
+    return f"plugin {point.name} of {point.package} ({point.value})"
 
 
-def only(kind: str, name: str, points: list[EntryPoint]) -> EntryPoint:
+def only(kind: str, name: str, points: list[Point]) -> Point:
     """Return the only entry point of a name; `kind` names the plugins in the message if there are two."""
     if len(points) > 1:
-        claims = " and ".join(f"{package(point)} ({point.value})" for point in points)
+        claims = " and ".join(f"{point.package} ({point.value})" for point in points)
         raise MechanismError(f"{kind} {name} is claimed by two packages, {claims}: uninstall one of them")
     return points[0]
 
 
-def load(point: EntryPoint) -> object:
+def load(point: Point) -> object:
     """Load the object of an entry point."""
     with blame(f"{origin(point)} cannot be loaded", point.value.partition(":")[0]):
         loaded: object = point.load()

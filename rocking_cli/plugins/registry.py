@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
-from importlib.metadata import EntryPoint
 from typing import ClassVar, TypeVar
 
 from rocking_cli.errors import InputError
-from rocking_cli.plugins.installed import find, load, only, package
+from rocking_cli.plugins.installed import find, load, only
+from rocking_cli.plugins.points import Point
 from rocking_cli.text import did_you_mean
 
 T = TypeVar("T")
@@ -17,12 +17,7 @@ T = TypeVar("T")
 class Plugins(Mapping[str, T]):
     """Plugins of an entry-point group. Listing names loads nothing; looking one up loads and checks it.
 
-    A subclass defines their kind and which objects it accepts.
-
-    Parameters
-    ----------
-    group : str
-        Entry-point group.
+    A subclass defines their group, their kind and which objects it accepts.
 
     Raises
     ------
@@ -32,13 +27,15 @@ class Plugins(Mapping[str, T]):
         On looking up a plugin that cannot be loaded, is not accepted, or has a name that two packages claim.
     """
 
+    group: ClassVar[str]
+    """Entry-point group."""
     kind: ClassVar[str]
     """Name of the kind, for messages."""
     unknown: ClassVar[type[InputError]] = InputError
     """Error for a name that no package provides."""
 
-    def __init__(self, group: str) -> None:
-        self._points = find(group)
+    def __init__(self) -> None:
+        self._points = find(self.group)
 
     def __iter__(self) -> Iterator[str]:
         return iter(sorted(self._points))
@@ -58,9 +55,9 @@ class Plugins(Mapping[str, T]):
 
     def package_of(self, name: str) -> str:
         """Return the distribution and version of a plugin."""
-        return ", ".join(package(point) for point in self._points[name])
+        return ", ".join(point.package for point in self._points[name])
 
     @staticmethod
     @abstractmethod
-    def accept(loaded: object, point: EntryPoint) -> T:
+    def accept(loaded: object, point: Point) -> T:
         """Return the loaded object if it is valid; otherwise raise a `MechanismError` with all that is missing."""

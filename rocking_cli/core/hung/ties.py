@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from importlib.metadata import EntryPoint
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self, cast
 
@@ -16,6 +15,7 @@ from rocking_cli.core.hung.element import Element
 from rocking_cli.core.hung.elements import Spring, SpringBed
 from rocking_cli.errors import MechanismError
 from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.points import Point
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.text import did_you_mean
 
@@ -209,13 +209,11 @@ class Laws(Plugins[type[Tie]]):
         On looking up a plugin that cannot be loaded, is no tie, or has a name that two packages claim.
     """
 
+    group = "rocking.laws"
     kind = "law"
 
-    def __init__(self) -> None:
-        super().__init__("rocking.laws")
-
     @staticmethod
-    def accept(loaded: object, point: EntryPoint) -> type[Tie]:
+    def accept(loaded: object, point: Point) -> type[Tie]:
         """What was loaded, if it is a tie that has a field `law`."""
         if not (isinstance(loaded, type) and issubclass(loaded, Tie)):
             raise MechanismError(f"{origin(point)} is not a law: it must be a class derived from Tie")

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import re
 from dataclasses import fields
-from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses.base import COARSE, Pulse, Segment
 from rocking_cli.excitation.records.units import UNITS
 from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.points import Point
 from rocking_cli.plugins.registry import Plugins
 
 __all__ = ["COARSE", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 
-GROUP = "rocking.pulses"
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?", re.ASCII)
 _TIMES = {"": 1.0, "s": 1.0, "ms": 1e-3}
 
@@ -31,13 +30,11 @@ class PulseShapes(Plugins[type[Pulse]]):
         On looking up a plugin that cannot be loaded, is no pulse shape, or has a name that two packages claim.
     """
 
+    group = "rocking.pulses"
     kind = "pulse"
 
-    def __init__(self) -> None:
-        super().__init__(GROUP)
-
     @staticmethod
-    def accept(loaded: object, point: EntryPoint) -> type[Pulse]:
+    def accept(loaded: object, point: Point) -> type[Pulse]:
         """What was loaded, if it is a complete shape of its name."""
         if not (isinstance(loaded, type) and issubclass(loaded, Pulse)) or loaded.__abstractmethods__:
             raise MechanismError(f"{origin(point)} is not a pulse shape: it must derive from Pulse and be complete")

@@ -8,16 +8,15 @@ its `read` takes `wanted`, a `sensor.Wanted`.
 
 from __future__ import annotations
 
-from importlib.metadata import EntryPoint
 from typing import Any, Protocol, cast
 
 from rocking_cli.errors import InputError, MechanismError, PluginError, Problem, RockingError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import leave_out, origin
+from rocking_cli.plugins.points import Point
 from rocking_cli.plugins.registry import Plugins
 
-GROUP = "rocking.records"
 FALLBACK = "text"
 """The reader that is asked last: delimited text takes nearly anything with numbers in it."""
 
@@ -64,8 +63,8 @@ class Reader(Protocol):
         ...
 
 
-def load_readers(group: str = GROUP) -> dict[str, Reader]:
-    """All readers of an entry-point group by name, in alphabetic order.
+def load_readers() -> dict[str, Reader]:
+    """All readers by name, in alphabetic order.
 
     One that cannot be loaded, is no reader, or whose name two packages claim is left out with a warning: in its place
     is one that claims no file, and says why where a file is of no format.
@@ -75,7 +74,7 @@ def load_readers(group: str = GROUP) -> dict[str, Reader]:
     PluginWarning
         Of each that is left out, once in a process.
     """
-    installed, readers = Readers(group), dict[str, Reader]()
+    installed, readers = Readers(), dict[str, Reader]()
     for name in installed:
         try:
             readers[name] = installed[name]
@@ -96,13 +95,11 @@ class Readers(Plugins[Reader]):
         On looking up a plugin that cannot be loaded, is no reader, or has a name that two packages claim.
     """
 
+    group = "rocking.records"
     kind = "record reader"
 
-    def __init__(self, group: str = GROUP) -> None:
-        super().__init__(group)
-
     @staticmethod
-    def accept(loaded: object, point: EntryPoint) -> Reader:
+    def accept(loaded: object, point: Point) -> Reader:
         """What was loaded, if it is a reader, with its errors named."""
         missing = [word for word in ("sniff", "read") if not callable(getattr(loaded, word, None))]
         missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(loaded, word, None), str)]
@@ -136,7 +133,7 @@ class _Broken:
 class _Guarded:
     """A reader whose own errors are blamed on it."""
 
-    def __init__(self, reader: Reader, point: EntryPoint) -> None:
+    def __init__(self, reader: Reader, point: Point) -> None:
         self.TITLE, self.SIGN, self.BINARY = reader.TITLE, reader.SIGN, takes_bytes(reader)
         self.TAKES_WANTED = takes_wanted(reader)
         self._reader, self._point = reader, point

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import leave_out, origin
+from rocking_cli.plugins.points import Point
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity.base import Measure, MotionMeasure, Reference, RelativeMeasure, RunMeasure
 from rocking_cli.text import cut, did_you_mean
@@ -26,7 +26,6 @@ __all__ = [
     "power_of",
 ]
 
-GROUP = "rocking.measures"
 ALL = "all"
 _FORM = re.compile(r"([^()]+)(?:\((.*)\))?", re.DOTALL)
 
@@ -42,13 +41,11 @@ class IntensityMeasures(Plugins[type[Measure]]):
         On looking up a plugin that cannot be loaded, is no measure, or has a name that two packages claim.
     """
 
+    group = "rocking.measures"
     kind = "measure"
 
-    def __init__(self) -> None:
-        super().__init__(GROUP)
-
     @staticmethod
-    def accept(loaded: object, point: EntryPoint) -> type[Measure]:
+    def accept(loaded: object, point: Point) -> type[Measure]:
         """What was loaded, if it is a complete measure of its name."""
         kinds = (MotionMeasure, RelativeMeasure, RunMeasure)
         if not (isinstance(loaded, type) and issubclass(loaded, kinds)) or loaded.__abstractmethods__:

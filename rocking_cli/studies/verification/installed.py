@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import MechanismError
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import origin
+from rocking_cli.plugins.points import Point
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.studies.verification.code import Code, Number
 from rocking_cli.studies.verification.site_file import Site
-
-GROUP = "rocking.codes"
 
 
 class Codes(Plugins[Code]):
@@ -27,13 +25,11 @@ class Codes(Plugins[Code]):
         On looking up a plugin that cannot be loaded, is no code, or has a name that two packages claim.
     """
 
+    group = "rocking.codes"
     kind = "code"
 
-    def __init__(self) -> None:
-        super().__init__(GROUP)
-
     @staticmethod
-    def accept(loaded: object, point: EntryPoint) -> Code:
+    def accept(loaded: object, point: Point) -> Code:
         """What was loaded, if it is a complete code of its name."""
         if not (isinstance(loaded, type) and issubclass(loaded, Code)) or loaded.__abstractmethods__:
             raise MechanismError(f"{origin(point)} is not a code: it must derive from Code and be complete")
