@@ -15,6 +15,7 @@ import warnings
 import zlib
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -169,8 +170,6 @@ def has_run(kernel: str) -> None:
 
 def _stamp(kernel: str) -> Path:
     """A file that is there once this version of a kernel has been compiled by this Python and numba."""
-    from importlib.metadata import version
-
     source = Path(__file__).with_name(f"{kernel}.py").read_bytes()
     made = f"{sys.version_info[:2]}, {version('numba')}, {platform.machine()}, {zlib.crc32(source)}"
     return cache_folder() / f"{kernel}-{zlib.crc32(made.encode()):08x}.compiled"

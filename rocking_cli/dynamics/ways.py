@@ -14,6 +14,7 @@ import threading
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from types import FunctionType
 from typing import Any
@@ -169,8 +170,6 @@ def is_ready(file: str) -> bool:
 
 def versions() -> dict[str, str]:
     """Versions of what turns kernels into machine code, as far as it is installed."""
-    from importlib.metadata import PackageNotFoundError, version
-
     found = {}
     for name in ("llvmlite", "numba"):
         with suppress(PackageNotFoundError):

@@ -5,16 +5,14 @@ from __future__ import annotations
 import gzip
 import io
 import sys
+import zipfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary, WeakSet
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_at_most, read_bytes
-
-if TYPE_CHECKING:
-    import zipfile
 
 STANDARD_INPUT = "-"
 LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB
@@ -160,8 +158,6 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
         raise InputError(
             Problem(f"the archive has more than {MEMBERS} files: too many for a record", file, hint=_UNPACK)
         )
-    import zipfile
-
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
         members = [each for each in archive.infolist() if not _is_no_record(each)]
