@@ -60,6 +60,7 @@ check: lint type contracts test
 
 bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for a record of your own
 	-$(BIN)/python -m pip install --quiet ".[bench]"
+	$(BIN)/python benchmarks/starting.py
 	$(BIN)/python benchmarks/histories.py $(RECORD)
 	$(BIN)/python benchmarks/maps.py
 	$(BIN)/python benchmarks/fragility.py

@@ -250,7 +250,8 @@ def main(folder: Path) -> None:
         (folder / name).write_bytes(content)
         files[name] = hashlib.sha256(content).hexdigest()
         print(f"{name}: {len(content) / 1024:.0f} KB")
-    made = {"python": platform.python_version(), **given, "llvm": ".".join(map(str, llvm.llvm_version_info))}
+    made = {"python": ".".join(platform.python_version_tuple()[:2]), **given}
+    made["llvm"] = ".".join(map(str, llvm.llvm_version_info))
     manifest = {"source": shipped.source_hash(), "made_by": made, "files": files}
     (folder / shipped.MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
 

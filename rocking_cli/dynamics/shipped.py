@@ -53,7 +53,7 @@ def manifest() -> dict[str, Any]:
         found = json.loads((FOLDER / MANIFEST).read_text(encoding="utf-8"))
         return {"source": str(found["source"]), "made_by": dict(found["made_by"]), "files": dict(found["files"])}
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise Unusable(f"{FOLDER / MANIFEST} cannot be read: {error}") from error
+        raise Unusable(f"{FOLDER / MANIFEST} cannot be read, reinstall rocking-cli: {error}") from error
 
 
 def place() -> Path:
@@ -65,7 +65,10 @@ def place() -> Path:
 
 def is_there() -> bool:
     """Whether there is a library for this system; a damaged one counts."""
-    return place().is_file()
+    try:
+        return place().is_file()
+    except OSError:  # a folder that may not be read
+        return False
 
 
 @functools.cache
@@ -88,11 +91,11 @@ def forget() -> None:
 def _library() -> ctypes.CDLL:
     """The library for this system, with what it calls."""
     at = place()
-    if struct.calcsize("P") != 8 or not at.is_file():
+    if struct.calcsize("P") != 8 or not is_there():
         raise Unusable(f"no kernels are shipped for {at.stem}")
     # The system would load half a file as well, and end the process in the missing half.
     if hashlib.sha256(at.read_bytes()).hexdigest() != manifest()["files"].get(at.name):
-        raise Unusable(f"{at} is damaged")
+        raise Unusable(f"{at} is damaged, reinstall rocking-cli")
     library = ctypes.CDLL(str(at))
     c = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
     for name in FUNCTIONS:

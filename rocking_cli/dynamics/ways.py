@@ -59,7 +59,7 @@ def _chosen(name: str) -> tuple[str, Kernel]:
 
 @functools.cache
 def _choose(name: str) -> tuple[str, Kernel]:
-    of, asked = SETS[name], os.environ.get(CHOSEN)
+    of, asked = SETS[name], os.environ.get(CHOSEN) or None
     if asked is not None and asked not in WAYS:
         raise InputError(f"{CHOSEN} is {asked!r}: give one of {', '.join(WAYS)}")
     reasons: list[str] = []
@@ -100,7 +100,7 @@ def _jit(of: KernelSet) -> Kernel:
 def _say_slow(why: str) -> None:
     """Warn, once in this process."""
     text = f"time histories are computed by Python itself, which takes a hundred times longer ({why})"
-    warnings.warn(KernelWarning(f"{text}: install rocking-cli[jit]"), stacklevel=2)
+    warnings.warn(KernelWarning(f"{text}; rocking-cli[jit] would compile them"), stacklevel=2)
 
 
 def in_python(of: KernelSet) -> Kernel:
