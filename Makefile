@@ -61,6 +61,7 @@ check: lint type contracts test
 
 bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for a record of your own
 	-$(BIN)/python -m pip install --quiet ".[bench]"
+	$(BIN)/python benchmarks/starting.py
 	$(BIN)/python benchmarks/histories.py $(RECORD)
 	$(BIN)/python benchmarks/maps.py
 	$(BIN)/python benchmarks/fragility.py
@@ -86,7 +87,7 @@ validation: setup  ## Write docs/validation.md anew
 KERNELS := out/kernels
 kernels:  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; PYTHON up to 3.13, READY=FOLDER for another place
 	$(PYTHON) -m venv $(KERNELS)
-	$(KERNELS)/$(notdir $(BIN))/python -m pip install --quiet "numba==0.61.2" "llvmlite==0.44.0" "numpy<2.3" "platformdirs>=4"
+	$(KERNELS)/$(notdir $(BIN))/python -m pip install --quiet "numba==0.61.2" "llvmlite==0.44.0" "ziglang==0.17.1" "numpy<2.3" "platformdirs>=4"
 	$(KERNELS)/$(notdir $(BIN))/python scripts/make_kernels.py $(READY)
 
 stub: setup  ## Write rocking_cli/__init__.pyi, which types what the package hands out

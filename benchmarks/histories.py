@@ -8,9 +8,7 @@ On a record of your own, or the shipped example. Each part prints a table in Mar
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -213,38 +211,6 @@ def length() -> None:
     table("Cost of a sample", ["model", "samples", "ns a sample", "impacts in 1000", "rocking"], rows)
 
 
-def start_up() -> None:
-    """Processes from launch to their first history, with an empty and with a filled cache."""
-    script = (
-        "from rocking_cli import GroundMotion, load_structure, respond; import sys;"
-        "respond(load_structure(sys.argv[1]), GroundMotion('x', 0.01, [0.0, 3.0, 0.0]), models=('nonlinear',))"
-    )
-    with tempfile.TemporaryDirectory() as folder:
-        environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
-
-        def launch(*arguments: str) -> float:
-            start = time.perf_counter()
-            subprocess.run([sys.executable, *arguments], check=True, env=environment, capture_output=True)
-            return time.perf_counter() - start
-
-        block = str(PROJECT / "examples" / "block.yaml")
-        first = launch("-c", script, block)
-        environment["ROCKING_KERNELS"] = "jit"
-        compiled = launch("-c", script, block)
-        del environment["ROCKING_KERNELS"]
-        command = "from rocking_cli.cli.main import main; main()"
-        processes = {
-            "python": ("-c", "pass"),
-            "import numpy": ("-c", "import numpy"),
-            "import llvmlite": ("-c", "import llvmlite.binding"),
-            "a history": ("-c", script, block),
-            "rocking respond": ("-c", command, "respond", block, "--record", str(ACCEL), "--json"),
-        }
-        rows = [["a history, first on the machine", f"{first:.2f}"], ["the same, compiled by numba", f"{compiled:.2f}"]]
-        rows += [[name, f"{median(launch(*each) for _ in range(9)):.2f}"] for name, each in processes.items()]
-    table("From launch to the end of the process, the kernel in the cache", ["process", "s"], rows)
-
-
 def main() -> None:
     motion = read_record(sys.argv[1] if len(sys.argv) > 1 else ACCEL)
     structures = {
@@ -257,7 +223,6 @@ def main() -> None:
     batches(motion, models)
     length()
     against_pybullet(motion, models)
-    start_up()
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from click.testing import CliRunner
 
 from rocking_cli.cli import defaults
 from rocking_cli.cli.main import COMMANDS, main
-from rocking_cli.dynamics import compiled
+from rocking_cli.dynamics import compiled, ways
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -182,8 +182,13 @@ class TestCompiling:
         (tmp_path / "cache").touch()
         monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
         compiled.unwritable.cache_clear()
+        assert "already compiled" in run("warm").stdout  # as shipped nothing has to be kept
+        monkeypatch.setenv("ROCKING_KERNELS", "jit")
+        ways.forget()
         said = run("warm", code=1).stderr
         compiled.unwritable.cache_clear()
+        monkeypatch.undo()
+        ways.forget()
         assert f"{tmp_path / 'cache'}: cannot be written to" in said and "NUMBA_CACHE_DIR" in said
 
     @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals")
@@ -256,7 +261,9 @@ class TestInfo:
         refused = run_json("info")
         compiled.unwritable.cache_clear()
         assert found["cache"] == str(tmp_path / "cache") and found["unwritable"] is None
-        assert found["compiled"] == {"histories": False, "exact_pulses": False}
+        assert found["compiled"] == {"histories": True, "exact_pulses": True}  # as shipped
+        monkeypatch.setenv("ROCKING_KERNELS", "jit")
+        assert run_json("info")["compiled"] == {"histories": False, "exact_pulses": False}
         assert refused["unwritable"] and refused["cache"] == str(tmp_path / "file")
 
 

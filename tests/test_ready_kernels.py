@@ -1,9 +1,13 @@
-"""The kernels that are shipped: what is in them, where their machine code is, and that all ways give the same bits."""
+"""The kernels that are shipped: what is in their libraries, and that all ways to run them give the same bits."""
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import json
 import os
+import shutil
+import struct
 import subprocess
 import sys
 import threading
@@ -14,8 +18,8 @@ import numpy as np
 import pytest
 
 from rocking_cli import GroundMotion, Runs, respond_many
-from rocking_cli.dynamics import calling, compiled, kernels, pulse_motion, shipped, ways
-from rocking_cli.dynamics.calling import HISTORIES, PULSES, SETS, TIED
+from rocking_cli.dynamics import calling, kernels, pulse_motion, shipped, ways
+from rocking_cli.dynamics.calling import FUNCTIONS, HISTORIES, PULSES, SETS, TIED
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import InputError, KernelWarning
@@ -24,8 +28,6 @@ from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
 from tests.conftest import EXAMPLES, PROJECT
 
-llvm = pytest.importorskip("llvmlite.binding")
-
 RNG = np.random.default_rng(31)
 SHAKING = GroundMotion("shaking", 0.01, 3.0 * RNG.standard_normal(150))
 BOTH = replace(SHAKING, vertical=GroundMotion("vertical", 0.007, 2.0 * RNG.standard_normal(180)))
@@ -33,15 +35,13 @@ BOTH = replace(SHAKING, vertical=GroundMotion("vertical", 0.007, 2.0 * RNG.stand
 
 @pytest.fixture
 def choose(monkeypatch):
-    """Take a way, or none in particular, in a cache of one's own if one is given."""
+    """Take a way, or none in particular."""
 
-    def chosen(way=None, cache=None):
+    def chosen(way=None):
         if way is None:
             monkeypatch.delenv(ways.CHOSEN, raising=False)
         else:
             monkeypatch.setenv(ways.CHOSEN, way)
-        if cache is not None:
-            monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache))
         ways.forget()
 
     yield chosen
@@ -67,32 +67,63 @@ class TestWhatIsShipped:
         monkeypatch.setattr(shipped, "MADE_BY", {**shipped.MADE_BY, "numba": "0.0"})
         assert len({usual, other, shipped.source_hash()}) == 3
 
-    @pytest.mark.parametrize("name", SETS)
-    def test_it_calls_functions_of_c_alone_and_names_no_place_of_the_builder(self, name):
-        content = shipped.bitcode(name)
-        shipped._llvm()
-        module = llvm.parse_bitcode(content)
-        assert set(shipped.needed(module, name)) <= {*shipped.LIBRARY, *shipped.INTRINSICS}
-        assert "NRT" not in str(module) and "fast" not in str(module).replace("fastcc", "")
-        assert str(PROJECT).encode() not in content and b"/home" not in content and b"/tmp" not in content
+    @pytest.mark.parametrize("name", shipped.manifest()["files"])
+    def test_a_library_is_whole_and_needs_nothing_of_others(self, name):
+        content = (shipped.FOLDER / name).read_bytes()
+        assert hashlib.sha256(content).hexdigest() == shipped.manifest()["files"][name]
+        assert missing(content) == []
+        for entry in (*SETS, *FUNCTIONS):
+            assert calling.symbol(entry).encode() + b"\0" in content
+        assert not any(each in content for each in (b"NRT_", b"/home", b"/tmp", b"/root", str(PROJECT).encode()))
 
-    def test_it_is_small(self):
-        assert sum(each.stat().st_size for each in shipped.FOLDER.iterdir()) < 1.5e6
+    def test_they_are_small_and_all_of_them(self):
+        files = {each.name: each.stat().st_size for each in shipped.FOLDER.iterdir()}
+        assert files.keys() == {*shipped.manifest()["files"], shipped.MANIFEST}
+        assert sum(files.values()) < 1.5e6
 
-    @pytest.mark.parametrize(
-        "other", ["NRT_MemInfo_call_dtor", "NRT_Allocate", "PyErr_Clear", "malloc", "llvm.fma.f64"]
-    )
-    def test_a_call_of_anything_else_is_refused(self, other):
-        shipped._llvm()
-        code = f'declare void @"{other}"()\ndefine i32 @rocking_x() {{ call void @"{other}"() ret i32 0 }}'
-        with pytest.raises(shipped.Unusable, match=other):
-            shipped.needed(llvm.parse_assembly(code), "x")
+    @pytest.mark.parametrize("system, machine, name", [
+        ("linux", "x86_64", "linux-x86_64.so"), ("linux", "aarch64", "linux-aarch64.so"),
+        ("darwin", "arm64", "darwin-aarch64.dylib"), ("darwin", "x86_64", "darwin-x86_64.dylib"),
+        ("win32", "AMD64", "win32-x86_64.dll"),
+    ])  # fmt: skip
+    def test_each_system_finds_its_own(self, monkeypatch, system, machine, name):
+        monkeypatch.setattr(shipped.sys, "platform", system)
+        monkeypatch.setattr(shipped.platform, "machine", lambda: machine)
+        assert shipped.place().name == name and shipped.is_there()
 
-    def test_an_entry_too_many_is_refused(self):
-        shipped._llvm()
-        code = "define i32 @rocking_x() { ret i32 0 }\ndefine i32 @y() { ret i32 0 }"
-        with pytest.raises(shipped.Unusable, match="other entries"):
-            shipped.needed(llvm.parse_assembly(code), "x")
+
+def missing(content):
+    """What a library expects of others: names, or that there are some."""
+    if content[:4] == b"\x7fELF":
+        (sections,) = struct.unpack_from("<Q", content, 40)
+        size, count = struct.unpack_from("<HH", content, 58)
+        headers = [struct.unpack_from("<IIQQQQIIQQ", content, sections + k * size) for k in range(count)]
+        found = []
+        for _, kind, _, _, at, length, link, _, _, entry in headers:
+            if kind == 11:  # the symbols that a linker sees
+                for place in range(at + entry, at + length, entry):
+                    name, _, _, section = struct.unpack_from("<IBBH", content, place)
+                    start = headers[link][4] + name
+                    found += [content[start : content.index(b"\0", start)]] if section == 0 else []
+            elif kind == 6:  # what the loader does
+                tags = [struct.unpack_from("<Q", content, place)[0] for place in range(at, at + length, 16)]
+                found += ["a library"] * tags.count(1)
+        return found
+    if content[:2] == b"MZ":
+        (header,) = struct.unpack_from("<I", content, 60)
+        return ["imports"] if any(struct.unpack_from("<II", content, header + 24 + 112 + 8)) else []
+    assert content[:4] == b"\xcf\xfa\xed\xfe"
+    (commands,), place, found = struct.unpack_from("<I", content, 16), 32, []
+    for _ in range(commands):
+        command, size = struct.unpack_from("<II", content, place)
+        if command == 2:  # the symbols
+            at, count, names, _ = struct.unpack_from("<IIII", content, place + 8)
+            for k in range(count):
+                name, kind, _, _, _ = struct.unpack_from("<IBBHQ", content, at + 16 * k)
+                if kind & 0x0E == 0:
+                    found.append(content[names + name : content.index(b"\0", names + name)])
+        place += size
+    return [each for each in found if each != b"dyld_stub_binder"]  # of every library of this kind
 
 
 def structures():
@@ -132,44 +163,53 @@ def bits_of_pulses():
     return found
 
 
+@functools.cache
+def _bits(way):
+    return bits_of_histories(), bits_of_pulses()
+
+
+def bits_of_shipped(choose):
+    choose("ready")
+    found = _bits("ready")
+    assert {ways.way(each) for each in SETS.values()} == {"ready"}
+    return found
+
+
 class TestSameBits:
     """Of histories and exact pulses: arithmetic is that of IEEE 754, in one order, and functions are those of one C."""
 
     def test_shipped_and_in_python(self, choose):
-        choose("ready")
-        histories, pulses = bits_of_histories(), bits_of_pulses()
-        assert shipped._LOADED.keys() == SETS.keys()
+        shipped_bits = bits_of_shipped(choose)
         choose("python")
         assert {ways.way(each) for each in SETS.values()} == {"python"}
-        assert bits_of_pulses() == pulses
-        assert bits_of_histories() == histories
+        assert (bits_of_histories(), bits_of_pulses()) == shipped_bits
 
     def test_shipped_and_compiled_here(self, choose):
         pytest.importorskip("numba")
-        choose("ready")
-        histories, pulses = bits_of_histories(), bits_of_pulses()
+        shipped_bits = bits_of_shipped(choose)
         choose("jit")
         assert {ways.way(each) for each in SETS.values()} == {"jit"}
-        assert bits_of_pulses() == pulses
-        assert bits_of_histories() == histories
+        assert (bits_of_histories(), bits_of_pulses()) == shipped_bits
+
+
+BLOCK = (
+    "import sys; from rocking_cli import GroundMotion, Registry, respond;"
+    "respond(Registry()['block'](width=0.7, height=2.8), GroundMotion('x', 0.01, [0.0, 4.0, 0.0]));"
+    "print('numba' in sys.modules)"
+)
+"""A program whose history needs no numba."""
 
 
 class TestWays:
     def test_the_shipped_one_comes_first_and_numba_is_not_loaded(self):
-        code = (
-            "import sys; from rocking_cli import GroundMotion, Registry, respond;"
-            "respond(Registry()['block'](width=0.7, height=2.8), GroundMotion('x', 0.01, [0.0, 4.0, 0.0]));"
-            "print('numba' in sys.modules)"
-        )
         environment = {name: value for name, value in os.environ.items() if name != ways.CHOSEN}
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
+        done = subprocess.run([sys.executable, "-c", BLOCK], capture_output=True, text=True, env=environment)
         assert (done.stdout, done.stderr) == ("False\n", "")
 
     def test_numba_comes_next(self, choose, monkeypatch):
         pytest.importorskip("numba")
         choose()
         monkeypatch.setattr(shipped, "FOLDER", PROJECT / "nowhere")
-        shipped.manifest.cache_clear()
         taken = ways.way(PULSES)
         monkeypatch.undo()
         assert taken == "jit"
@@ -179,7 +219,7 @@ class TestWays:
         monkeypatch.setattr(shipped, "load", lambda of: refuse())
         monkeypatch.setitem(ways.MAKE, "jit", lambda of: refuse(ImportError))
         ways._say_slow.cache_clear()
-        with pytest.warns(KernelWarning, match=r"a hundred times longer \(no llvmlite here\)") as said:
+        with pytest.warns(KernelWarning, match=r"a hundred times longer \(no library here\)") as said:
             assert [ways.way(each) for each in SETS.values()] == ["python"] * 3
         assert len(said) == 1
         ways._say_slow.cache_clear()
@@ -187,7 +227,7 @@ class TestWays:
     def test_one_that_is_chosen_is_the_only_one(self, choose, monkeypatch):
         choose("ready")
         monkeypatch.setattr(shipped, "load", lambda of: refuse())
-        with pytest.raises(InputError, match="ROCKING_KERNELS is 'ready', but no llvmlite here"):
+        with pytest.raises(InputError, match="ROCKING_KERNELS is 'ready', but no library here"):
             ways.kernel(HISTORIES)
 
     def test_a_wrong_choice_is_named(self, choose):
@@ -203,130 +243,98 @@ class TestWays:
 
 
 def refuse(kind=shipped.Unusable):
-    raise kind("no llvmlite here")
+    raise kind("no library here")
 
 
-def pulse_bits():
-    """What a kernel of pulses gives, fresh from the cache."""
-    results = np.empty((3, pulse_motion.RESULTS))
-    side = pulse_motion.Side(2.0, 3.0, 0.5, 0.9)
-    segments = np.array([[0.0, 1.0, 1.0, 2 * np.pi, 0.0]])
-    arguments = ((side, side), segments, np.array([2.0, 5.0, 9.0]), np.full(3, 1.3), 0, 3, results)
-    calling.call(shipped.load(PULSES), PULSES, arguments)
-    return results.tobytes()
+class TestLibrary:
+    """Whatever is wrong with the library, another way answers."""
 
-
-class TestCache:
-    def test_machine_code_is_kept_and_found_again(self, choose, tmp_path, monkeypatch):
-        choose("ready", tmp_path)
-        assert not shipped.is_kept("pulses") and not ways.is_ready(compiled.PULSES)
-        first = pulse_bits()
-        assert [each.name for each in tmp_path.iterdir()] == [shipped.place("pulses").name]
-        assert shipped.is_kept("pulses") and ways.is_ready(compiled.PULSES)
-        assert not ways.needs_compiling(compiled.PULSES)
-        shipped.forget()
-        monkeypatch.setattr(shipped, "machine_code", lambda *_: pytest.fail("it is made again"))
-        assert pulse_bits() == first
+    @pytest.fixture
+    def folder(self, choose, tmp_path, monkeypatch):
+        """A folder with what is shipped, in the place of the one that is installed."""
+        folder = tmp_path / "ready"
+        shutil.copytree(shipped.FOLDER, folder)
+        monkeypatch.setattr(shipped, "FOLDER", folder)
+        choose()
+        return folder
 
     @pytest.mark.parametrize("spoil", [
         lambda code: b"", lambda code: code[:20], lambda code: code[:-100], lambda code: b"\0" * len(code),
-        lambda code: code[:5000] + bytes([code[5000] ^ 1]) + code[5001:], lambda code: code + b"more",
+        lambda code: code[:90000] + bytes([code[90000] ^ 1]) + code[90001:], lambda code: code + b"more",
     ])  # fmt: skip
-    def test_damaged_code_is_made_again(self, choose, tmp_path, spoil):
-        choose("ready", tmp_path)
-        first, place = pulse_bits(), shipped.place("pulses")
-        right = place.read_bytes()
-        place.write_bytes(spoil(right))
-        shipped.forget()
-        assert pulse_bits() == first and place.read_bytes() == right
+    def test_a_damaged_one(self, folder, spoil):
+        shipped.place().write_bytes(spoil(shipped.place().read_bytes()))
+        with pytest.raises(shipped.Unusable, match="damaged"):
+            shipped.load(PULSES)
 
-    def test_code_of_another_processor_or_version_is_not_taken(self, choose, tmp_path, monkeypatch):
-        choose("ready", tmp_path)
-        first, place = pulse_bits(), shipped.place("pulses")
-        monkeypatch.setattr(shipped, "_processor", lambda: ("x86-64", ""))
-        assert shipped.place("pulses") != place
-        shipped.place("pulses").write_bytes(place.read_bytes())  # whoever renames it
-        assert shipped._kept("pulses") is None
-        monkeypatch.undo()
-        assert pulse_bits() == first
+    def test_one_that_is_not_there(self, folder):
+        shipped.place().unlink()
+        with pytest.raises(shipped.Unusable, match=f"no kernels are shipped for {shipped.place().stem}"):
+            shipped.load(PULSES)
+        assert not shipped.is_there()
 
-    @pytest.mark.parametrize("hinder", ["a file in its place", "a folder in the place of the code", "a full disk"])
-    def test_where_nothing_can_be_kept_there_is_an_answer(self, choose, tmp_path, monkeypatch, hinder):
-        choose("ready", tmp_path / "cache")
-        if hinder == "a file in its place":
-            (tmp_path / "cache").touch()
-        elif hinder == "a folder in the place of the code":
-            shipped.place("pulses").mkdir(parents=True)
+    def test_a_folder_in_its_place(self, folder):
+        shipped.place().unlink()
+        shipped.place().mkdir()
+        with pytest.raises(shipped.Unusable, match="no kernels are shipped"):
+            shipped.load(PULSES)
+
+    @pytest.mark.parametrize("manifest", [None, "", "{", "[1]", "{}", '{"source": 1, "made_by": 2, "files": 3}'])
+    def test_a_manifest_that_is_none(self, folder, manifest):
+        if manifest is None:
+            (folder / shipped.MANIFEST).unlink()
         else:
-            monkeypatch.setattr(os, "fdopen", lambda handle, mode: FullDisk(handle))
-        found = pulse_bits()
-        monkeypatch.undo()
-        choose("ready", tmp_path / "sound")
-        assert pulse_bits() == found
-        assert not list(tmp_path.glob("cache/*.machine.*"))
+            (folder / shipped.MANIFEST).write_text(manifest, encoding="utf-8")
+        with pytest.raises(shipped.Unusable, match="cannot be read"):
+            shipped.load(PULSES)
 
-    def test_two_processes_and_two_threads_at_once(self, choose, tmp_path):
-        code = (
-            "from rocking_cli.dynamics import shipped; from rocking_cli.dynamics.calling import PULSES;"
-            "shipped.load(PULSES); print(shipped.place('pulses').name)"
-        )
-        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-        both = [
-            subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=environment)
-            for _ in range(2)
-        ]
-        said = {each.communicate()[0].strip() for each in both}
-        assert said == {each.name for each in tmp_path.iterdir()} and len(said) == 1
-        choose("ready", tmp_path)
+    @pytest.mark.parametrize("other", [b"no library", "another system"])
+    def test_one_that_the_system_does_not_load(self, folder, other):
+        manifest = shipped.manifest()
+        if other == "another system":
+            foreign = next(each for each in manifest["files"] if not each.startswith(sys.platform))
+            other = (folder / foreign).read_bytes()
+        shipped.place().write_bytes(other)
+        manifest["files"][shipped.place().name] = hashlib.sha256(other).hexdigest()
+        (folder / shipped.MANIFEST).write_text(json.dumps(manifest), encoding="utf-8")
+        with pytest.raises(shipped.Unusable, match="cannot be loaded"):
+            shipped.load(PULSES)
+
+    def test_a_function_of_c_that_is_missing(self, folder, monkeypatch):
+        monkeypatch.setattr(shipped, "FUNCTIONS", (*FUNCTIONS, "no_function_of_c"))
+        with pytest.raises(shipped.Unusable, match="no_function_of_c"):
+            shipped.load(PULSES)
+
+    def test_a_python_without_ctypes(self, choose, monkeypatch):
+        choose()
+        monkeypatch.setitem(sys.modules, "rocking_cli.dynamics.shipped", None)
+        monkeypatch.delattr("rocking_cli.dynamics.shipped")
+        monkeypatch.setitem(ways.MAKE, "jit", lambda of: refuse(ImportError))
+        ways._say_slow.cache_clear()
+        with pytest.warns(KernelWarning, match="a hundred times longer"):
+            assert ways.way(PULSES) == "python"
+        ways._say_slow.cache_clear()
+        monkeypatch.undo()
+
+    def test_threads_load_one(self, choose):
+        choose("ready")
         entries = []
-        threads = [threading.Thread(target=lambda: entries.append(shipped.load(TIED))) for _ in range(4)]
+        threads = [threading.Thread(target=lambda: entries.append(ways.kernel(TIED))) for _ in range(4)]
         for each in threads:
             each.start()
         for each in threads:
             each.join()
         assert len(entries) == 4 and len({id(each) for each in entries}) == 1
 
-
-class FullDisk:
-    def __init__(self, handle):
-        os.close(handle)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        return None
-
-    def write(self, _):
-        raise OSError(28, "No space left on device")
-
-
-class TestDamagedInstallation:
-    @pytest.mark.parametrize("spoil", ["missing", "damaged", "no manifest", "another manifest"])
-    def test_it_is_a_reason_for_another_way(self, choose, tmp_path, monkeypatch, spoil):
-        folder = tmp_path / "ready"
-        folder.mkdir()
-        manifest = json.loads((shipped.FOLDER / "manifest.json").read_text(encoding="utf-8"))
-        content = shipped.bitcode("pulses")
-        if spoil == "another manifest":
-            manifest = [manifest]
-        if spoil != "no manifest":
-            (folder / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
-        if spoil != "missing":
-            (folder / "pulses.bc").write_bytes(content[:-8] if spoil == "damaged" else content)
-        choose("ready", tmp_path / "cache")
-        monkeypatch.setattr(shipped, "FOLDER", folder)
-        shipped.manifest.cache_clear()
-        with pytest.raises(shipped.Unusable):
-            shipped.load(PULSES)
-        monkeypatch.undo()
-        shipped.manifest.cache_clear()
-
-    def test_so_is_bitcode_that_llvm_cannot_read(self, choose, tmp_path, monkeypatch):
-        choose("ready", tmp_path)
-        monkeypatch.setattr(shipped, "bitcode", lambda name: b"no bitcode")
-        with pytest.raises(shipped.Unusable, match="cannot be loaded"):
-            shipped.load(PULSES)
+    def test_nothing_is_written(self, tmp_path):
+        """A home that is not there, and cannot be made, is no hindrance."""
+        (tmp_path / "file").touch()
+        nowhere = str(tmp_path / "file" / "home")
+        environment = {**os.environ, "HOME": nowhere, "XDG_CACHE_HOME": nowhere, "NUMBA_CACHE_DIR": nowhere}
+        environment.pop(ways.CHOSEN, None)
+        done = subprocess.run([sys.executable, "-c", BLOCK], capture_output=True, text=True, env=environment)
+        assert (done.stdout, done.stderr) == ("False\n", "")
+        assert [each.name for each in tmp_path.iterdir()] == ["file"]
 
 
 class TestArguments:
@@ -337,7 +345,7 @@ class TestArguments:
         side = pulse_motion.Side(2.0, 3.0, 0.5, 0.9)
         arguments = ((side, side), wrong, np.ones(3), np.ones(3), 0, 3, np.empty((3, 6)))
         with pytest.raises(TypeError, match="an array for a kernel"):
-            calling.call(shipped.load(PULSES), PULSES, arguments)
+            shipped.call(shipped.load(PULSES), PULSES, arguments)
 
     def test_they_are_those_of_the_kernels(self):
         for each, fields in (("Deck", kernels.Deck), ("Joints", kernels.Joints), ("Samples", kernels.Samples),
@@ -358,4 +366,4 @@ def walked(layouts):
 def test_a_status_other_than_0_is_an_error():
     arguments = (((0.0,) * 4,) * 2, np.zeros((1, 5)), np.zeros(1), np.zeros(1), 0, 0, np.zeros((1, 6)))
     with pytest.raises(RuntimeError, match="pulses ended with status 1"):
-        calling.call(lambda *_: 1, PULSES, arguments)
+        shipped.call(lambda *_: 1, PULSES, arguments)

@@ -1,15 +1,13 @@
-"""The kernels as sets of functions, and how their arguments are handed to code that is compiled ahead.
+"""The kernels as sets of functions, and how their arguments are laid out for code that is compiled ahead.
 
-Machine code that any processor and Python can call takes no array of numpy, but three rows of plain numbers: whole
-numbers, real ones, and the addresses of arrays, whose shapes are among the whole numbers.
+Machine code that any Python can call takes no array of numpy, but three rows of plain numbers: whole numbers, real
+ones, and the addresses of arrays, whose shapes are among the whole numbers.
 """
 
 from __future__ import annotations
 
-import ctypes
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -36,7 +34,7 @@ class KernelSet:
     Parameters
     ----------
     name : str
-        Of the file that it is shipped in.
+        Of its entry in the shipped libraries.
     module, function : str
         Where it is.
     arguments : tuple of Layout
@@ -65,47 +63,16 @@ ARRAYS = {
     for kind, dtype in (("R", np.float64), ("I", np.int64))
     for axes in range(1, 5)
 }
-Entry: TypeAlias = Callable[[Any, Any, Any], int]
+
+FUNCTIONS = {
+    **dict.fromkeys(("asin", "ceil", "cos", "cosh", "expm1", "floor", "log", "log1p", "sin", "sinh"), "double double"),
+    "pow": "double double double",
+    "memcpy": "i8* i8* i8* i64",
+    "memset": "i8* i8* i32 i64",
+}
+"""Functions of C that kernels may call, with the types that LLVM knows the result and the arguments by."""
 
 
-def call(entry: Entry, kernel: KernelSet, arguments: Sequence[Any]) -> None:
-    """Call code that is compiled ahead.
-
-    Raises
-    ------
-    TypeError
-        If an array is not of the kind that the code takes: it would read what is not its own.
-    RuntimeError
-        If the code reports an error.
-    """
-    whole: list[int] = []
-    real: list[float] = []
-    places: list[int] = []
-    _pack(kernel.arguments, arguments, whole, real, places)
-    status = entry(
-        (ctypes.c_int64 * len(whole))(*whole),
-        (ctypes.c_double * len(real))(*real),
-        (ctypes.c_int64 * len(places))(*places),
-    )
-    if status:
-        raise RuntimeError(f"the kernel {kernel.name} ended with status {status}")
-
-
-def _pack(
-    layouts: Sequence[Layout], values: Sequence[Any], whole: list[int], real: list[float], places: list[int]
-) -> None:
-    """Append what arguments consist of to the three rows."""
-    for layout, value in zip(layouts, values, strict=True):
-        if isinstance(layout, tuple):
-            _pack(layout[1], value, whole, real, places)
-        elif layout == "f":
-            real.append(value)
-        elif layout in ("i", "b"):
-            whole.append(value)
-        else:
-            dtype, axes = ARRAYS[layout]
-            if value.dtype != dtype or value.ndim != axes or not value.flags.carray:
-                raise TypeError(f"an array for a kernel is {value.dtype} {value.shape}, not a writable {layout}")
-            # The quickest way to an address, of which there are forty in each call.
-            places.append(ctypes.addressof(ctypes.c_char.from_buffer(value)) if value.size else 0)
-            whole += value.shape
+def symbol(name: str) -> str:
+    """The name that a library has for the entry of a set, or for the place of a function of C."""
+    return f"rocking_{name}"

@@ -61,7 +61,7 @@ def _import_numba() -> None:
             import numba  # noqa: F401
     except Exception as error:
         if not given:
-            raise
+            raise ImportError(f"numba cannot be loaded: {error}") from error
         reason = next((line for line in str(error).splitlines() if line.strip()), type(error).__name__)
         what = f"numba, which compiles the histories, does not start with {', '.join(given)}: {reason}"
         raise InputError(f"{what}\n  unset these variables of the environment, or mend them") from error

@@ -1,8 +1,8 @@
 """The three ways to run a kernel, and which of them is taken.
 
-The kernels have one source. The first way that works is taken: the code that is shipped (`shipped`), which needs
-llvmlite; numba (`compiled`), an extra for authors of kernels; Python, which takes a hundred times longer and says so.
-All give the same numbers.
+The kernels have one source. The first way that works is taken: the machine code that is shipped (`shipped`); numba
+(`compiled`), an extra for authors of kernels; Python, which takes a hundred times longer and says so. All give the same
+numbers.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from importlib.util import find_spec
 from types import FunctionType
 from typing import Any
 
-from rocking_cli.dynamics import compiled, shipped
-from rocking_cli.dynamics.calling import HISTORIES, PULSES, SETS, TIED, KernelSet, call
+from rocking_cli.dynamics import compiled
+from rocking_cli.dynamics.calling import HISTORIES, PULSES, SETS, TIED, KernelSet
 from rocking_cli.errors import InputError, KernelWarning
 
 CHOSEN = "ROCKING_KERNELS"
@@ -46,6 +46,8 @@ def way(of: KernelSet) -> str:
 
 def forget() -> None:
     """Choose anew, for tests: another environment, another cache."""
+    from rocking_cli.dynamics import shipped
+
     _choose.cache_clear()
     shipped.forget()
 
@@ -57,23 +59,27 @@ def _chosen(name: str) -> tuple[str, Kernel]:
 
 @functools.cache
 def _choose(name: str) -> tuple[str, Kernel]:
-    of, asked = SETS[name], os.environ.get(CHOSEN)
+    of, asked = SETS[name], os.environ.get(CHOSEN) or None
     if asked is not None and asked not in WAYS:
         raise InputError(f"{CHOSEN} is {asked!r}: give one of {', '.join(WAYS)}")
     reasons: list[str] = []
     for each in (asked,) if asked else WAYS:
+        if each == PYTHON and reasons:
+            _say_slow(reasons[0])
         try:
             return each, MAKE[each](of)
-        except (shipped.Unusable, ImportError) as error:
+        except ImportError as error:
             reasons.append(str(error))
     raise InputError(f"{CHOSEN} is {asked!r}, but {'; '.join(reasons)}: leave it out")
 
 
 def _ready(of: KernelSet) -> Kernel:
+    from rocking_cli.dynamics import shipped  # not every Python has ctypes
+
     entry = shipped.load(of)
 
     def run(*arguments: Any) -> None:
-        call(entry, of, arguments)
+        shipped.call(entry, of, arguments)
 
     return run
 
@@ -90,25 +96,11 @@ def _jit(of: KernelSet) -> Kernel:
     return function
 
 
-def _python(of: KernelSet) -> Kernel:
-    if os.environ.get(CHOSEN) != PYTHON:
-        _say_slow()
-    return in_python(of)
-
-
 @functools.cache
-def _say_slow() -> None:
+def _say_slow(why: str) -> None:
     """Warn, once in this process."""
-    try:
-        shipped.load(HISTORIES)
-        why = ""
-    except shipped.Unusable as error:
-        why = f" ({error})"
-    text = (
-        f"time histories are computed by Python itself, which takes a hundred times longer{why}: "
-        "install llvmlite, or rocking-cli[jit]"
-    )
-    warnings.warn(KernelWarning(text), stacklevel=2)
+    text = f"time histories are computed by Python itself, which takes a hundred times longer ({why})"
+    warnings.warn(KernelWarning(f"{text}; rocking-cli[jit] would compile them"), stacklevel=2)
 
 
 def in_python(of: KernelSet) -> Kernel:
@@ -149,7 +141,7 @@ def _raised(value: float) -> int:
         return LEAST
 
 
-MAKE = {READY: _ready, JIT: _jit, PYTHON: _python}
+MAKE = {READY: _ready, JIT: _jit, PYTHON: in_python}
 
 
 def needs_compiling(file: str = compiled.HISTORIES) -> bool:
@@ -161,11 +153,19 @@ def is_ready(file: str) -> bool:
     """Whether a kernel can be used without making machine code first."""
     asked = os.environ.get(CHOSEN)
     for each in (asked,) if asked else WAYS:
-        if each == READY and shipped.is_usable():
-            return all(shipped.is_kept(one.name) for one in OF_FILE[file])
+        if each == READY and _is_shipped():
+            return True
         if each == JIT and find_spec("numba") is not None:
             return not compiled.needs_compiling(file)
     return True
+
+
+def _is_shipped() -> bool:
+    try:
+        from rocking_cli.dynamics import shipped
+    except ImportError:
+        return False
+    return shipped.is_there()
 
 
 def versions() -> dict[str, str]:

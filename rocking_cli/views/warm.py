@@ -9,8 +9,8 @@ from rocking_cli.studies.compiling import CALLED, Compiled
 from rocking_cli.views.view import View
 
 
-def view(folder: Path, found: Sequence[Compiled]) -> View:
-    """What is compiled now, and how long that took."""
+def view(folder: Path | None, found: Sequence[Compiled]) -> View:
+    """What is compiled now, how long that took, and the folder that keeps it; as shipped nothing has to be kept."""
     kernels = [
         {"kernel": CALLED[each.kernel], "compiled_before": each.before, "seconds": each.seconds} for each in found
     ]
@@ -19,4 +19,7 @@ def view(folder: Path, found: Sequence[Compiled]) -> View:
         + ("already compiled" if each.before else f"compiled in {each.seconds:.1f} s")
         for each in found
     ]
-    return View({"cache": str(folder), "kernels": kernels}, [*said, f"The machine code is kept in {folder}."])
+    where = "part of the installation" if folder is None else f"kept in {folder}"
+    return View(
+        {"cache": None if folder is None else str(folder), "kernels": kernels}, [*said, f"The machine code is {where}."]
+    )
