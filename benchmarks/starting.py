@@ -39,6 +39,7 @@ def spent(arguments: tuple[str, ...], folder: str, kernels: str = "ready") -> fl
     """Processor time of a process whose caches are in a folder [s]."""
     caches = dict.fromkeys(("XDG_CACHE_HOME", "MPLCONFIGDIR", "NUMBA_CACHE_DIR"), folder)
     environment = {**os.environ, **caches, "ROCKING_KERNELS": kernels, "OPENBLAS_NUM_THREADS": "1"}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # as users have it: the bytecode is there after the first run
     before = _of_children()
     command = [sys.executable, *(each.format(folder=folder) for each in arguments)]
     subprocess.run(command, check=True, env=environment, cwd=PROJECT, capture_output=True)

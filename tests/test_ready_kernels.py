@@ -219,7 +219,7 @@ class TestWays:
         monkeypatch.setattr(shipped, "load", lambda of: refuse())
         monkeypatch.setitem(ways.MAKE, "jit", lambda of: refuse(ImportError))
         ways._say_slow.cache_clear()
-        with pytest.warns(KernelWarning, match=r"a hundred times longer \(no library here\)") as said:
+        with pytest.warns(KernelWarning, match=r"some sixty times longer \(no library here\)") as said:
             assert [ways.way(each) for each in SETS.values()] == ["python"] * 3
         assert len(said) == 1
         ways._say_slow.cache_clear()
@@ -311,7 +311,7 @@ class TestLibrary:
         monkeypatch.delattr("rocking_cli.dynamics.shipped")
         monkeypatch.setitem(ways.MAKE, "jit", lambda of: refuse(ImportError))
         ways._say_slow.cache_clear()
-        with pytest.warns(KernelWarning, match="a hundred times longer"):
+        with pytest.warns(KernelWarning, match="some sixty times longer"):
             assert ways.way(PULSES) == "python"
         ways._say_slow.cache_clear()
         monkeypatch.undo()

@@ -20,14 +20,13 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-import platformdirs
-
+from rocking_cli import cache
 from rocking_cli.errors import CacheWarning, InputError
 
 
 def cache_folder() -> Path:
     """The folder that keeps compiled kernels."""
-    return Path(os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_path("rocking-cli") / "numba")
+    return Path(os.environ.get("NUMBA_CACHE_DIR") or cache.folder() / "numba")
 
 
 @functools.cache
@@ -101,9 +100,9 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
     return kept
 
 
-def _mend(cache: Any) -> None:
+def _mend(stored: Any) -> None:
     """Have a damaged cache emptied, and compiled anew: a full disk leaves halves, on which numba would end."""
-    load = cache.load_overload
+    load = stored.load_overload
 
     def load_or_empty(*asked: Any) -> Any:
         try:
@@ -112,10 +111,10 @@ def _mend(cache: Any) -> None:
             raise
         except Exception:  # whatever a pickle of half a file raises
             _say_damaged()
-            cache.flush()
+            stored.flush()
             return None
 
-    cache.load_overload = load_or_empty
+    stored.load_overload = load_or_empty
 
 
 @functools.cache

@@ -1,8 +1,8 @@
 """The three ways to run a kernel, and which of them is taken.
 
 The kernels have one source. The first way that works is taken: the machine code that is shipped (`shipped`); numba
-(`compiled`), an extra for authors of kernels; Python, which takes a hundred times longer and says so. All give the same
-numbers.
+(`compiled`), an extra for authors of kernels; Python, which takes some sixty times longer and says so. All give the
+same numbers.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def _jit(of: KernelSet) -> Kernel:
 @functools.cache
 def _say_slow(why: str) -> None:
     """Warn, once in this process."""
-    text = f"time histories are computed by Python itself, which takes a hundred times longer ({why})"
+    text = f"time histories are computed by Python itself, which takes some sixty times longer ({why})"
     warnings.warn(KernelWarning(f"{text}; rocking-cli[jit] would compile them"), stacklevel=2)
 
 
