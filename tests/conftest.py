@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
+from itertools import count
 from pathlib import Path
 
 import hypothesis
@@ -37,10 +39,32 @@ for _name, _usual in (("SIGINT", signal.default_int_handler), ("SIGTERM", signal
         signal.signal(_number, _usual)
 
 
+_MADE = count()
+
+
+@pytest.fixture
+def tmp_path(request, tmp_path_factory):
+    """A folder of its own; pytest's would list all that there are to number the next, the longer the more there are."""
+    name = re.sub(r"\W", "_", request.node.name)[:30]
+    return tmp_path_factory.mktemp(f"{name}{next(_MADE)}", numbered=False)
+
+
+_EMPTY: list[Path] = []
+
+
 @pytest.fixture(autouse=True)
-def _in_an_empty_folder(tmp_path, monkeypatch):
-    """No test reads a `rocking.yaml` that happens to lie where pytest was started."""
-    monkeypatch.chdir(tmp_path)
+def _in_an_empty_folder(request, tmp_path_factory, monkeypatch):
+    """No test reads a `rocking.yaml` that happens to lie where pytest was started.
+
+    Those that want no folder of their own share one for as long as it is empty: it takes longer to make and to remove
+    ten thousand than they all compute.
+    """
+    if "tmp_path" in request.fixturenames:
+        monkeypatch.chdir(request.getfixturevalue("tmp_path"))
+        return
+    if not _EMPTY or any(_EMPTY[-1].iterdir()):
+        _EMPTY.append(tmp_path_factory.mktemp("empty"))
+    monkeypatch.chdir(_EMPTY[-1])
 
 
 @pytest.fixture(autouse=True)
