@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import signal
+import sys
 from itertools import count
 from pathlib import Path
 
@@ -28,6 +29,10 @@ NEEDS_RECORDS = pytest.mark.skipif(not FORMATS.is_dir(), reason=f"no real record
 
 
 KEPT = ("ROCKING_RECORDS", "ROCKING_KERNELS")  # the second has all tests run with the kernels of that way
+
+# Else each of hundreds of child processes compiles the package anew.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # What tests read is as in a pipe, where no line is broken; those of widths say how wide they are.
 os.environ.pop("COLUMNS", None)
@@ -78,6 +83,16 @@ def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
     file.unlink(missing_ok=True)
     monkeypatch.setattr(defaults, "user_file", lambda: file)
     return file
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _coarse_pictures():
+    """Pictures of few pixels, but for those that are compared: what is drawn, and where, is the same."""
+    from rocking_cli.plotting import style
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(style, "DPI", 50)
+        yield
 
 
 @pytest.fixture(scope="session")
