@@ -19,6 +19,7 @@ $(PACKAGE_STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m compileall -q rocking_cli mechanisms
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(PACKAGE_STAMP)').touch()"
 
 $(STAMP): $(PACKAGE_STAMP)

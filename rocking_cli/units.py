@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from decimal import Context, Decimal
 from difflib import get_close_matches
 
+from rocking_cli.patterns import regex
 from rocking_cli.text import cut, printable
 
 PI = "3.14159265358979323846264338327950288419716939937510"
@@ -43,8 +44,8 @@ KINDS: Mapping[str, Mapping[str, str]] = {
 }
 STANDARD_GRAVITY = Decimal("9.80665")  # m/s2
 
-_FORM = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s\d.,+-].*)?", re.DOTALL)
-_COMMA = re.compile(r"[-+]?[0-9]+(,[0-9]+)+\s*\D*", re.ASCII)
+_FORM = regex(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s\d.,+-].*)?", re.DOTALL)
+_COMMA = regex(r"[-+]?[0-9]+(,[0-9]+)+\s*\D*", re.ASCII)
 _RAISED = str.maketrans({"²": "2", "³": "3", "º": "°", "^": "", "·": "", "*": ""})
 _EXACT = Context(prec=60, Emax=10**6, Emin=-(10**6), traps=[])
 

@@ -561,6 +561,16 @@ class TestStart:
             result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
             assert result.stderr.strip() == "[]"
 
+    def test_respond_imports_what_it_uses(self):
+        arguments = ["respond", str(EXAMPLES / "frame.yaml"), "--record", str(EXAMPLES / "accel.csv")]
+        heavy = "('numba', 'scipy', 'matplotlib', 'numpy.ma', 'rich.progress', 'rocking_cli.plotting')"
+        code = (
+            f"import sys, rocking_cli.cli.main as m; m.main({arguments!r}, standalone_mode=False);"
+            f"print([name for name in {heavy} if name in sys.modules], file=sys.stderr)"
+        )
+        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        assert result.stderr.splitlines()[-1] == "[]"
+
     def test_every_public_name_can_be_imported(self):
         import rocking_cli
 

@@ -101,6 +101,8 @@ class LazyGroup(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; a known error ends it with a message on standard error."""
         os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is needed
+        # Nobody's plugins watch how a structure file is read, and to look for them takes as long as to read many.
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="replace")  # a name that an old code page cannot spell ends nothing

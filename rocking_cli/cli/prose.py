@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
+
+from rocking_cli.patterns import regex
 
 HANG = 2  # blanks before the lines that go on with a sentence
 DOTS = "..."
-_LABEL = re.compile(r"\w+:? +")
+_LABEL = regex(r"\w+:? +")
 _UNITS = (
     r"%|°|deg|m?rad(?:/s)?|(?:k|c|d|m)?m(?:/s2?|2|3)?|in(?:/s)?|ft(?:/s2)?|m?s|min|gal|m?g|kg(?: m2?|/m3)?"
     r"|t(?:/m3)?|Mg|lb|[kM]?N(?:/m[23])?|[kMG]?Pa|bar|psi|ksi|MB|phi_cr|times"
 )
 # Blanks at which no line ends: in what backticks or quotes hold, between a number and its unit, beside a sign.
-_HELD = re.compile(
+_HELD = regex(
     r"`[^`\n]+`|'[^'\s][^'\n]*'(?!\w)|\"[^\"\n]+\""
     rf"|[-+]?\d[\d.,]*(?:e[-+]?\d+)? (?:{_UNITS})(?![\w/])"
     rf"|[^\s,]+ (?:=|<=|>=|<|>) [^\s,]+(?: (?:{_UNITS})(?![\w/]))?|(?:<=|>=|<|>) [-+]?\d\S*|\bEqs?\. \d\S*"

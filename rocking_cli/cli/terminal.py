@@ -196,9 +196,14 @@ def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterat
         Function to call as work is done.
     """
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda count, failed=0: None
+        return
+
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -208,7 +213,6 @@ def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterat
         TimeRemainingColumn(),
         console=console,
         transient=True,
-        disable=not console.is_terminal,
     )
     bad, new, began = failed, 0, monotonic()
 
@@ -238,11 +242,16 @@ def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterat
 def working(what: str) -> Iterator[None]:
     """Show a spinner and the seconds during one long piece of work, on a terminal only."""
     from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     console = Console(stderr=True)
+    if not console.is_terminal:
+        yield
+        return
+
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as moving:
+    with Progress(*columns, console=console, transient=True) as moving:
         moving.add_task(printable(what), total=None)
         yield
 

@@ -15,6 +15,7 @@ import numpy as np
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.errors import MechanismError
+from rocking_cli.median import median
 
 JUMP = 1e-5  # of the size of a coefficient: what its derivative may miss of its change from one rotation to the next
 
@@ -126,9 +127,9 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients) -> 
     MechanismError
         If V, G, B or I changes between two rotations by what its derivative there does not explain.
     """
-    moment = float(np.median(np.abs(at.G) + np.abs(at.B)))  # its size: m R, and V has the same unit
+    moment = median(np.abs(at.G) + np.abs(at.B))  # its size: m R, and V has the same unit
     pairs = {"V": (at.V, at.G, moment), "G": (at.G, at.dG, moment), "B": (at.B, at.dB, moment)}
-    pairs["I"] = (at.I, 2 * at.J, float(np.median(at.I)))
+    pairs["I"] = (at.I, 2 * at.J, median(at.I))
     found = {name: jump(at.phi, *pair) for name, pair in pairs.items()}
     first = min((phi, name) for name, phi in found.items())
     if first[0] < np.inf:

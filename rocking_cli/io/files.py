@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import io
 import os
-import secrets
 import shutil
 import stat
 import tempfile
@@ -127,7 +126,7 @@ def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
     """
     check_new_folder(path)
     filled = path.is_dir()  # it may be where somebody is: it stays, and what is new is moved into it
-    made = (path if filled else path.parent) / f".{path.name[:40]}.{secrets.token_hex(8)}"
+    made = (path if filled else path.parent) / f".{path.name[:40]}.{os.urandom(8).hex()}"
     moved: list[Path] = []
     try:
         for name, content in files.items():
@@ -242,7 +241,7 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
         return
     # Within the length of a name, whatever that of the file; known before it is there, so that a signal in between
     # leaves nothing behind.
-    name = path.with_name(f".{path.name[:40]}.{secrets.token_hex(8)}")
+    name = path.with_name(f".{path.name[:40]}.{os.urandom(8).hex()}")
     try:
         try:
             handle = os.open(name, NEW, 0o600)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from yaml.reader import ReaderError
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_bytes
+from rocking_cli.patterns import regex
 from rocking_cli.text import cut, printable
 
 LARGEST = 1_000_000  # bytes; a structure takes a few hundred, a study a few thousand
@@ -20,7 +20,7 @@ DEEPEST = 20  # nesting
 MOST = 200_000  # values, with those that aliases repeat: a few lines of them stand for billions
 
 
-_LINE_END = re.compile("\r\n|[\r\n\x85\u2028\u2029]")  # as YAML counts lines
+_LINE_END = regex("\r\n|[\r\n\x85\u2028\u2029]")  # as YAML counts lines
 
 
 class _Loader(yaml.SafeLoader):
@@ -36,7 +36,7 @@ for _tag, _first, _pattern in (
     ("float", "-+.", r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"),
     ("null", ["~", "n", "N", ""], r"~|null|Null|NULL|"),
 ):
-    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first))
+    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", regex(f"^(?:{_pattern})$"), list(_first))
 
 SCALARS: dict[str, Callable[[str], Any]] = {
     "int": int,

@@ -10,6 +10,7 @@ from typing import Self
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.patterns import regex
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, finer, relative_response
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, read
@@ -19,7 +20,7 @@ KEYS = ("T1", "xi", "z", "gamma", "n")
 PERIODS = 1e-6, 1e6  # s; beyond them no building answers, and numbers overflow
 MOST = 100.0  # of gamma, which is 1.5 for a uniform building: more is a slip of the keyboard
 STOREYS = 1000
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True)

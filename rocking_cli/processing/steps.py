@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from math import floor, inf, isfinite
 from typing import Any, ClassVar, Self
 
@@ -18,13 +17,14 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.patterns import regex
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, read
 
 Reals = NDArray[np.float64]
 ORDER = 4
 DEGREES = {"constant": 0, "linear": 1, "quadratic": 2}
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -258,19 +258,22 @@ class Resample(Step):
                 message = f"this would make {motion.npts / ratio:.3g} samples; at most {self.MOST:.3g} are allowed"
                 raise self.refused(motion, message)
             return self._finer(motion)
-        steps = max(min(self.STEPS, int(self.LONGEST / ratio)), 1)
-        return self._coarser(motion, Fraction(ratio).limit_denominator(steps))
+        return self._coarser(motion, ratio)
 
     def _finer(self, motion: GroundMotion) -> GroundMotion:
         time = self.dt * np.arange(floor(motion.duration / self.dt * (1 + 1e-12)) + 1)
         return _of_samples(motion, np.interp(time, motion.time, motion.acceleration), self.dt)
 
-    def _coarser(self, motion: GroundMotion, ratio: Fraction) -> GroundMotion:
+    def _coarser(self, motion: GroundMotion, ratio: float) -> GroundMotion:
         """By scipy.signal.resample_poly, which low-passes; the interval is to the fraction that it takes."""
+        from fractions import Fraction
+
         from scipy import signal
 
-        samples = signal.resample_poly(motion.acceleration, ratio.denominator, ratio.numerator, padtype="line")
-        dt = motion.dt * float(ratio)
+        steps = max(min(self.STEPS, int(self.LONGEST / ratio)), 1)
+        taken = Fraction(ratio).limit_denominator(steps)
+        samples = signal.resample_poly(motion.acceleration, taken.denominator, taken.numerator, padtype="line")
+        dt = motion.dt * float(taken)
         if abs(dt / self.dt - 1) < 1e-9:
             dt = self.dt
         inside = floor(motion.duration / dt * (1 + 1e-9)) + 1  # none is beyond the last sample

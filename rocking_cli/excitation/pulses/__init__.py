@@ -9,13 +9,14 @@ from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses.base import COARSE, Pulse, Segment
 from rocking_cli.excitation.records.units import UNITS
+from rocking_cli.patterns import regex
 from rocking_cli.plugins.installed import origin
 from rocking_cli.plugins.points import Point
 from rocking_cli.plugins.registry import Plugins
 
 __all__ = ["COARSE", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 
-_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?", re.ASCII)
+_QUANTITY = regex(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?", re.ASCII)
 _TIMES = {"": 1.0, "s": 1.0, "ms": 1e-3}
 
 

@@ -13,18 +13,19 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.sensor import Wanted, plural, quantity_of
 from rocking_cli.excitation.records.units import header_units, is_unit, other_quantity
+from rocking_cli.patterns import regex
 
 MOST = 1000  # columns of a table
 LISTED = 30  # columns in a message
 NEAR = 40  # lines above a table in which its labels are
 LONG = 10_000  # characters that no line of labels has
 
-_TIME = re.compile(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
-_BARE_T = re.compile(r"t", re.IGNORECASE)  # the time, or the transverse component
-_WORDS = re.compile(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, and what is in brackets behind it
-_GAPS = re.compile(r"\s{2,}|\t")
-_COLUMN = re.compile(r"col(?:umn)?\.? *(\d{1,4})")
-_BRACKETED = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]")
+_TIME = regex(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
+_BARE_T = regex(r"t", re.IGNORECASE)  # the time, or the transverse component
+_WORDS = regex(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, and what is in brackets behind it
+_GAPS = regex(r"\s{2,}|\t")
+_COLUMN = regex(r"col(?:umn)?\.? *(\d{1,4})")
+_BRACKETED = regex(r"[\[(]\s*([^\])]+?)\s*[\])]")
 
 
 @dataclass(frozen=True)

@@ -26,34 +26,33 @@ from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import first_match, magnitude, origin
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.excitation.records.text import numbers_in
+from rocking_cli.patterns import regex
 
 TITLE = "COSMOS"
 SIGN = "a first line with (Format v01.20 with 13 text lines)"
 
-_FIRST = re.compile(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
-_NUMBERS = re.compile(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?[ ,]*Format *=? *(\S+)", re.I)
-_COMMENTS = re.compile(r"\s*(\d+) Comment line", re.I)
+_FIRST = regex(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
+_NUMBERS = regex(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?[ ,]*Format *=? *(\S+)", re.I)
+_COMMENTS = regex(r"\s*(\d+) Comment line", re.I)
 # Networks differ in its commas and blanks: units=cm/sec2(04),Format=(8F10.5) and units=g.     (02)Format=(8f9.6).
-_DATA = re.compile(
+_DATA = regex(
     r"\s*(\d+)\s+(\S.*?)\s*pts?\b[ ,]*approx\.?\s+(\S+?)\s*secs?\b[ ,]*"
     r"units? *[=:] *([^(,]*?)[ .]*(?:\( *\d+ *\))?[ ,]*Format *[=:]? *(\(.*?\))",
     re.I,
 )
-_WIDTH = re.compile(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
+_WIDTH = regex(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
 _LONG = 300  # characters; the format has 80
-_AZIMUTH = re.compile(r"Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)
-_CODE = re.compile(r"units *=[^(,]*\((\d{1,3})\)", re.I)
+_AZIMUTH = regex(r"Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)
+_CODE = regex(r"units *=[^(,]*\((\d{1,3})\)", re.I)
 _UNIT_CODES = {2: "g", 4: "cm/s2"}
-_END = re.compile(r"End-of-data for Chan *(\S+)", re.I)
+_END = regex(r"End-of-data for Chan *(\S+)", re.I)
 # Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
 _DT_MS, _DT_RAW = 62, 34
 _PEAK, _PEAK_TIME = 64, 65  # of the values, and when [s]
 _DISTANCE = 17  # from the epicentre [km]
 _UNSET = -999
-_EVENT = re.compile(r"^\s*(?:Rec(?:or)?d of )?(.*\b(?:19|20)\d\d\b.*)", re.I)
-_STATION = re.compile(
-    r"Statn No: *\S+ +Code: *(\S+)(?: +[A-Z]{2,5} +(\S.*))?"
-)  # the code, and the name behind the agency
+_EVENT = regex(r"^\s*(?:Rec(?:or)?d of )?(.*\b(?:19|20)\d\d\b.*)", re.I)
+_STATION = regex(r"Statn No: *\S+ +Code: *(\S+)(?: +[A-Z]{2,5} +(\S.*))?")  # the code, and the name behind the agency
 _LINE = 10_000  # characters looked at of the first line
 _TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # more than any header has
 

@@ -22,17 +22,18 @@ from rocking_cli.excitation.records.layout import (
 )
 from rocking_cli.excitation.records.origins import of_csmip
 from rocking_cli.excitation.records.stated import peak_doubts
+from rocking_cli.patterns import regex
 
 TITLE = "CSMIP V2"
 SIGN = "a line such as 3251 POINTS OF ACCEL DATA EQUALLY SPACED AT .020 SEC"
 
-_DATA = re.compile(r"\s*(\d+) +POINTS OF (ACCEL|VELOC|DISPL)\w* +DATA EQUALLY SPACED AT +(\S+?) *SEC\b(.*)", re.I)
-_FIRST = re.compile(r"\s*CORRECTED ACCELEROGRAM\b", re.I)
+_DATA = regex(r"\s*(\d+) +POINTS OF (ACCEL|VELOC|DISPL)\w* +DATA EQUALLY SPACED AT +(\S+?) *SEC\b(.*)", re.I)
+_FIRST = regex(r"\s*CORRECTED ACCELEROGRAM\b", re.I)
 _TEXT_LINES = 25
-_UNIT = re.compile(r"(?:\bunits:|\bin) *([^,()]*?\w)\.? *(?:[,()]|$|format)", re.I)
-_FORMAT = re.compile(r"\b\d+F(\d+)\.\d+", re.I)
-_CHANNEL = re.compile(r"\bCHAN(?:NEL)? +\d+: *(.*\S)", re.I)
-_PEAK = re.compile(r"PEAK ACCELERATION *= *(\S+) +CM/SEC/SEC +AT +(\S+) *SEC", re.I)
+_UNIT = regex(r"(?:\bunits:|\bin) *([^,()]*?\w)\.? *(?:[,()]|$|format)", re.I)
+_FORMAT = regex(r"\b\d+F(\d+)\.\d+", re.I)
+_CHANNEL = regex(r"\bCHAN(?:NEL)? +\d+: *(.*\S)", re.I)
+_PEAK = regex(r"PEAK ACCELERATION *= *(\S+) +CM/SEC/SEC +AT +(\S+) *SEC", re.I)
 _WIDTH = 10  # 8F10.3, unless the line says otherwise
 _HEAD = 100_000  # characters looked at to recognise the format
 

@@ -24,23 +24,24 @@ from rocking_cli.excitation.records.layout import (
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_csmip
 from rocking_cli.excitation.records.stated import length_doubts
+from rocking_cli.patterns import regex
 
 TITLE = "CSMIP V1"
 SIGN = "a first line that begins with UNCORRECTED ACCELEROGRAM DATA"
 
-FIRST = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
-_CHANNEL = re.compile(r"CHAN(?:NEL)? +\d+: *(.*?) *(?:\(STA CHN.*)?$", re.I)
-_COUNT = re.compile(r"NO\. OF POINTS *= *(\d+)", re.I)
-_LENGTH = re.compile(r"RECORD LENGTH *= *(\S+) *SEC", re.I)
+FIRST = regex(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
+_CHANNEL = regex(r"CHAN(?:NEL)? +\d+: *(.*?) *(?:\(STA CHN.*)?$", re.I)
+_COUNT = regex(r"NO\. OF POINTS *= *(\d+)", re.I)
+_LENGTH = regex(r"RECORD LENGTH *= *(\S+) *SEC", re.I)
 _AT_LEAST, _SHARE = 1.0, 0.02  # s, and of its length: what the length of a record may be rounded or cut by
-_UNITS = re.compile(r"UNITS OF UNCOR \w+ (?:ARE|IS) (?:SEC AND )?(.*?) *\.? *(?: {2,}.*)?$", re.I)
+_UNITS = regex(r"UNITS OF UNCOR \w+ (?:ARE|IS) (?:SEC AND )?(.*?) *\.? *(?: {2,}.*)?$", re.I)
 # What announces samples at a constant interval: its number of points, kind, interval or rate, unit and format.
 _EVENLY = (
-    re.compile(r" *(\d+) +POINTS OF (\w+) +DATA EQUALLY SPACED AT +(?P<dt>\S+) *SEC\b\.?(.*)", re.I),
-    re.compile(r" *(\d+) +(\w+) +POINTS AT +(?P<rate>\S+) +PTS/SEC\b(.*)", re.I),
+    regex(r" *(\d+) +POINTS OF (\w+) +DATA EQUALLY SPACED AT +(?P<dt>\S+) *SEC\b\.?(.*)", re.I),
+    regex(r" *(\d+) +(\w+) +POINTS AT +(?P<rate>\S+) +PTS/SEC\b(.*)", re.I),
 )
-_STATED = re.compile(r"\bunits(?: of|:) *(.*?) *\.? *(?:\)|format|$)", re.I)
-_FORMAT = re.compile(r"\b\d+F(\d+)\.\d+", re.I)
+_STATED = regex(r"\bunits(?: of|:) *(.*?) *\.? *(?:\)|format|$)", re.I)
+_FORMAT = regex(r"\b\d+F(\d+)\.\d+", re.I)
 _TEXT_LINES = 13
 _INTEGERS, _REALS = (100, 5), (50, 10)  # how many, and characters to each
 _PAIRS, _VALUES = 7, 9  # characters: 10F7.3, five points a line, and 8F9.6 unless the line says otherwise

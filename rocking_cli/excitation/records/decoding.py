@@ -6,10 +6,11 @@ import codecs
 import re
 
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.patterns import regex
 
 # Bytes no text file holds. Ctrl-Z (0x1a) is allowed: DOS programs end text files with it.
-_BINARY = re.compile(rb"[\x00-\x08\x0e-\x19\x1b-\x1f]")
-_BLANK_WITH_NUL = re.compile(rb"^[ \t\r]*\0[\0 \t\r]*$", re.MULTILINE)
+_BINARY = regex(rb"[\x00-\x08\x0e-\x19\x1b-\x1f]")
+_BLANK_WITH_NUL = regex(rb"^[ \t\r]*\0[\0 \t\r]*$", re.MULTILINE)
 _HEAD = 2000  # bytes looked at for UTF-16 without a mark
 
 

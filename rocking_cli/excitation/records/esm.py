@@ -20,12 +20,13 @@ from rocking_cli.excitation.records.layout import (
 )
 from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
+from rocking_cli.patterns import regex
 
 TITLE = "ESM ASCII"
 SIGN = "header lines SAMPLING_INTERVAL_S: and NDATA:"
 
-_KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(.*)")
-_DAY, _TIME = re.compile(r"(\d{4})(\d{2})(\d{2})"), re.compile(r"(\d{2})(\d{2})(\d{2})")
+_KEY = regex(r"([A-Z][A-Z0-9_/^]*):(.*)")
+_DAY, _TIME = regex(r"(\d{4})(\d{2})(\d{2})"), regex(r"(\d{2})(\d{2})(\d{2})")
 _HEAD = 20_000  # characters the header is sought in
 
 

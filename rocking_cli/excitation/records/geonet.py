@@ -21,6 +21,7 @@ from rocking_cli.excitation.records.layout import (
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
+from rocking_cli.patterns import regex
 
 TITLE = "GeoNet V2A"
 SIGN = "a first line Corrected accelerogram, and Number of points below it"
@@ -28,18 +29,18 @@ SIGN = "a first line Corrected accelerogram, and Number of points below it"
 _TEXT_LINES = 16
 _NUMBER_LINES = 10
 _WIDTH = 8
-_SIZE = re.compile("[0-9]{1,9}")
-_FIRST = re.compile(r"Corrected accelerogram\b")
-_COUNT = re.compile(r"Number of points\s+(\d+)")
-_DURATION = re.compile(r"Duration\s+(\S+)\s+sec")
-_DT = re.compile(r"data at\s+(\S+)\s+sec intervals")
-_COMPONENT = re.compile(r"Component\s+(\S+)")
-_UNIT = re.compile(r"Acceleration:\s+peak\s+\S+\s+(\S+)")
-_STATION = re.compile(r"^Site +(\S+)")
-_EVENT = re.compile(r"^(\d{4} [A-Z][a-z]+ +\d{1,2} +\d{2}:\d{2}:\d{2}(?: UT)?)")
-_DISTANCE = re.compile(r"^Epicentre .*\bDist +(\S+?) *km\b")
-_MAGNITUDE = re.compile(r"^Epicentre .*\bM +(\S+)")
-_PEAK = re.compile(r"Acceleration:\s+peak\s+(\S+)")
+_SIZE = regex("[0-9]{1,9}")
+_FIRST = regex(r"Corrected accelerogram\b")
+_COUNT = regex(r"Number of points\s+(\d+)")
+_DURATION = regex(r"Duration\s+(\S+)\s+sec")
+_DT = regex(r"data at\s+(\S+)\s+sec intervals")
+_COMPONENT = regex(r"Component\s+(\S+)")
+_UNIT = regex(r"Acceleration:\s+peak\s+\S+\s+(\S+)")
+_STATION = regex(r"^Site +(\S+)")
+_EVENT = regex(r"^(\d{4} [A-Z][a-z]+ +\d{1,2} +\d{2}:\d{2}:\d{2}(?: UT)?)")
+_DISTANCE = regex(r"^Epicentre .*\bDist +(\S+?) *km\b")
+_MAGNITUDE = regex(r"^Epicentre .*\bM +(\S+)")
+_PEAK = regex(r"Acceleration:\s+peak\s+(\S+)")
 
 
 def sniff(text: str) -> bool:

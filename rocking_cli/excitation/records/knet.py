@@ -23,18 +23,19 @@ from rocking_cli.excitation.records.layout import (
 from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.excitation.records.text import sensible
+from rocking_cli.patterns import regex
 
 TITLE = "K-NET/KiK-net"
 SIGN = "header lines Sampling Freq(Hz) and Scale Factor"
 
-_RATE = re.compile(r"Sampling Freq\.? *\(Hz\)\s+([\d.]+) *Hz\s*$")
-_DURATION = re.compile(r"Duration Time *\(s\)\s+(\S+)\s*$")
-_SCALE = re.compile(r"Scale Factor\s+([\d.]+) *\((.*?)\) */ *([\d.]+)\s*$")
-_PEAK = re.compile(r"Max\. Acc\. *\(.*?\)\s+(\S+)\s*$")
-_DIRECTION = re.compile(r"Dir\.\s+(\S+)")
-_EVENT = re.compile(r"^Origin Time\s+(\d{4}/\d{2}/\d{2} \d{2}:\d{2}:\d{2})")
-_MAGNITUDE = re.compile(r"^Mag\.\s+(\S+)")
-_STATION = re.compile(r"^Station Code\s+(\S+)")
+_RATE = regex(r"Sampling Freq\.? *\(Hz\)\s+([\d.]+) *Hz\s*$")
+_DURATION = regex(r"Duration Time *\(s\)\s+(\S+)\s*$")
+_SCALE = regex(r"Scale Factor\s+([\d.]+) *\((.*?)\) */ *([\d.]+)\s*$")
+_PEAK = regex(r"Max\. Acc\. *\(.*?\)\s+(\S+)\s*$")
+_DIRECTION = regex(r"Dir\.\s+(\S+)")
+_EVENT = regex(r"^Origin Time\s+(\d{4}/\d{2}/\d{2} \d{2}:\d{2}:\d{2})")
+_MAGNITUDE = regex(r"^Mag\.\s+(\S+)")
+_STATION = regex(r"^Station Code\s+(\S+)")
 _HEADER_LINES = 17
 _WIDTH, _AFTER = 9, 1  # characters to a number, the last of them a blank
 

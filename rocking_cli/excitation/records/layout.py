@@ -19,10 +19,11 @@ from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
 from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, resolve_unit
 from rocking_cli.excitation.records.widths import Rows, odd_digits, split_numbers
+from rocking_cli.patterns import regex
 
 # A row of numbers has no letters but those of exponents; asterisks are an overflow, for `numbers_in` to refuse.
-_NO_ROW = re.compile(r"[^\s\d.+\-*EeDd]")
-_NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
+_NO_ROW = regex(r"[^\s\d.+\-*EeDd]")
+_NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 TENTH_OF_G = "g/10"
 _GRID = 1e-3  # s; times of digitised films are printed with three decimals
 _LONGEST = 3600.0  # s; films ran for a minute or two, and each second is a thousand samples

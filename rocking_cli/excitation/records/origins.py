@@ -7,23 +7,24 @@ import re
 from collections.abc import Iterable, Sequence
 
 from rocking_cli.excitation.base import NOT_SAID, Origin
+from rocking_cli.patterns import regex
 from rocking_cli.text import seen
 
 LONGEST = 100  # characters of a name
 LARGEST = 10.0  # magnitude
 FARTHEST = 20_040.0  # km, half way round the Earth
 
-_NOTHING = re.compile(r"(?:unknown|undefined|not (?:known|available)|none|n/?a|-?12345|-?999)\.?", re.IGNORECASE)
-_NUMBER = re.compile(r"[+-]?(?:\d{1,6}\.?\d{0,9}|\.\d{1,9})")
-_DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}")
+_NOTHING = regex(r"(?:unknown|undefined|not (?:known|available)|none|n/?a|-?12345|-?999)\.?", re.IGNORECASE)
+_NUMBER = regex(r"[+-]?(?:\d{1,6}\.?\d{0,9}|\.\d{1,9})")
+_DATE = regex(r"\d{1,2}/\d{1,2}/\d{2,4}")
 # Of PEER before 2003: the earthquake, date and time, the station, the component, with the station's number in brackets.
-_OLD_PEER = re.compile(r"(\S.*?\s\d{1,2}/\d{1,2}/\d{2}(?:,? +\d{4}| +\d{2}:\d{2})?), *(\S[^,]*?) *,[^,]*")
-_CSMIP_EVENT = re.compile(r"^\s*(\S.*\bEARTHQUAKE\b.*\b(?:19|20)\d\d\b.*)", re.IGNORECASE)
-_CSMIP_STATION = re.compile(r"STATION NO\. *(\d+)", re.IGNORECASE)
-_CHANNEL = re.compile(r"\s*CHAN(?:NEL)? +\d+:", re.IGNORECASE)
-_HYPOCENTRE = re.compile(r"HYPOCENTER", re.IGNORECASE)
-_MAGNITUDES = tuple(re.compile(rf"\b{kind} *= *(\d+\.?\d*)", re.IGNORECASE) for kind in ("Mw", "ML", "Ms"))
-_INFO = re.compile(r"PEER\b.{0,60}?\bDATABASE RECORD\W+(.{1,200}?),[^,]{0,20}\bACCELERATION TIME", re.IGNORECASE)
+_OLD_PEER = regex(r"(\S.*?\s\d{1,2}/\d{1,2}/\d{2}(?:,? +\d{4}| +\d{2}:\d{2})?), *(\S[^,]*?) *,[^,]*")
+_CSMIP_EVENT = regex(r"^\s*(\S.*\bEARTHQUAKE\b.*\b(?:19|20)\d\d\b.*)", re.IGNORECASE)
+_CSMIP_STATION = regex(r"STATION NO\. *(\d+)", re.IGNORECASE)
+_CHANNEL = regex(r"\s*CHAN(?:NEL)? +\d+:", re.IGNORECASE)
+_HYPOCENTRE = regex(r"HYPOCENTER", re.IGNORECASE)
+_MAGNITUDES = tuple(regex(rf"\b{kind} *= *(\d+\.?\d*)", re.IGNORECASE) for kind in ("Mw", "ML", "Ms"))
+_INFO = regex(r"PEER\b.{0,60}?\bDATABASE RECORD\W+(.{1,200}?),[^,]{0,20}\bACCELERATION TIME", re.IGNORECASE)
 
 
 def origin(event: str | None, station: str | None, magnitude: object = None, distance: object = None) -> Origin:

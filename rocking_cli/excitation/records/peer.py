@@ -19,16 +19,17 @@ from rocking_cli.excitation.records.origins import of_peer
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
 from rocking_cli.excitation.records.widths import Rows, odd_digits, odd_row, split_numbers
+from rocking_cli.patterns import regex
 
 TITLE = "PEER AT2"
 SIGN = "a title with PEER and DATABASE, or a line with NPTS="
 
 _FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
-_NPTS = re.compile(r"\bNPTS\s*=\s*(\d+)", re.IGNORECASE)
-_DT = re.compile(rf"\bDT\s*=\s*({_FLOAT})", re.IGNORECASE)
-_OLD_STYLE = re.compile(rf"^\s*(\d+)[\s,]+({_FLOAT})[\s,]+NPTS\s*,\s*DT\b", re.IGNORECASE)
-_SIGNATURE = re.compile(r"^\s*PEER\b.*\bDATABASE\b", re.IGNORECASE)
-_BEGINS_WITH_NUMBER = re.compile(r"\s*[+-]?\.?\d")
+_NPTS = regex(r"\bNPTS\s*=\s*(\d+)", re.IGNORECASE)
+_DT = regex(rf"\bDT\s*=\s*({_FLOAT})", re.IGNORECASE)
+_OLD_STYLE = regex(rf"^\s*(\d+)[\s,]+({_FLOAT})[\s,]+NPTS\s*,\s*DT\b", re.IGNORECASE)
+_SIGNATURE = regex(r"^\s*PEER\b.*\bDATABASE\b", re.IGNORECASE)
+_BEGINS_WITH_NUMBER = regex(r"\s*[+-]?\.?\d")
 _HEADER_LINES = 30  # where the header must have ended; four lines are usual
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 import warnings
 from typing import Any
 
@@ -17,9 +16,10 @@ from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.sensor import Wanted
 from rocking_cli.excitation.records.text import sensible, usable
 from rocking_cli.excitation.records.units import UNITS
+from rocking_cli.patterns import regex
 
 # SEED names a channel by band, instrument and direction; H, L and P are seismometers and geophones: velocity.
-_VELOCITY_CODE = re.compile(r"[A-Z][HLP][A-Z0-9]")
+_VELOCITY_CODE = regex(r"[A-Z][HLP][A-Z0-9]")
 _MOST = 10 * STANDARD_GRAVITY  # m/s2; whole numbers beyond this are counts: no earthquake has reached half of it
 
 

@@ -15,6 +15,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
 from rocking_cli.excitation.records.units import UNITS, canonical, header_units, resolve_unit
+from rocking_cli.patterns import regex
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import KINDS
 
@@ -32,10 +33,10 @@ TIMES = frozenset(
 )
 COARSE = 0.05  # of the peak: what one step of the smallest digit may make of it
 
-_IN_HEADER = re.compile(r"[\[(]\s*([^\])\s]+)\s*[\])]|\bin\s+([^\s,;]+)")
-_BRACKETED = re.compile(r"[\[(]\s*([^\])\s]+)\s*[\])]")
-_FORM = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.ASCII)
-_PER = re.compile(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
+_IN_HEADER = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]|\bin\s+([^\s,;]+)")
+_BRACKETED = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]")
+_FORM = regex(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.ASCII)
+_PER = regex(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
 
 
 class _Stated(NamedTuple):

@@ -22,11 +22,12 @@ from rocking_cli.excitation.records.layout import (
 )
 from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import peak_doubts
+from rocking_cli.patterns import regex
 
 TITLE = "USGS SMC"
 SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"
 
-_FIRST = re.compile(r"(\d) +([A-Z].*)")
+_FIRST = regex(r"(\d) +([A-Z].*)")
 _UNCORRECTED = "1"
 _ACCELERATIONS = (_UNCORRECTED, "2")  # the corrected; then velocity, displacement and spectra
 _FASTEST = 1e6  # samples per second; what has no number of them has 1.7e38, or zero
@@ -34,10 +35,10 @@ _TEXT_LINES = 11
 _INTEGERS = Block(_TEXT_LINES, 48, 10, 1)
 _REALS = Block(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
 _DATA_WIDTH = 10
-_EVENT = re.compile(r" *(\d{4}) +(\d{1,2}) +(\d{1,2}) +(\d{4}) +(\S.*)")  # year, month, day, time, name
-_MOMENT, _LOCAL, _SURFACE = (re.compile(rf"{kind}= *([\d.]+)") for kind in ("Moment Mag", r"\bMl", r"\bMs"))
-_STATION = re.compile(r"^station *= *(.*?),? *\bcomponent *=")
-_DISTANCE = re.compile(r"^epicentral dist *= *([\d.]+)")
+_EVENT = regex(r" *(\d{4}) +(\d{1,2}) +(\d{1,2}) +(\d{4}) +(\S.*)")  # year, month, day, time, name
+_MOMENT, _LOCAL, _SURFACE = (regex(rf"{kind}= *([\d.]+)") for kind in ("Moment Mag", r"\bMl", r"\bMs"))
+_STATION = regex(r"^station *= *(.*?),? *\bcomponent *=")
+_DISTANCE = regex(r"^epicentral dist *= *([\d.]+)")
 
 
 def sniff(text: str) -> bool:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import Doubt
+from rocking_cli.patterns import regex
 
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?(\d*)|\.(\d+))(?:[EeDd]([+-]?\d{1,3}))?")
+_NUMBER = regex(r"[+-]?(?:\d+\.?(\d*)|\.(\d+))(?:[EeDd]([+-]?\d{1,3}))?")
 _PRINTED = 1e-4  # of a value: some print the peak with more digits in the header than among the values
 
 

@@ -20,16 +20,17 @@ from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.sensor import Wanted, plural
 from rocking_cli.excitation.records.times import UnevenTimeError, even_interval, on_grid
 from rocking_cli.excitation.records.widths import Rows, unlike_the_others
+from rocking_cli.patterns import regex
 
 TITLE = "delimited text"
 SIGN = "a line that begins with a number"
 TAKES_WANTED = True
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?")
-_NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
-_OTHER_TIME = re.compile(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
-_FIRST_CELL = re.compile(r'"([^"]*)"|[^\s,;]*')
-_QUOTED = re.compile(r'"([^"]*)"')
+_NUMBER = regex(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?")
+_NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
+_OTHER_TIME = regex(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
+_FIRST_CELL = regex(r'"([^"]*)"|[^\s,;]*')
+_QUOTED = regex(r'"([^"]*)"')
 _HEAD = 100_000  # characters looked at to recognise a format: a large file is not searched to its end
 _HUGE = 1e30  # no time or acceleration in any unit; far below where sums and conversions overflow
 _INTERVALS = (1e-9, 1e6)  # s; beyond them sums overflow, and nothing was ever recorded so

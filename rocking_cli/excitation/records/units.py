@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.patterns import regex
 
 UNITS: dict[str, float] = {
     "g": STANDARD_GRAVITY,
@@ -34,13 +35,13 @@ _LENGTH = rf"(?:mm|cm|m|km|inch(?:es)?|ft|feet){_END}"
 _FOREIGN = rf"(?:(?:km|in|ft){_PER_S2}|counts?){_END}"
 
 _ACCELERATION = r"\bacc(?:l|n|el|eln|els|eleration|elerations)?(?![a-z])\.?"
-_MOTION = re.compile(r"\b(?:vel|velocity|velocities|disp|displ|displacements?)\b")
+_MOTION = regex(r"\b(?:vel|velocity|velocities|disp|displ|displacements?)\b")
 _GAP = r"[ ,:;=-]*(?:in |of )?"
 _UNITS_OF = r"\bunits?[ :=]*(?:of |are |is |in )?[ :=]*"
 
-_BRACKETED = re.compile(rf"[\[(]\s*({_UNIT})\s*[\])](?! ?/)")
+_BRACKETED = regex(rf"[\[(]\s*({_UNIT})\s*[\])](?! ?/)")
 _NAMED = [
-    re.compile(pattern)
+    regex(pattern)
     for pattern in (
         rf"{_ACCELERATION}{_GAP}({_UNIT})",  # accel_g, acceleration, m/s2
         rf"{_ACCELERATION}.*\bin ({_UNIT})",  # acceleration time series in g
@@ -52,16 +53,14 @@ _NAMED = [
     )
 ]
 # A line about one value, such as the peak, which may well be in another unit than the record.
-_ABOUT_A_VALUE = re.compile(r"\b(?:pg[avd]|peak|max\w*|min|minimum|rms|arias|scaled?|factor|gravity)\b")
-_NOT_USABLE = re.compile(rf"(?:{_UNITS_OF}|{_ACCELERATION}{_GAP})[\[(]?({_SPEED}|{_FOREIGN})|{_UNITS_OF}({_LENGTH})")
+_ABOUT_A_VALUE = regex(r"\b(?:pg[avd]|peak|max\w*|min|minimum|rms|arias|scaled?|factor|gravity)\b")
+_NOT_USABLE = regex(rf"(?:{_UNITS_OF}|{_ACCELERATION}{_GAP})[\[(]?({_SPEED}|{_FOREIGN})|{_UNITS_OF}({_LENGTH})")
 # What stands where a unit should: after the word, or in brackets in the label of a column that is not the time.
-_SAID = re.compile(
+_SAID = regex(
     r"\bunits? *(?:[:=]|of |are |is |in )[ :=]*[\[(]?(?!(?:acc\w*|the|time)\b)([^\s,;\])]{1,20})", re.IGNORECASE
 )
-_SAID_LABEL = re.compile(
-    r"[\[(] *(?!(?:m?s|secs?|seconds?|-*) *[\])])([^\])\s]{1,20}) *[\])](?! ?[/^*])", re.IGNORECASE
-)
-_NOT_USABLE_LABEL = re.compile(rf"[\[(]\s*({_SPEED}|{_LENGTH}|{_FOREIGN})\s*[\])]")
+_SAID_LABEL = regex(r"[\[(] *(?!(?:m?s|secs?|seconds?|-*) *[\])])([^\])\s]{1,20}) *[\])](?! ?[/^*])", re.IGNORECASE)
+_NOT_USABLE_LABEL = regex(rf"[\[(]\s*({_SPEED}|{_LENGTH}|{_FOREIGN})\s*[\])]")
 
 
 def canonical(spelling: str) -> str | None:

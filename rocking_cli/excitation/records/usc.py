@@ -20,17 +20,18 @@ from rocking_cli.excitation.records.layout import (
 )
 from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import length_doubts
+from rocking_cli.patterns import regex
 
 TITLE = "USC V1"
 SIGN = "a first line with UNCORRECTED ACCELEROGRAM DATA OF VOLUME I"
 
-_FIRST = re.compile(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
-_COUNT = re.compile(r"NO\. OF POINTS *= *(\d+)")
-_DURATION = re.compile(r"DURATION *= *(\S+) *SEC")
-_UNITS = re.compile(r"UNITS ARE SEC AND (.*?)(?:\s+\d+|\s{2,}.*)?$")
-_COMPONENT = re.compile(r"COMP\s+(\S+)")
-_EVENT = re.compile(r"^(.*\bEARTHQUAKE\b.*?)(?:\s+\d+)?\s*$")
-_STATION = re.compile(r"^STATION (USC# *\d+)")
+_FIRST = regex(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
+_COUNT = regex(r"NO\. OF POINTS *= *(\d+)")
+_DURATION = regex(r"DURATION *= *(\S+) *SEC")
+_UNITS = regex(r"UNITS ARE SEC AND (.*?)(?:\s+\d+|\s{2,}.*)?$")
+_COMPONENT = regex(r"COMP\s+(\S+)")
+_EVENT = regex(r"^(.*\bEARTHQUAKE\b.*?)(?:\s+\d+)?\s*$")
+_STATION = regex(r"^STATION (USC# *\d+)")
 _INTEGERS, _REALS = 100, 50
 
 

@@ -6,7 +6,6 @@ others is no mistake of reading but of the file, and the number is most likely n
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -14,13 +13,14 @@ from functools import cached_property
 
 from rocking_cli.excitation.base import Doubt
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.patterns import regex
 
 FEW = 0.1  # of the rows: if more of them leave the columns of the others, there are no columns
 FEW_NUMBERS = 0.03  # of the numbers: if more are printed otherwise, the program prints them as it likes
-_GLUED = re.compile(r"(?<=[\d.])(?=[+-])")  # before a sign that follows a digit: Fortran columns run together
+_GLUED = regex(r"(?<=[\d.])(?=[+-])")  # before a sign that follows a digit: Fortran columns run together
 _DIGITS = str.maketrans("123456789", "000000000")
 _ONES = str.maketrans("0", "1")
-_PRINTED = re.compile(r"[+-]?(\d*)(?:(\.)(\d*))?(?:[EeDd]([+-]?)(\d+))?")
+_PRINTED = regex(r"[+-]?(\d*)(?:(\.)(\d*))?(?:[EeDd]([+-]?)(\d+))?")
 
 Form = tuple[int | None, int | None, int | None]
 """Digits after the point; and of a number with an exponent, those before the point and those of the exponent."""
