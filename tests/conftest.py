@@ -95,6 +95,14 @@ def _coarse_pictures():
         yield
 
 
+@pytest.fixture
+def small_maps(monkeypatch):
+    """Maps of few points in the reports of a test of something else."""
+    from rocking_cli.studies import assessment
+
+    monkeypatch.setattr(assessment, "POINTS", 20)
+
+
 @pytest.fixture(scope="session")
 def frame_report(tmp_path_factory):
     """The report on the example of a frame: its file, and what was printed."""
