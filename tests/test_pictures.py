@@ -11,15 +11,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from PIL import Image
 
-from rocking_cli.plotting import style
 from tests.render import FIGURES, FOLDER, difference, render
 
+pytestmark = pytest.mark.usefixtures("fine_pictures")
+
 TOLERANCE = 4.0  # of 255, in the tile that differs most; matplotlib 3.9 and 3.11 differ by less than 2
-
-
-@pytest.fixture(autouse=True)
-def _fine(monkeypatch):
-    monkeypatch.setattr(style, "DPI", 150)  # as it is; the other tests draw with less
 
 
 def baseline(name):
