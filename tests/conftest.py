@@ -85,26 +85,6 @@ def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
     return file
 
 
-@pytest.fixture(autouse=True, scope="session")
-def _coarse_pictures():
-    """Pictures of few pixels: what is drawn, and where, is the same."""
-    from rocking_cli.plotting import style
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(style, "DPI", style.DPI // 3)
-        yield
-
-
-@pytest.fixture(scope="module")
-def fine_pictures():
-    """Pictures as users have them, where pixels are looked at."""
-    from rocking_cli.plotting import style
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(style, "DPI", 3 * style.DPI)
-        yield
-
-
 @pytest.fixture
 def small_maps(monkeypatch):
     """Maps of few points in the reports of a test of something else."""

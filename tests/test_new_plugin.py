@@ -25,8 +25,6 @@ from rocking_cli.testing import contract
 from rocking_cli.views.template import template
 from tests.test_cli import run, run_json
 
-pytestmark = pytest.mark.usefixtures("fine_pictures")
-
 NAME = "leaning_pier"
 FILES = [
     "pyproject.toml", "rocking_leaning_pier.py", "tests/test_leaning_pier.py", "README.md", "leaning_pier.yaml",

@@ -13,8 +13,6 @@ from PIL import Image
 
 from tests.render import FIGURES, FOLDER, difference, render
 
-pytestmark = pytest.mark.usefixtures("fine_pictures")
-
 TOLERANCE = 4.0  # of 255, in the tile that differs most; matplotlib 3.9 and 3.11 differ by less than 2
 
 
