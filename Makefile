@@ -32,8 +32,8 @@ demo: $(PACKAGE_STAMP)  ## The main job on the shipped example: equiv, respond w
 	$(BIN)/rocking respond examples/frame.yaml --record examples/accel.csv --plot out/response.png --out out/history.csv
 	$(BIN)/rocking pulse --a 2 --omega 3
 
-test: setup  ## All tests
-	$(BIN)/python -m pytest -n auto --dist worksteal
+test: setup  ## All tests, and the twenty slowest
+	$(BIN)/python -m pytest -n auto --dist worksteal --durations=20
 
 test-kernels: setup  ## The tests of fits, studies and linkages, with the last bits as other processors round them
 	$(BIN)/python -m tests.elsewhere kernels

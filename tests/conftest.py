@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
+import sys
+from itertools import count
 from pathlib import Path
 
 import hypothesis
@@ -27,6 +30,10 @@ NEEDS_RECORDS = pytest.mark.skipif(not FORMATS.is_dir(), reason=f"no real record
 
 KEPT = ("ROCKING_RECORDS", "ROCKING_KERNELS")  # the second has all tests run with the kernels of that way
 
+# Else each of hundreds of child processes compiles the package anew.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+
 # What tests read is as in a pipe, where no line is broken; those of widths say how wide they are.
 os.environ.pop("COLUMNS", None)
 
@@ -37,10 +44,32 @@ for _name, _usual in (("SIGINT", signal.default_int_handler), ("SIGTERM", signal
         signal.signal(_number, _usual)
 
 
+_MADE = count()
+
+
+@pytest.fixture
+def tmp_path(request, tmp_path_factory):
+    """A folder of its own; pytest's would list all that there are to number the next, the longer the more there are."""
+    name = re.sub(r"\W", "_", request.node.name)[:30]
+    return tmp_path_factory.mktemp(f"{name}{next(_MADE)}", numbered=False)
+
+
+_EMPTY: list[Path] = []
+
+
 @pytest.fixture(autouse=True)
-def _in_an_empty_folder(tmp_path, monkeypatch):
-    """No test reads a `rocking.yaml` that happens to lie where pytest was started."""
-    monkeypatch.chdir(tmp_path)
+def _in_an_empty_folder(request, tmp_path_factory, monkeypatch):
+    """No test reads a `rocking.yaml` that happens to lie where pytest was started.
+
+    Those that want no folder of their own share one for as long as it is empty: it takes longer to make and to remove
+    ten thousand than they all compute.
+    """
+    if "tmp_path" in request.fixturenames:
+        monkeypatch.chdir(request.getfixturevalue("tmp_path"))
+        return
+    if not _EMPTY or any(_EMPTY[-1].iterdir()):
+        _EMPTY.append(tmp_path_factory.mktemp("empty"))
+    monkeypatch.chdir(_EMPTY[-1])
 
 
 @pytest.fixture(autouse=True)
@@ -54,6 +83,14 @@ def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
     file.unlink(missing_ok=True)
     monkeypatch.setattr(defaults, "user_file", lambda: file)
     return file
+
+
+@pytest.fixture
+def small_maps(monkeypatch):
+    """Maps of few points in the reports of a test of something else."""
+    from rocking_cli.studies import assessment
+
+    monkeypatch.setattr(assessment, "POINTS", 20)
 
 
 @pytest.fixture(scope="session")

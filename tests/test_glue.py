@@ -50,7 +50,8 @@ class TestGlue:
 
     @pytest.mark.parametrize("command", [
         ("equiv",), ("collapse",), ("respond", "--pulse", "sine:0.5g:1s", "--neighbours", "0"),
-        ("margin", "--pulse", "sine:0.5g:1s"), ("overturning", "--period", "1:2", "--ag", "0.5g:1g", "--points", "3"),
+        ("margin", "--pulse", "sine:0.5g:1s", "--neighbours", "5"),
+        ("overturning", "--period", "1:2", "--ag", "0.5g:1g", "--points", "3"),
         ("spectrum", "--pulse", "sine:0.5g:1s", "--sizes", "1:2:2"),
         ("design", "--vary", "density=2000kg/m3:2400kg/m3", "--until", "lambda > 0.2"),
     ], ids=lambda command: command[0])  # fmt: skip

@@ -1,5 +1,6 @@
 """Every event of a time history: uplift, impact, rest, overturning and the ways back, and what must never happen."""
 
+from dataclasses import replace
 from functools import cache
 from math import acosh, ceil, log, sqrt
 
@@ -10,15 +11,17 @@ from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.wall import Wall
+from rocking_cli import engines
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.dynamics.deck import MOST_IMPACTS
+from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics.deck import MOST_IMPACTS, run_deck
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.dynamics.tables import Table
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.structure import build_models
+from rocking_cli.structure import Structure, build_models
 from tests.following import respond
 from tests.reference_history import Linear, Nonlinear
 from tests.unchecked import UncheckedArch
@@ -698,14 +701,32 @@ def check(name, mechanism, history):
         assert ((side == 0) | (side == impacts[at[inside], 1]) | ~clear).all()
 
 
+@cache
+def built(cls, name):
+    return build_models(cls.model_validate(structures()[name].model_dump()))
+
+
+def made_ready(mechanism, name):
+    """Its structure, with the models of the first of its kind but for the restitution: tables do not depend on it."""
+    models = {}
+    for each in built(type(mechanism), name):
+        numbers = each.numbers.copy()
+        numbers[:, kernels.ETA] = mechanism.restitution
+        models[each.name] = replace(each, numbers=numbers)
+    return Structure(mechanism, _models=models)
+
+
 @pytest.mark.parametrize("start", range(0, 160, 40))
-def test_random_motions_are_consistent_and_never_fail(start):
+def test_random_motions_are_consistent_and_never_fail(start, monkeypatch):
     unknown = 0
     for seed in range(start, start + 40):
         name, mechanism, motion, release = anything(seed)
         kinds = [mechanism] if name != "arch" else [mechanism, Arch.model_validate(mechanism.model_dump())]
         for kind in kinds:
-            for model, history in respond(kind, motion, release=release, tail=2.0).items():
+            # Where the joints of an elastic arch are open, twenty thousand impacts take seconds.
+            most = MOST_IMPACTS // (10 if type(kind) is Arch else 1)
+            monkeypatch.setitem(run_deck.__kwdefaults__, "most_impacts", most)
+            for model, history in engines.respond(made_ready(kind, name), motion, release=release, tail=2.0).items():
                 unknown += history.unknown
                 try:
                     check(name, mechanism, history)

@@ -321,6 +321,7 @@ def told(tmp_path_factory):
     return found
 
 
+@pytest.mark.usefixtures("small_maps")
 class TestReport:
     def test_each_part_that_needs_a_block_says_why_there_is_none(self, told):
         text, data = told["tied"]

@@ -8,18 +8,19 @@ import re
 import numpy as np
 import pytest
 
+from rocking_cli import engines
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.margin import draw_margins
-from rocking_cli.structure import build_models
+from rocking_cli.structure import Structure, build_models
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
 from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
 from rocking_cli.studies.neighbours import Around
 from tests.conftest import EXAMPLES
-from tests.following import build_model, respond
+from tests.following import build_model
 from tests.test_cli import run, run_json
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
@@ -28,11 +29,18 @@ FRAME = load_structure(EXAMPLES / "frame.yaml")
 AROUND = Around(20)
 
 
+SINGLE = {}
+"""Neighbours by themselves, by their data and restitution: each is made once for all factors."""
+
+
 def alone(mechanism, motion, factor, slender, etas):
     """One neighbour by itself: the ground pushes the more slender the less."""
-    given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
-    single = type(mechanism).model_validate({**mechanism.model_dump(), "restitution": given})
-    return respond(single, motion.scaled(factor / slender), models=("nonlinear",))["nonlinear"]
+    key = mechanism.model_dump_json(), tuple(etas)
+    if key not in SINGLE:
+        given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
+        data = {**mechanism.model_dump(), "restitution": given}
+        SINGLE[key] = Structure(type(mechanism).model_validate(data))
+    return engines.respond(SINGLE[key], motion.scaled(factor / slender), models=("nonlinear",))["nonlinear"]
 
 
 def share(mechanism, motion, factor, polarities, around=AROUND):

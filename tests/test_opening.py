@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rocking_cli import GroundMotion, Registry, load_structure, read_record, respond
+from rocking_cli import GroundMotion, Registry, load_structure, read_record
 from rocking_cli.core import Direction
 from rocking_cli.core.released import Undetermined, impulses, released
 from rocking_cli.dynamics import kernels
@@ -22,6 +22,7 @@ from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.structure import build_models
 from tests.conftest import EXAMPLES, SHARED
+from tests.following import respond
 from tests.oracle.openings import openings
 
 BLOCKS = SHARED / "blocks" / "assemblies.json"

@@ -40,6 +40,17 @@ def rocking(environment, *arguments):
     return subprocess.run(command, env=environment, capture_output=True, text=True, encoding="utf-8", check=False)
 
 
+def rocking_each(environment, *commands):
+    """What commands print as JSON, one after the other in one process."""
+    code = (
+        "import json, sys; from rocking_cli.cli.main import main\n"
+        "for words in json.loads(sys.argv[1]): main(words, standalone_mode=False)"
+    )
+    command = [sys.executable, "-c", code, json.dumps(commands)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, encoding="utf-8", check=True)
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
 def test_an_installed_plugin_is_listed_with_its_package(installed_plugin):
     listed = json.loads(rocking(installed_plugin, "mechanisms", "--json").stdout)["mechanisms"]
     found = {row["name"]: row["package"] for row in listed}
@@ -67,14 +78,17 @@ def test_an_installed_plugin_carries_loads_ties_and_side_walls(installed_plugin,
         "  - {name: t, from: {ground: [0, 0]}, to: {body: block, at: [0, 0]}, stiffness: 5e3}\n",
         "side": "cap_mass: 0.5\none_sided: negative\nrebound: 0.4\n",
     }
-    found, velocity = {}, {}
+    commands = []
     for name, lines in more.items():
         file = tmp_path / f"{name}.yaml"
         file.write_text(text + lines, encoding="utf-8")
-        given = json.loads(rocking(installed_plugin, "equiv", str(file), "--json").stdout)
-        found[name] = given["directions"]["negative"]
-        answer = rocking(installed_plugin, "respond", str(file), "--release", "-2deg", "--neighbours", "0", "--json")
-        velocity[name] = json.loads(answer.stdout)["responses"]["nonlinear"]["impact_velocity"]
+        commands.append(["equiv", str(file), "--json"])
+        commands.append(["respond", str(file), "--release", "-2deg", "--neighbours", "0", "--json"])
+    answers = rocking_each(installed_plugin, *commands)
+    found = {name: each["directions"]["negative"] for name, each in zip(more, answers[::2], strict=True)}
+    velocity = {
+        name: each["responses"]["nonlinear"]["impact_velocity"] for name, each in zip(more, answers[1::2], strict=True)
+    }
     for key in ("lambda", "phi_cr", "p", "eta"):
         assert found["load"][key] == pytest.approx(found["cap"][key], rel=1e-9)
     assert velocity["cap"] == pytest.approx(velocity["load"], rel=1e-9) == velocity["side"]

@@ -74,6 +74,7 @@ def read(path):
     return Reader(path.read_text(encoding="utf-8"))
 
 
+@pytest.mark.usefixtures("small_maps")
 class TestContent:
     def test_the_summary_has_the_numbers_of_respond_and_equiv(self, frame_report):
         out, printed = frame_report

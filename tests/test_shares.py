@@ -108,7 +108,8 @@ def test_shares_are_met_in_600_tests_of_two_boulders():
 
 def boulders(count, every):
     """Stated shares and outcomes of tests of both specimens."""
-    shaken = np.load(TESTS.with_name("granite_motions_100hz.npz"))
+    with np.load(TESTS.with_name("granite_motions_100hz.npz")) as archive:
+        shaken = dict(archive)  # unpacked once
     numbers = shaken["test"].tolist()
     shapes = ((0.2943, 0.0510, 4.97), (0.2920, 0.0507, 5.47))
     specimens = [boulder(*shape) for shape in shapes]

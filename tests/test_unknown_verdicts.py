@@ -475,6 +475,7 @@ def page(folder):
     return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", (folder / "report.html").read_text()))
 
 
+@pytest.mark.usefixtures("small_maps")
 class TestReport:
     def test_the_summary_says_until_when_and_why(self, page):
         assert "The outcome of thin arch under sine:2g:0.4s is unknown: it is known up to" in page

@@ -136,6 +136,7 @@ def test_python_says_why_there_is_no_block_and_takes_tuples_and_arrays():
     assert list(both) == ["nonlinear"]
 
 
+@pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize(
     ("checked", "words"),
     [(True, "block under sine:0.4g:0.6s is unknown: it is known up to 0.07095 s only, then the joint between the "
@@ -147,7 +148,8 @@ def test_a_report_says_at_its_head_that_joints_do_not_hold(tmp_path, monkeypatch
         monkeypatch.setattr(Block, "contacts", lambda self, direction: None)
     file = tmp_path / "block.yaml"
     file.write_text("mechanism: block\nwidth: 0.6\nheight: 3\nmass: 1000\nfriction: 0.01\n")
-    said = run("report", file, "--pulse", "sine:0.4g:0.6s", "--out", tmp_path / "report.html").stdout
+    asked = ("--pulse", "sine:0.4g:0.6s", "--neighbours", 20, "--out", tmp_path / "report.html")
+    said = run("report", file, *asked).stdout
     assert words in " ".join(said.split())
 
 
