@@ -10,7 +10,7 @@ STAMP := $(VENV)/.installed
 RELEASE_STAMP := $(VENV)/.installed-release
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench kernels validation stub pictures \
+.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench kernels same-kernels validation stub pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -89,6 +89,10 @@ kernels:  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; P
 	$(PYTHON) -m venv $(KERNELS)
 	$(KERNELS)/$(notdir $(BIN))/python -m pip install --quiet "numba==0.61.2" "llvmlite==0.44.0" "ziglang==0.17.1" "numpy<2.3" "platformdirs>=4"
 	$(KERNELS)/$(notdir $(BIN))/python scripts/make_kernels.py $(READY)
+
+same-kernels:  ## Make the shipped kernels anew, by Python 3.11 as they were, and compare them
+	$(MAKE) kernels PYTHON=$(PYTHON) READY=out/ready
+	diff -r out/ready rocking_cli/dynamics/ready
 
 stub: setup  ## Write rocking_cli/__init__.pyi, which types what the package hands out
 	$(BIN)/python docs/make_stub.py

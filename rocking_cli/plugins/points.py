@@ -14,16 +14,18 @@ from contextlib import suppress
 from dataclasses import astuple, dataclass
 from hashlib import sha256
 from importlib import import_module
-from importlib.machinery import PathFinder
 from operator import attrgetter
 from typing import Any
 
 from rocking_cli import cache
+from rocking_cli.io.json_text import json_text
 
 OURS = "rocking."
 """What the names of our groups begin with; no others are read."""
 FILE = "entry_points.json"
 MOST = 20  # environments in the file
+BY_PATH = {"_frozen_importlib_external", "importlib_metadata"}
+"""Modules whose finders look for packages in `sys.path` alone: Python's own, and the one that goes before it."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,8 @@ _POINTS: dict[str, list[Point]] = {}
 
 
 def _all() -> list[Point]:
-    if any(hasattr(finder, "find_distributions") and finder is not PathFinder for finder in sys.meta_path):
+    finders = [each for each in sys.meta_path if hasattr(each, "find_distributions")]
+    if not {each.__module__ for each in finders} <= BY_PATH:
         return _read()  # packages may be anywhere
     state = _state()
     if state not in _POINTS:
@@ -75,7 +78,7 @@ def _state() -> str:
         seen.append(path)
         try:
             with os.scandir(path or ".") as entries:
-                folders = sorted(each.path for each in entries if each.name.lower().endswith("-info"))
+                folders = sorted(each.path for each in entries if each.name[-5:].lower() == "-info")
         except OSError:  # an archive, or nothing
             seen.append(_stamp(path))
             continue
@@ -88,10 +91,11 @@ def _state() -> str:
 
 def _stamp(file: str) -> tuple[int, int] | None:
     """Return when a file was changed, and its size; None if there is none."""
-    with suppress(OSError, ValueError):
+    try:
         status = os.stat(file)  # noqa: PTH116  a Path would cost more than the question
-        return status.st_mtime_ns, status.st_size
-    return None
+    except (OSError, ValueError):
+        return None
+    return status.st_mtime_ns, status.st_size
 
 
 def _read() -> list[Point]:
@@ -120,5 +124,5 @@ def _load(state: str) -> list[Point]:
         return [Point(*map(str, each)) for each in kept[state]]
     points = _read()
     kept = dict([*kept.items(), (state, [list(astuple(point)) for point in points])][-MOST:])
-    cache.keep(file, json.dumps(kept).encode())
+    cache.keep(file, json_text(kept).encode())
     return points
