@@ -563,7 +563,7 @@ class TestStart:
 
     def test_respond_imports_what_it_uses(self):
         arguments = ["respond", str(EXAMPLES / "frame.yaml"), "--record", str(EXAMPLES / "accel.csv")]
-        heavy = "('numba', 'scipy', 'matplotlib', 'numpy.ma', 'rich.progress', 'rocking_cli.plotting')"
+        heavy = "('numba', 'scipy', 'matplotlib', 'numpy.ma', 'rich.console', 'rocking_cli.plotting')"
         code = (
             f"import sys, rocking_cli.cli.main as m; m.main({arguments!r}, standalone_mode=False);"
             f"print([name for name in {heavy} if name in sys.modules], file=sys.stderr)"

@@ -49,6 +49,43 @@ def grid(
     ]
 
 
+def drawn(gap: int, lines: Sequence[Sequence[str]], numbers: Collection[int], rule: str) -> tuple[list[str], list[str]]:
+    """Return the headings and the rows of a grid as lines of one width.
+
+    Parameters
+    ----------
+    gap : int
+        Blanks between columns.
+    lines : sequence
+        As of `grid`: cells, headings first.
+    numbers : collection of int
+        Indices of columns to align to the right.
+    rule : str
+        What the line under the headings is made of.
+    """
+    widths = [max(_widest(line[k]) for line in lines) for k in range(len(lines[0]))]
+
+    def fitted(line: Sequence[str], *, low: bool = False) -> list[str]:
+        parts = [cell.split("\n") for cell in line]
+        height = max(map(len, parts))
+        columns = []
+        for k, (part, width) in enumerate(zip(parts, widths, strict=True)):
+            rest = [""] * (height - len(part))
+            columns.append([_aligned(each, width, k in numbers) for each in (rest + part if low else part + rest)])
+        return [f" {(' ' * gap).join(row)} " for row in zip(*columns, strict=True)]
+
+    whole = _whole(widths, gap)
+    heads = [" " * whole, *fitted(lines[0], low=True)]
+    return heads, [f" {rule * (whole - EDGES)} ", *(each for line in lines[1:] for each in fitted(line)), " " * whole]
+
+
+def _aligned(text: str, width: int, right: bool) -> str:
+    if right:
+        text = text.rstrip()
+    blanks = " " * (width - cells(text))
+    return blanks + text if right else text + blanks
+
+
 def stacked(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
     """Return a block for each row: its first cell, then a line `heading: value` for each other non-empty cell."""
     heads = [each.replace("\n", " ").strip() for each in columns]

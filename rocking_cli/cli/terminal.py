@@ -195,63 +195,64 @@ def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterat
     Advance
         Function to call as work is done.
     """
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
+    if not sys.stderr.isatty():
         yield lambda count, failed=0: None
         return
+    bar: Any = None
+    bad, new, began = failed, 0, monotonic()
 
+    def advance(count: int, failed: int = 0) -> None:
+        nonlocal bar, bad, new
+        bad, new = bad + failed, new + count
+        took = monotonic() - began
+        if bar is None and took > PATIENCE:
+            bar = _bar()
+            bar.add_task(what, total=total, rate="", failures="")
+            bar.start()
+        if bar is not None:
+            rate = new / took
+            bar.update(
+                bar.task_ids[0],
+                completed=done + new,
+                rate=f"{rate:.3g}/s" if rate < 1000 else f"{rate:,.0f}/s",
+                failures=f"{bad} failed" if bad else "",
+            )
+
+    try:
+        yield advance
+    finally:
+        if bar is not None:
+            bar.stop()
+
+
+def _bar() -> Any:
+    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    bar = Progress(
+    return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[rate]}"),
         TextColumn("{task.fields[failures]}", style="red"),
         TimeRemainingColumn(),
-        console=console,
+        console=Console(stderr=True),
         transient=True,
     )
-    bad, new, began = failed, 0, monotonic()
-
-    def told() -> dict[str, Any]:
-        rate = new / max(monotonic() - began, 1e-9)
-        return {
-            "rate": f"{rate:.3g}/s" if rate < 1000 else f"{rate:,.0f}/s",
-            "failures": f"{bad} failed" if bad else "",
-        }
-
-    task = bar.add_task(what, total=total, completed=done, **told())
-
-    def advance(count: int, failed: int = 0) -> None:
-        nonlocal bad, new
-        bad, new = bad + failed, new + count
-        bar.update(task, advance=count, **told())
-        if not bar.live.is_started and monotonic() - began > PATIENCE:
-            bar.start()
-
-    try:
-        yield advance
-    finally:
-        bar.stop()
 
 
 @contextmanager
 def working(what: str) -> Iterator[None]:
     """Show a spinner and the seconds during one long piece of work, on a terminal only."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
+    if not sys.stderr.isatty():
         yield
         return
 
+    from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    with Progress(*columns, console=console, transient=True) as moving:
+    with Progress(*columns, console=Console(stderr=True), transient=True) as moving:
         moving.add_task(printable(what), total=None)
         yield
 
@@ -272,7 +273,7 @@ def table(
     numbers : collection of int
         Indices of columns to align to the right; these and the first never wrap.
     """
-    from rocking_cli.cli.tables import grid, stacked
+    from rocking_cli.cli.tables import drawn, grid, stacked
 
     room, columns = width(), [printable(each) for each in columns]
     rows = [[printable(cell) for cell in row] for row in rows]
@@ -280,26 +281,12 @@ def table(
         click.echo(click.style(wrapped(printable(title), room), bold=True), file=_results)
     found = grid(columns, rows, numbers, room)
     if found is not None:
-        _draw(*found, numbers)
+        encoding = getattr(_results or sys.stdout, "encoding", None) or "utf-8"
+        heads, body = drawn(*found, numbers, "─" if encoding.lower().startswith("utf") else "-")
+        click.echo("\n".join([*(click.style(line, bold=True) for line in heads), *body]), file=_results)
     else:
         assert room is not None  # else everything fits
         click.echo("\n".join(["", *stacked(columns, rows, room), ""]), file=_results)
-
-
-def _draw(gap: int, lines: Sequence[Sequence[str]], numbers: Collection[int]) -> None:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, gap - 2))
-    for k, heading in enumerate(lines[0]):
-        drawn.add_column(Text(heading), justify="right" if k in numbers else "left", no_wrap=True)
-    for line in lines[1:]:
-        drawn.add_row(*(Text(cell) for cell in line))
-    console = Console(file=_results)
-    console.width = console.measure(drawn, options=console.options.update(max_width=10**6)).maximum
-    console.print(drawn)
 
 
 def show(view: View, *, as_json: bool) -> None:
