@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import re
 import signal
@@ -33,6 +34,8 @@ KEPT = ("ROCKING_RECORDS", "ROCKING_KERNELS")  # the second has all tests run wi
 # Else each of hundreds of child processes compiles the package anew.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+
+gc.set_threshold(50_000)  # as the program does: what there is of garbage is small beside what stays
 
 # What tests read is as in a pipe, where no line is broken; those of widths say how wide they are.
 os.environ.pop("COLUMNS", None)

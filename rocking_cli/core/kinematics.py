@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,12 +64,16 @@ class RigidMotion:
 
     def carry(self, point: complex) -> tuple[Points, Points, Points]:
         """Position, first and second derivative of the point of the link that rests at `point`, each shape (n,)."""
-        arm = np.exp(1j * self.psi) * (point - self.rest)
+        arm = self._turned * (point - self.rest)
         return (
             self.q + arm,
             self.dq + 1j * self.dpsi * arm,
             self.ddq + (1j * self.ddpsi - self.dpsi**2) * arm,
         )
+
+    @cached_property
+    def _turned(self) -> Points:
+        return np.asarray(np.exp(1j * self.psi))
 
 
 def rotation(phi: Reals, pivot: complex, rate: float) -> RigidMotion:
@@ -117,9 +122,9 @@ def four_bar(
     e2 = _cross(1j * dc, pull) / _cross(dc, bc)  # Eq. 29: i e2 bc - i e3 dc = pull
     e3 = _cross(1j * bc, pull) / _cross(dc, bc)  # Eq. 29
     link_ab = rotation(phi, a, w1)
-    link_bc = RigidMotion(b, a + ab, 1j * w1 * ab, -(w1**2) * ab, np.unwrap(np.angle(bc / (c - b))), w2, e2)
+    link_bc = RigidMotion(b, a + ab, 1j * w1 * ab, -(w1**2) * ab, _angle(bc / (c - b)), w2, e2)
     still = np.zeros(phi.shape, np.complex128)
-    link_cd = RigidMotion(d, still + d, still, still, np.unwrap(np.angle(dc / (c - d))), w3, e3)
+    link_cd = RigidMotion(d, still + d, still, still, _angle(dc / (c - d)), w3, e3)
     return link_ab, link_bc, link_cd
 
 
@@ -133,6 +138,13 @@ def four_bar_limit(direction: Direction, a: complex, b: complex, c: complex, d: 
         if abs(cosine) <= 1:
             turns += [float(direction * (start - end) % (2 * np.pi)) for end in (np.arccos(cosine), -np.arccos(cosine))]
     return min(turns)
+
+
+def _angle(ratio: Points) -> Reals:
+    """The angle of a number that turns, without jumps."""
+    angle: Reals = np.angle(ratio)
+    jumps = np.abs(np.diff(angle)).max(initial=0.0) >= np.pi
+    return np.unwrap(angle) if jumps else angle  # which costs as much as all the rest
 
 
 def _cross(u: Points | np.complex128, v: Points | np.complex128) -> Reals:
