@@ -21,7 +21,7 @@ from rocking_cli import Runs, load_structure, respond_many
 from rocking_cli.dynamics.model import linear_model
 from rocking_cli.structure import Structure
 from rocking_cli.studies.overturning import overturning_map
-from rocking_cli.studies.under_pulses import Shaken, linear_block, outcomes, parse_shape, shaken
+from rocking_cli.studies.under_pulses import PulsedModel, linear_block, outcomes, parse_shape, pulsed_model
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 POINTS = 256
@@ -42,9 +42,9 @@ def seconds(work: Callable[[], object], repeats: int = 5) -> tuple[float, float]
 
 
 def maps() -> None:
-    structures: list[Shaken] = [linear_block(0.9)]
+    structures: list[PulsedModel] = [linear_block(0.9)]
     for name in ("block", "frame"):
-        structures.append(shaken(Structure(load_structure(EXAMPLES / f"{name}.yaml")), "nonlinear", SINE))
+        structures.append(pulsed_model(Structure(load_structure(EXAMPLES / f"{name}.yaml")), "nonlinear", SINE))
     print(f"\nMaps of {POINTS} x {POINTS} full sines, omega and a from 0.5 to 10, on {os.cpu_count()} processors\n")
     print("| structure | model | s | of processors s | us a point |\n| --- | --- | --- | --- | --- |")
     for each in structures:
@@ -74,7 +74,7 @@ def samples() -> None:
             motion = replace(SINE, period=period).sampled(count)
 
             def exact(a: float, period: float = period) -> bool:
-                return bool(outcomes(block, SINE, np.array([period]), np.array([a])).impacts[0] == 0)
+                return bool(outcomes(block, SINE, np.array([period]), np.array([a])).impact_count[0] == 0)
 
             def sampled(a: float, motion: object = motion) -> bool:
                 run = respond_many([model], [motion], Runs.of(0, 0, scale=a), threads=1, only_peaks=True)

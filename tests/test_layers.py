@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -26,3 +27,25 @@ def test_no_layer_below_the_command_line_knows_a_flag(path):
     texts = (node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Constant))
     found = [(node.lineno, node.value) for node in texts if isinstance(node.value, str) and FLAG.search(node.value)]
     assert not found
+
+
+ROOT = Path(rocking_cli.__file__).resolve().parents[1]
+BESIDE = [path for folder in ("benchmarks", "docs", "scripts") for path in sorted((ROOT / folder).glob("*.py"))]
+
+
+@pytest.mark.parametrize("path", BESIDE, ids=lambda path: "/".join(path.parts[-2:]))
+def test_what_stands_beside_the_package_imports_what_there_is(path):
+    """They run seldom: a name that has changed would be seen late, also in code that is handed to another process."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    texts = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    handed = [found for text in texts for found in re.findall(r"from (rocking_cli[\w.]*) import ([\w, ]+)", text)]
+    named = [(module, name.strip()) for module, names in handed for name in names.split(",")]
+    named += [
+        (node.module, each.name)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith(("rocking_cli", "mechanisms"))
+        for each in node.names
+    ]
+    for module, name in named:
+        if not hasattr(import_module(module), name):
+            import_module(f"{module}.{name}")
