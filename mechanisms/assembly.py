@@ -126,7 +126,7 @@ class Assembly(Membered):
 
     blocks: dict[Name, Shape] = Field(
         description="what can move, by names: polygons, each with density and depth, or mass, centroid and inertia",
-        examples=[EXAMPLE_BLOCKS], min_length=1, max_length=500,
+        examples=[EXAMPLE_BLOCKS], min_length=1, max_length=10_000,
     )  # fmt: skip
     ground: dict[Name, Ground] = Field(
         description="what cannot, by names: polygons", examples=[EXAMPLE_GROUND], min_length=1, max_length=100

@@ -18,6 +18,7 @@ from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.mechanism import Opening
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Bearing, Bearings, Frame, scaled
+from mechanisms._assembly.sparse import beside, solved
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals
 
@@ -84,9 +85,11 @@ class Displaced:
         """Where a point of a body is now [m]."""
         if name not in self.moved:
             return point
-        q, psi = self.moved[name]
-        rest = next(block.centroid for block in self.blocks if block.name == name)
-        return complex(q + np.exp(1j * psi) * (point - rest))
+        return complex(self.moved[name][0] + self.turn(name) * (point - self._centroids[name]))
+
+    @cached_property
+    def _centroids(self) -> Mapping[str, complex]:
+        return {block.name: block.centroid for block in self.blocks}
 
     def turn(self, name: str) -> complex:
         """By how much a body has turned, as a factor."""
@@ -111,14 +114,13 @@ class Displaced:
         return Bearings.of(self.frame, found, held)
 
     @cached_property
-    def _split(self) -> tuple[Reals, Reals]:
-        """Forces on the blocks that joints can balance, and those that none can: two bases, by columns."""
-        free = velocity_space(self.bearings.rates)
-        return velocity_space(free.T), free
+    def _free(self) -> Reals:
+        """Velocities that the joints leave, orthogonal, by columns: forces that do work on them none can balance."""
+        return np.linalg.qr(velocity_space(self.bearings.rates, self.frame))[0]
 
     def multiplier(self, dead: Reals, live: Reals) -> float:
         """The multiplier of `live` that holds the mechanism here, by virtual work; the two as of `collapse`."""
-        free = self._split[1]
+        free = self._free
         if free.shape[1] != 1:
             raise NoAnswer(f"the mechanism can move in {free.shape[1]} independent ways where it is, not in one")
         work = [float(scaled(forces, self.frame, self.weight) @ free[:, 0]) for forces in (dead, live)]
@@ -145,27 +147,27 @@ class Displaced:
         """
         n = len(self.blocks)
         cases = np.array([scaled(each, self.frame, self.weight) for each in forces.reshape(-1, n, 3)])
-        able, free = self._split
+        free = self._free
         largest = np.maximum(np.abs(cases).max(axis=1), 1.0)
         off = np.abs(cases @ free).max(axis=1, initial=0.0) / largest
         if (off > BALANCED).any():
             raise NoAnswer(f"forces on the displaced blocks are off their balance by {off.max():.2g} of the weight")
-        cases = cases @ able @ able.T
+        cases = cases - cases @ free @ free.T
         rays = self.bearings.rays()
-        if len(rays.rates) == able.shape[1]:  # statics alone says what they are
-            values = -np.linalg.lstsq(rays.rates.T, cases.T, rcond=None)[0].T[:, rays.one_sided]
+        if rays.count == 3 * n - free.shape[1]:  # statics alone says what they are
+            values = -solved(beside([rays.rates.T, free]), cases.T)[: rays.count].T[:, rays.one_sided]
             if values.shape[1] == 0:
                 return [Admissible(1.0, None)] * len(cases)
             at = values.argmin(axis=1)
             owner = rays.contact[rays.one_sided]
             return [Admissible(min(float(v[k]), 1.0), int(owner[k])) for v, k in zip(values, at, strict=True)]
         # Each one-sided ray is the margin and what it has above it.
-        equal = np.column_stack([able.T @ rays.rates.T, able.T @ rays.rates[rays.one_sided].sum(axis=0)])
-        cost, low = np.append(np.zeros(len(rays.rates)), -1.0), np.append(rays.low, -np.inf)
-        high = np.append(np.full(len(rays.rates), np.inf), 1.0)
+        equal = beside([rays.rates.T, rays.rates.T @ rays.one_sided.astype(np.float64)])
+        cost, low = np.append(np.zeros(rays.count), -1.0), np.append(rays.low, -np.inf)
+        high = np.append(np.full(rays.count, np.inf), 1.0)
         answers = []
         for case in cases:
-            found = least(cost, equal, -able.T @ case, low, high)
+            found = least(cost, equal, -case, low, high)
             if found is None:
                 raise NoAnswer("no forces in the joints balance those on the displaced blocks")
             blame = np.where(rays.one_sided, found.at_lower[:-1], 0.0)

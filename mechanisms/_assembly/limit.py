@@ -140,20 +140,20 @@ def collapse(
         falls = moving(problem.frame.names, raw, 1e-6)
         raise DoesNotStand(f"it barely stands: the least acceleration sets {listed(falls)} in motion", falls)
     kept = kept_rays(rays, problem.dead, problem.live, raw)
-    space = velocity_space(rays.rates[kept])
+    space = velocity_space(rays.rates[kept], problem.frame)
     fields = mechanisms_of(rays, kept, space, raw)
     names = problem.frame.names
     # Those that the multiplier starts first; and by the blocks that move, because the search finds them in any order.
     fields.sort(
         key=lambda field: (
             not _worked_on(problem, field),
-            [names.index(name) for name in moving(names, field, NOTHING)],
+            [problem.frame.index[name] for name in moving(names, field, NOTHING)],
         )
     )
     several = tuple(_shared(problem, field) for field in fields) if len(fields) > 1 else ()
     velocity = _sized(problem, fields[0])
     rates = _rates(problem, velocity)
-    state = problem.weight * (forces @ rays.mix)
+    state = problem.weight * (rays.mix.T @ forces)
     return Collapse(
         multiplier / problem.strength,
         _kinematic(problem, fields[0]) / problem.strength,

