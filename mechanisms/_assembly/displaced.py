@@ -8,7 +8,7 @@ another joint would have opened, and the mechanism is no longer the one that mov
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -16,14 +16,15 @@ import numpy as np
 from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.mechanism import Opening
-from mechanisms._assembly.programme import least
+from mechanisms._assembly.programme import TOLERANCE, least
 from mechanisms._assembly.rays import Bearing, Bearings, Frame, scaled
-from mechanisms._assembly.sparse import beside, solved
+from mechanisms._assembly.sparse import beside, solved, weighted_squares
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals
 
 BALANCED = 1e-6  # of the weight: forces that joints need not carry may be no more, or they are not in balance
 HELD = 1e-9  # of the weight: a tension that counts as none
+FINE = 1e-8  # of the rotation up to which it is looked for
 STEPS = 32  # in which a first violation is looked for
 
 Placed = Mapping[str, tuple[complex, float]]
@@ -40,10 +41,13 @@ class Admissible:
         have at once, at most 1; below zero it is the tension that is missing.
     contact : int or None
         The joint that decides it: the one that opens first; None if none does.
+    forces : ndarray or None
+        Multipliers of the rays that have this margin; None if statics alone says what they are.
     """
 
     margin: float
     contact: int | None
+    forces: Reals | None = field(default=None, repr=False, compare=False)
 
     @property
     def holds(self) -> bool:
@@ -172,24 +176,63 @@ class Displaced:
                 raise NoAnswer("no forces in the joints balance those on the displaced blocks")
             blame = np.where(rays.one_sided, found.at_lower[:-1], 0.0)
             decides = int(rays.contact[blame.argmax()]) if blame.max(initial=0.0) > HELD else None
-            answers.append(Admissible(-found.value, decides))
+            answers.append(Admissible(-found.value, decides, found.x[:-1] - found.value * rays.one_sided))
         return answers
 
+    def near(self, forces: Reals, state: Reals) -> Reals | None:
+        """Multipliers of the rays that balance forces on the blocks, found by changing those of a state beside this one.
 
-def first_violation(margin: Callable[[float], float], end: float) -> float | None:
+        None if that takes tension: then it is not known whether others do. It costs one system of equations where the
+        margin is a programme. Each multiplier changes in proportion to its square, so that small ones hardly do.
+
+        Parameters
+        ----------
+        forces : ndarray, shape (blocks, 3)
+            As of `admissible`.
+        state : ndarray, shape (rays,)
+            Multipliers that are greater than nothing.
+        """
+        rays = self.bearings.rays()
+        case = scaled(forces, self.frame, self.weight)
+        case = case - self._free @ (self._free.T @ case)
+        share = np.where(rays.one_sided, state, np.abs(state).max()) ** 2
+        for _ in range(2):  # once more, for what rounding left
+            off = rays.rates.T @ state + case
+            state = state - share * (rays.rates @ solved(weighted_squares(rays.rates, share), off))
+        if np.abs(rays.rates.T @ state + case).max() > TOLERANCE or (state[rays.one_sided] < 0).any():
+            return None
+        return state
+
+
+def first_violation(
+    margin: Callable[[float], float], end: float, *, holds: Callable[[float], bool] | None = None
+) -> float | None:
     """Where a margin first falls below zero, from rest to `end`; None if it does not.
 
-    Looked for in steps and then bisected, to 1e-8 of `end`: an excursion between two steps is not seen.
+    Looked for in steps, at which `holds` may say without the margin that there is no tension, and then to 1e-8 of
+    `end` by the secant of what is missing, or in halves where that is slow: an excursion between two steps is not seen.
     """
-    low = 0.0
+    low, missing = 0.0, 0.0
     for high in np.linspace(0.0, end, STEPS + 1):
-        if margin(float(high)) < -HELD:
+        if not (holds is not None and holds(float(high))) and (missing := -margin(float(high)) - HELD) > 0:
             break
         low = float(high)
     else:
         return None
-    high = float(high)
-    while high - low > 1e-8 * abs(end):
-        middle = (low + high) / 2
-        low, high = (low, middle) if margin(middle) < -HELD else (middle, high)
+    high, close, root = float(high), FINE * abs(end), None
+    width = np.inf
+    while high - low > close:
+        # Every other time in halves, unless the secant has just done better.
+        guess = (low + high) / 2
+        if root is not None and high - low <= width / 2:
+            guess = min(max(root, low + 0.9 * close), high - 0.9 * close)
+        width = high - low
+        less = -margin(guess) - HELD
+        if less > 0:
+            slope = (missing - less) / (high - guess)
+            high, missing = guess, less
+            root = high - missing / slope - 0.4 * close if slope > 0 else None
+        else:
+            low = guess
+            root = root + 0.8 * close if root is not None else None
     return high

@@ -76,6 +76,9 @@ class Problem:
     def why_not(self, rays: Rays) -> tuple[str, ...]:
         """The blocks that no forces hold at rest; none if it stands."""
         n = len(self.dead)
+        unbounded = np.full(rays.count, np.inf)
+        if least(np.zeros(rays.count), rays.rates.T.tocsc(), -self.dead, rays.low, unbounded) is not None:
+            return ()
         extra = unit_columns(np.arange(n), n)
         found = least(
             np.append(np.zeros(rays.count), np.ones(2 * n)),

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.core import Reals
 
+LITTLE = 1e-12  # of the largest entry
 Indices = NDArray[np.intp]
 Sparse = Any  # scipy.sparse.csr_array, which has no types
 
@@ -40,6 +41,14 @@ def solved(matrix: Sparse, right: Reals) -> Reals:
     from scipy.sparse.linalg import splu
 
     return np.asarray(splu(matrix.tocsc()).solve(np.ascontiguousarray(right)))
+
+
+def weighted_squares(matrix: Sparse, weights: Reals) -> Sparse:
+    """Build the transpose times weights times a matrix, plus so little of the unit matrix that it can be solved."""
+    from scipy.sparse import diags_array, eye_array
+
+    squares = matrix.T @ diags_array(weights) @ matrix
+    return squares + LITTLE * np.abs(squares.diagonal()).max() * eye_array(matrix.shape[1])
 
 
 def components(one: ArrayLike, other: ArrayLike, count: int) -> Indices:
