@@ -25,6 +25,8 @@ from rocking_cli.core import Reals
 BALANCED = 1e-6  # of the weight: forces that joints need not carry may be no more, or they are not in balance
 HELD = 1e-9  # of the weight: a tension that counts as none
 FINE = 1e-8  # of the rotation up to which it is looked for
+TRIES = 6  # to balance forces without tension beside a state that is known
+LESS = 0.3  # of a force that would be tension: what is tried in its place
 STEPS = 32  # in which a first violation is looked for
 
 Placed = Mapping[str, tuple[complex, float]]
@@ -195,13 +197,19 @@ class Displaced:
         rays = self.bearings.rays()
         case = scaled(forces, self.frame, self.weight)
         case = case - self._free @ (self._free.T @ case)
-        share = np.where(rays.one_sided, state, np.abs(state).max()) ** 2
-        for _ in range(2):  # once more, for what rounding left
-            off = rays.rates.T @ state + case
-            state = state - share * (rays.rates @ solved(weighted_squares(rays.rates, share), off))
-        if np.abs(rays.rates.T @ state + case).max() > TOLERANCE or (state[rays.one_sided] < 0).any():
-            return None
-        return state
+        free = float(np.abs(state).max())
+        for _ in range(TRIES):
+            share = np.where(rays.one_sided, state, free) ** 2
+            balanced = state
+            for _ in range(2):  # once more, for what rounding left
+                off = rays.rates.T @ balanced + case
+                balanced = balanced - share * (rays.rates @ solved(weighted_squares(rays.rates, share), off))
+            off = rays.rates.T @ balanced + case
+            if (balanced[rays.one_sided] >= 0).all() and np.abs(off).max() <= TOLERANCE:
+                return balanced
+            # What would be tension is less than before, and the others make up for it.
+            state = np.where(rays.one_sided, np.maximum(balanced, LESS * state), balanced)
+        return None
 
 
 def first_violation(
