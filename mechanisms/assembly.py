@@ -511,6 +511,7 @@ class Assembly(Membered):
             opens=self._joint(valid[1]) if valid else "",
             held_by=valid[2] if valid else None,
             thrust=[(self._joint(each.contact), each.point, each.force) for each in thrust.passages],
+            idle=state.idle,
         )
 
     def _held(self, direction: Direction, phi: float) -> tuple[analysis.Displaced, Reals, float]:

@@ -57,3 +57,10 @@ def components(one: ArrayLike, other: ArrayLike, count: int) -> Indices:
 
     graph = from_entries(one, other, np.ones(len(np.asarray(one))), (count, count))
     return np.asarray(connected_components(graph, directed=False)[1], np.intp)
+
+
+def from_blocks(blocks: Sequence[Sequence[Any]]) -> Sparse:
+    """Build a matrix from rows of matrices, dense ones among them; None is nothing."""
+    from scipy.sparse import block_array, csr_array
+
+    return block_array([[None if each is None else csr_array(each) for each in row] for row in blocks], format="csc")
