@@ -71,19 +71,17 @@ class Frame:
             `a`. What is not a block does not move.
         """
         sides = [
-            (k, block, sign, point, way)
+            (k, self.index[name], sign, point, way)
             for k, (a, b, point, way) in enumerate(rows) for name, sign in ((b, 1.0), (a, -1.0))
-            if name is not None and (block := self.index.get(name)) is not None
+            if name in self.index
         ]  # fmt: skip
         if not sides:
             return from_entries([], [], [], (len(rows), 3 * len(self.names)))
-        k, block, sign, point, way = (np.array(each) for each in zip(*sides, strict=True))
-        arm = (point - np.array(self.centroids)[block]) / self.size
-        values = sign * np.array([way.real, way.imag, (arm.conj() * way).imag])
+        row, block, signs, points, ways = (np.array(each) for each in zip(*sides, strict=True))
+        arm = (points - np.array(self.centroids)[block]) / self.size
+        values = signs * np.array([ways.real, ways.imag, (arm.conj() * ways).imag])
         columns = 3 * block + np.arange(3)[:, None]
-        return from_entries(
-            np.tile(k, 3), columns.ravel(), values.ravel(), (len(rows), 3 * len(self.names))
-        )
+        return from_entries(np.tile(row, 3), columns.ravel(), values.ravel(), (len(rows), 3 * len(self.names)))
 
 
 @dataclass(frozen=True, eq=False)

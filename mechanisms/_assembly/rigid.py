@@ -54,16 +54,18 @@ def rigid_parts(rates: Sparse, frame: Frame) -> Parts:
     """
     ground = len(frame.names)
     one, other, wrench = _wrenches(rates, ground)
-    place = np.array([*frame.centroids, 0j]) / frame.size
+    place = np.array([*frame.centroids, 0j], np.complex128) / frame.size
     part = np.arange(ground + 1)
     while True:
         low, high = np.sort([part[one], part[other]], axis=0)
         open_ = low != high
+        if not open_.any():
+            break
         pairs, number = np.unique(np.array([low[open_], high[open_]]), axis=1, return_inverse=True)
         held = _holds(number.ravel(), pairs.shape[1], wrench[open_], place[one[open_]])
         if not held.any():
             break
-        part = components(*pairs[:, held], ground + 1)[part]
+        part = components(pairs[0, held], pairs[1, held], ground + 1)[part]
     return _parts(part, place, part[one] != part[other])
 
 
@@ -89,7 +91,7 @@ def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
     arm = place - place[first[number]]  # moments about one point for each pair, near its joints
 
     def dot(one: Reals, two: Reals) -> Reals:
-        return np.bincount(number, one * two, count)
+        return np.asarray(np.bincount(number, one * two, count), np.float64)
 
     def without(one: Reals, two: Reals) -> Reals:
         """The part of a column that is orthogonal to another, pair by pair."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from mechanisms._assembly.problem import NOTHING, Problem
 from mechanisms._assembly.programme import least
-from mechanisms._assembly.rays import Bools, Rays
+from mechanisms._assembly.rays import Bools, Indices, Rays
 from mechanisms._assembly.sparse import from_blocks
 from rocking_cli.core import Reals
 
@@ -53,7 +53,7 @@ def smallest(problem: Problem, rays: Rays, kept: Bools, space: Reals) -> tuple[R
     opening = rays.rates[~kept] @ space
     for k in _candidates(share, np.flatnonzero(works)):
         alike = works & (np.abs(share @ share[k]) > 1 - SAME**2)
-        others = [j for j in _candidates(share, np.flatnonzero(works & ~alike))]
+        others = _candidates(share, np.flatnonzero(works & ~alike))
         if any(_reaches(opening, share[k], sign * share[j]) for j in others for sign in (1, -1)):
             continue  # others move without these
         field = _least_motion(opening, space, by_block, able, share[k])
@@ -61,7 +61,8 @@ def smallest(problem: Problem, rays: Rays, kept: Bools, space: Reals) -> tuple[R
             continue
         moves = np.abs(field.reshape(-1, 3)).max(axis=1) > SAME * np.abs(field).max()
         if (moves & works & ~alike).any() or not all(
-            _turns_with(problem, field, moves & works, j, ways[j, :, 0]) for j in np.flatnonzero(works & ~alike)
+            _turns_with(problem, field, moves & works, j, ways[j, :, 0])
+            for j in np.flatnonzero(works & ~alike).tolist()
         ):
             return None
         names = problem.frame.names
@@ -76,7 +77,7 @@ def _does_work(problem: Problem, by_block: Reals) -> Bools:
     return np.asarray(np.maximum(*work) > NOTHING * np.abs(by_block).max(axis=(1, 2)))
 
 
-def _candidates(share: Reals, blocks: Reals) -> list[int]:
+def _candidates(share: Reals, blocks: Indices) -> list[int]:
     """One block of each kind that moves in proportion, those of the most blocks first."""
     found: dict[int, int] = {}
     for j in blocks.tolist():

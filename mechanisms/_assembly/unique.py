@@ -122,7 +122,12 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
     low, high = np.append(np.full(d, -1e6), np.zeros(n)), np.append(np.full(d, 1e6), np.full(n, np.inf))
     found: list[Reals] = []
     wanted = np.vstack([space, -space])
+    tried = np.zeros((0, d))
     for row in wanted[np.abs(wanted).max(axis=1) > CLEAN]:
+        unit = row / np.linalg.norm(row)
+        if (tried @ unit > 1 - CLEAN).any():
+            continue  # blocks that move in proportion ask the same
+        tried = np.vstack([tried, unit])
         best = least(np.append(row, np.zeros(n)), np.vstack([equal, total]), np.append(np.zeros(n), 1.0), low, high)
         if best is None:
             continue

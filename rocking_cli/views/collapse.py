@@ -39,8 +39,8 @@ def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechan
     said = [f"Moving parts, each as one body: {moves}." + (f" At rest: {', '.join(found.rest)}." if found.rest else "")]
     if found.idle:
         said.append(
-            f"Other mechanisms start at the same acceleration. They are the same motion, in which {', '.join(found.idle)} "
-            "may move along at no cost: the one with the fewest moving blocks is shown."
+            "Other mechanisms start at the same acceleration. They are the same motion, in which "
+            f"{', '.join(found.idle)} may move along at no cost: the one with the fewest moving blocks is shown."
         )
     if found.lead:
         said.append(f"phi is the rotation of {found.lead}.")
