@@ -73,7 +73,7 @@ class Frame:
         sides = [
             (k, self.index[name], sign, point, way)
             for k, (a, b, point, way) in enumerate(rows) for name, sign in ((b, 1.0), (a, -1.0))
-            if name in self.index
+            if name is not None and name in self.index
         ]  # fmt: skip
         if not sides:
             return from_entries([], [], [], (len(rows), 3 * len(self.names)))

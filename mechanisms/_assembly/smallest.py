@@ -119,6 +119,8 @@ def _turns_with(problem: Problem, field: Reals, moves: Bools, block: int, way: R
     place = np.array(problem.frame.centroids) / problem.frame.size
     for k in np.flatnonzero(moves):
         vx, vy, turn = field[3 * k : 3 * k + 3]
+        if abs(turn) <= SAME * np.abs(field).max():
+            continue  # what slides has no point about which to turn: it is another joint that slides
         arm = place[block] - place[k]
         along = np.array([vx - turn * arm.imag, vy + turn * arm.real, turn])
         if np.linalg.norm(along - way * (along @ way)) <= SAME * np.linalg.norm(along):
