@@ -1,4 +1,4 @@
-"""Walls of many blocks: sparse programmes, rigid parts and searches against dense and direct ways without shared code."""
+"""Walls of many blocks: sparse programmes, rigid parts and searches against dense and direct ways."""
 
 from __future__ import annotations
 

@@ -182,7 +182,7 @@ class Displaced:
         return answers
 
     def near(self, forces: Reals, state: Reals) -> Reals | None:
-        """Multipliers of the rays that balance forces on the blocks, found by changing those of a state beside this one.
+        """Multipliers of the rays that balance forces on the blocks, by changing those of a state beside this one.
 
         None if that takes tension: then it is not known whether others do. It costs one system of equations where the
         margin is a programme. Each multiplier changes in proportion to its square, so that small ones hardly do.

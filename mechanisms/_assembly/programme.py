@@ -77,7 +77,7 @@ def _beside(solve: Callable[[], Any]) -> Any:
     def run() -> None:
         try:
             found.append(solve())
-        except BaseException as error:  # noqa: BLE001 - raised again below
+        except BaseException as error:  # raised again below
             failed.append(error)
 
     thread = Thread(target=run, daemon=True)
